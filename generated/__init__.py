@@ -12,6 +12,8 @@ __all__ = [
     "duffing",
     "elastic_pendulum",
     "foucault_pendulum",
+    "furuta_pendulum",
+    "heavy_top",
     "henon_heiles",
     "rotating_hoop",
     "single_pendulum",

@@ -6,7 +6,7 @@ derivative taken numerically of positions and constraints, in 50 digits.
 """
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
@@ -23,7 +23,7 @@ from mpmath import diff, fdot, mpf, workdps
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from derive import TIME, System, load, names, systems, write
+from derive import TIME, PointMass, RigidBody, System, load, names, systems, write
 from derive.system.catalogue import drawing
 from solvers.app.cli import main
 from solvers.equations.forms import Form
@@ -70,8 +70,25 @@ def cases(module: ModuleType) -> list[Case]:
         for k, coordinate in enumerate(coordinates):
             if coordinate.symbol.is_positive:
                 y[k] = abs(y[k]) + 0.5
+        if quaternions(system):
+            for _ in range(9):
+                y = (np.array(y) + module.correction(0.0, y, params)).tolist()
+            y = np.array(y)
         results.append((float(random.uniform(0.1, 2)), y.tolist(), params.tolist()))
     return results
+
+
+def quaternions(system: System) -> list[tuple[sp.Symbol, ...]]:
+    """Unit quaternions among the coordinates."""
+    return [parts for mass in system.masses if (parts := getattr(mass, "quaternion", ()))]
+
+
+def points(mass: PointMass) -> Iterator[tuple[sp.Expr, tuple[sp.Expr, ...]]]:
+    """Inertia and place of the mass, and of points on the axes that rotate as a body in space."""
+    yield from mass.motions
+    if isinstance(mass, RigidBody) and mass.turns:
+        half, matrix = mass.tensor.trace() / 2, mass.orientation.matrix
+        yield from ((half - mass.tensor[k, k], tuple(matrix[:, k])) for k in range(3))
 
 
 class Alembert:
@@ -86,7 +103,7 @@ class Alembert:
         self.terms = [
             (compiled(free, inertia), compiled(symbols, r))
             for mass in system.masses
-            for inertia, place in mass.motions
+            for inertia, place in points(mass)
             for r in place
         ]
         self.potential = compiled(symbols, system.potential_energy)
@@ -176,6 +193,10 @@ def test_motions_and_reactions_satisfy_d_alembert_s_principle(
                     applied = [f + reaction * x for f, x in zip(applied, direction, strict=True)]
                 changes = alembert.changes(mpf(t), q, v, a, values)
                 assert max(map(abs, changes)) < 1e-11 * max(map(abs, rates))
+            for parts in quaternions(system):  # along which energies beside the norm 1 differ
+                indices = [system.q.index(part) for part in parts]
+                excess = fdot((q[k], needed[k] - applied[k]) for k in indices)
+                needed = [f - excess * q[k] * (k in indices) for k, f in enumerate(needed)]
             scale = max(1, *(abs(x) for x in (*needed, *rates)))
             for force, given in zip(needed[:n], applied, strict=True):
                 assert abs(force - given) < 1e-11 * scale
@@ -244,7 +265,7 @@ def test_the_hamiltonian_is_the_maximum_of_p_v_minus_the_lagrangian_over_velocit
     kinetic = sum(
         inertia * (r.diff(TIME) + sum(map(mul, map(r.diff, system.q), system.qdot))) ** 2 / 2
         for mass in system.masses
-        for inertia, place in mass.motions
+        for inertia, place in points(mass)
         for r in map(sp.sympify, place)
     )
     lagrangian = sp.lambdify(symbols, kinetic - system.potential_energy, "numpy")

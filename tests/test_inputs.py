@@ -66,7 +66,7 @@ def test_inputs_are_the_last_parameters(module: ModuleType) -> None:
     assert rest == pytest.approx((0, 0, 6, -20))
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", [name for name in names() if not load(name).inputs])
 def test_systems_without_inputs_have_none(name: str) -> None:
     shipped = import_module(f"generated.{name}")
     assert not hasattr(shipped, "INPUTS")

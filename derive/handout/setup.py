@@ -53,9 +53,8 @@ def _in_space(bodies: Sequence[RigidBody], formulas: Numbering) -> Iterator[Bloc
             f"The tensor of inertia of {mass} about its centre of mass, in body axes, has the "
             f"entries xx, xy, xz, yy, yz and zz: {formulas.text(*entries)}."
         )
-        rows = body.axes.matrix.tolist() if body.axes else []
-        columns = (formulas.text(*(row[k] for row in rows)) for k in range(3))
-        yield Paragraph(f"The body axes of {mass} in space: {'; '.join(columns)}.")
+        if body.axes:
+            yield Paragraph(f"The orientation of {mass} is that of {body.axes.words}.")
 
 
 def constraints(d: Derivation, formulas: Numbering) -> Iterator[Block]:
