@@ -96,3 +96,12 @@ def test_the_document_states_why_there_is_no_hamiltonian(path: Path, reason: str
 def test_other_documents_have_no_section_on_constraints() -> None:
     titles = [one.title for one in document(Derivation(load("single_pendulum"))).sections]
     assert "Constraints" not in titles
+
+
+def test_positions_by_too_many_coordinates_are_no_system(tmp_path: Path) -> None:
+    path = tmp_path / "body.md"
+    path.write_text(
+        r"The mass $m$ is at $\vec r = \begin{pmatrix} x + a\cos\theta \\ y + a\sin\theta"
+        r" \end{pmatrix}$, with $m\ddot x = 0$, $m\ddot y = 0$ and $J\ddot\theta = 0$."
+    )
+    assert judge_document(read_document(path)).formulas

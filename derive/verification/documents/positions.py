@@ -11,7 +11,7 @@ from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.documents.candidates import UNITS, Candidate, frictions, loads
 from derive.verification.documents.letters import KINDS, Letters
-from derive.verification.documents.meaning import valid_name
+from derive.verification.documents.meaning import derivation, valid_name
 from derive.verification.documents.statements import DocumentFormula, definitions
 
 #: Names of Cartesian components.
@@ -47,12 +47,14 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
                 if symbols[name] in used
             ]
             try:
-                yield System(
+                system = System(
                     "stated", "The system that the document states", coordinates, parameters,
                     masses, potential=potential, gravity=(sp.S.Zero,) * len(masses[0].position),
                 )  # fmt: skip
-            except SystemDefinitionError:
+                derivation(system)
+            except SystemDefinitionError:  # such as of coordinates that are not independent
                 continue
+            yield system
 
 
 def stated_candidates(system: System, letters: Letters) -> Iterator[Candidate]:
