@@ -116,7 +116,7 @@ class RigidBody(PointMass):
         """The centre of mass; in the plane also the angle, and in space points on the axes.
 
         With P = tr(J)/2 - J, the energy of rotation is that of masses P_kk at the ends of unit
-        vectors along the axes (S. D. Poisson's moments, of an equimomental system).
+        vectors along the axes: the body and these points are equimomental.
         """
         if self.axes is None:
             return (*super().motions, (self.inertia, (self.orientation,)))

@@ -25,7 +25,7 @@ system = System(
     links=[Rod((0, 0, 0), arm.turned((L, 0, 0))), Rod(arm.turned((L, 0, 0)), 1)])
 
 PUBLISHED = r'''
-source = "B. S. Cazzolato, Z. Prime, J. Control Sci. Eng. (2011) 528341, equations (33), (34)"
+source = "B. S. Cazzolato, Z. Prime, J. Control Sci. Eng. (2011) 528341"
 note = "The source has friction, too."
 euler_lagrange = ["""alpha_ddot*(I + m*L**2 + (J + m*l**2)*sin(theta)**2)
  + theta_ddot*m*L*l*cos(theta)
