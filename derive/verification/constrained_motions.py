@@ -1,5 +1,7 @@
 """Motions of systems with constraints: states that satisfy these, accelerations and multipliers."""
 
+from contextlib import suppress
+
 import sympy as sp
 
 from derive.formulas.expression import ExpressionError
@@ -7,8 +9,10 @@ from derive.formulas.numeric import Approximation, Evaluator, mp
 from derive.mechanics.derivation import Derivation
 from derive.verification.engine import State
 
-#: Steps of Newton's method, and the residual before the last one.
-MOST_STEPS, TINY = 60, mp.mpf("1e-60")
+#: Steps of Newton's method from each of several states, and the residual before the last one.
+MOST_STEPS, MOST_STATES, TINY = 60, 20, mp.mpf("1e-60")
+#: Largest change in a step of a symbol's magnitude plus 1, and its change from state to state.
+LONGEST, SHIFT = mp.mpf("0.5"), sp.Rational(7, 5)
 #: Largest ratio of accelerations that is rounding.
 ZERO = mp.mpf("1e-80")
 
@@ -18,18 +22,8 @@ def motion(derivation: Derivation, state: State) -> State:
 
     An `ExpressionError` reports constraints without a solution nearby.
     """
-    system, phi = derivation.system, sp.Matrix(derivation.holonomic)
-    values = dict(state)
-    if derivation.holonomic:
-        gradients = phi.jacobian(system.q)
-        for _ in range(MOST_STEPS):
-            evaluator = Evaluator(values)
-            largest = max(abs(evaluator(entry).number) for entry in phi)
-            _move(values, system.q, gradients, phi, evaluator)
-            if largest < TINY:
-                break
-        else:
-            raise ExpressionError("no generic state satisfies the constraints")
+    system = derivation.system
+    values = _closed(derivation, state) if derivation.holonomic else dict(state)
     G, drift = derivation.constraint_jacobian, derivation.constraint_rates
     _move(values, system.qdot, G, drift, Evaluator(values))
     unknown = (*system.qddot, *system.multipliers)
@@ -43,6 +37,23 @@ def motion(derivation: Derivation, state: State) -> State:
     }
     momenta = zip(system.p, derivation.momenta, strict=True)
     return values | {p: evaluator(value).rounded() for p, value in momenta}
+
+
+def _closed(derivation: Derivation, state: State) -> dict[sp.Symbol, sp.Expr]:
+    """A state that satisfies the constraints of coordinates."""
+    q, phi = derivation.system.q, sp.Matrix(derivation.holonomic)
+    gradients = phi.jacobian(q)
+    for attempt in range(MOST_STATES):
+        # Newton's method may end at a local minimum of the residuals
+        values = state | {s: state[s] + SHIFT * attempt * k for k, s in enumerate(q)}
+        with suppress(ZeroDivisionError):
+            for _ in range(MOST_STEPS):
+                evaluator = Evaluator(values)
+                largest = max(abs(evaluator(entry).number) for entry in phi)
+                _move(values, q, gradients, phi, evaluator)
+                if largest < TINY:
+                    return values
+    raise ExpressionError("no generic state satisfies the constraints")
 
 
 def equations(derivation: Derivation) -> sp.Matrix:
@@ -61,8 +72,11 @@ def _move(
     """Change symbols as little as removes linear residuals."""
     J = _numbers(evaluator, gradients)
     change = J.T * mp.lu_solve(J * J.T, _numbers(evaluator, residuals))
-    for symbol, x in zip(symbols, change, strict=True):
-        values[symbol] = Approximation(evaluator(symbol).number - x).rounded()
+    before = [evaluator(symbol).number for symbol in symbols]
+    parts = (abs(x) / (1 + abs(b)) for x, b in zip(change, before, strict=True))
+    factor = min(1, LONGEST / max(TINY, *parts))
+    for symbol, b, x in zip(symbols, before, change, strict=True):
+        values[symbol] = Approximation(b - factor * x).rounded()
 
 
 def _numbers(evaluator: Evaluator, matrix: sp.MatrixBase) -> mp.matrix:
