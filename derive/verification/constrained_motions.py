@@ -45,12 +45,12 @@ def _closed(derivation: Derivation, state: State) -> dict[sp.Symbol, sp.Expr]:
     gradients = phi.jacobian(q)
     for attempt in range(MOST_STATES):
         # Newton's method may end at a local minimum of the residuals
-        values = state | {s: state[s] + SHIFT * attempt * k for k, s in enumerate(q)}
+        values = dict(state) | {s: state[s] + SHIFT * attempt * k for k, s in enumerate(q)}
         with suppress(ZeroDivisionError):
             for _ in range(MOST_STEPS):
                 evaluator = Evaluator(values)
                 largest = max(abs(evaluator(entry).number) for entry in phi)
-                _move(values, q, gradients, phi, evaluator)
+                _move(values, q, gradients, phi, evaluator, LONGEST)
                 if largest < TINY:
                     return values
     raise ExpressionError("no generic state satisfies the constraints")
@@ -68,13 +68,14 @@ def _move(
     gradients: sp.MatrixBase,
     residuals: sp.MatrixBase,
     evaluator: Evaluator,
+    longest: mp.mpf = mp.inf,
 ) -> None:
-    """Change symbols as little as removes linear residuals."""
+    """Change symbols as little as removes linear residuals, or by a part of that."""
     J = _numbers(evaluator, gradients)
     change = J.T * mp.lu_solve(J * J.T, _numbers(evaluator, residuals))
     before = [evaluator(symbol).number for symbol in symbols]
     parts = (abs(x) / (1 + abs(b)) for x, b in zip(change, before, strict=True))
-    factor = min(1, LONGEST / max(TINY, *parts))
+    factor = min(1, longest / max(TINY, *parts))
     for symbol, b, x in zip(symbols, before, change, strict=True):
         values[symbol] = Approximation(b - factor * x).rounded()
 
