@@ -5,7 +5,8 @@ import keyword
 import pytest
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
 
 x, y = sp.symbols("x y")
 SCOPE = {"x": x, "y": y, "sin": sp.sin}

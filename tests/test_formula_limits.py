@@ -8,7 +8,8 @@ import sympy as sp
 
 from derive import Coordinate, Parameter, PointMass, System, write
 from derive.codegen.translation import UnsupportedFunctionError
-from derive.formulas.expression import FUNCTIONS, ExpressionError, number, parse
+from derive.formulas.expression import FUNCTIONS, number, parse
+from derive.formulas.syntax import ExpressionError
 from solvers.app.cli import main
 
 x, k = sp.symbols("x k", real=True)

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import pytest
 
-from derive.formulas.expression import ExpressionError
+from derive.formulas.syntax import ExpressionError
 from derive.verification.engine import RELATION
 from derive.verification.report.equation import Equation
 from derive.verification.report.judgement import EQUATIONS, check, equation_by_id, verdict

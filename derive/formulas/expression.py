@@ -18,12 +18,7 @@ from derive.formulas import functions
 from derive.formulas.budget import INFINITE, MAX_BITS, MAX_EXPONENT, Budget, BudgetError
 from derive.formulas.numeric import NoValueError
 from derive.formulas.sampling import check_value
-from derive.formulas.syntax import RELATION as RELATION
-from derive.formulas.syntax import ExpressionError as ExpressionError
-from derive.formulas.syntax import is_sum as is_sum
-from derive.formulas.syntax import python_source as python_source
-from derive.formulas.syntax import summands as summands
-from derive.formulas.syntax import syntax_tree as syntax_tree
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from solvers.io.suggestion import did_you_mean
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase

@@ -8,8 +8,8 @@ import ast
 import re
 from collections.abc import Mapping, Sequence
 
-from derive.formulas.expression import ExpressionError, is_sum, summands
 from derive.formulas.lettering import name_latex
+from derive.formulas.syntax import ExpressionError, is_sum, summands
 from derive.formulas.typesetting import ATOM, POWER, PRODUCT, SUM, negated
 
 #: Functions that have a command of their own in LaTeX, by name.

@@ -8,9 +8,9 @@ import ast
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from derive.formulas.expression import ExpressionError, is_sum, summands
 from derive.formulas.latex import COMMANDS, latex, operand_latex
 from derive.formulas.lettering import lettering
+from derive.formulas.syntax import ExpressionError, is_sum, summands
 from derive.formulas.typesetting import ATOM, PRODUCT, SUM, negated
 
 #: A piece of LaTeX and its width.

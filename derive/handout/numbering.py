@@ -7,8 +7,8 @@ from itertools import combinations_with_replacement, count, product
 
 import sympy as sp
 
-from derive.formulas.expression import is_sum, summands
 from derive.formulas.line_breaks import latex_rows, width_of
+from derive.formulas.syntax import is_sum, summands
 from derive.handout.document import WIDTH, Block, Equation, Paragraph, in_text
 from derive.handout.notation import Notation
 

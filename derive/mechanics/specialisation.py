@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, number
+from derive.formulas.expression import FUNCTIONS, number
+from derive.formulas.syntax import ExpressionError
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.prescribed import motions
 from derive.system.symbols import TIME

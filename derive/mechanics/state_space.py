@@ -6,7 +6,8 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, number
+from derive.formulas.expression import FUNCTIONS, number
+from derive.formulas.syntax import ExpressionError
 from derive.mechanics.reduction import reduced
 from derive.system.parts import SystemDefinitionError, formula, items
 from derive.system.symbols import TIME

@@ -12,7 +12,8 @@ from typing import Any
 import sympy as sp
 
 from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, Budget
-from derive.formulas.expression import FUNCTIONS, ExpressionError, number
+from derive.formulas.expression import FUNCTIONS, number
+from derive.formulas.syntax import ExpressionError
 from derive.system.body_tables import rigid_body
 from derive.system.constraints import Constraint
 from derive.system.joint_file import read_joints

@@ -12,9 +12,10 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.formulas.expression import RELATION, ExpressionError, Scope, parse
+from derive.formulas.expression import Scope, parse
 from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError
 from derive.formulas.sampling import STATES
+from derive.formulas.syntax import RELATION, ExpressionError
 from derive.formulas.zero import is_positive, vanishes
 
 State = Mapping[sp.Symbol, sp.Expr]

@@ -7,8 +7,8 @@ from functools import partial
 import sympy as sp
 
 from derive.formulas.expansion import is_expandable
-from derive.formulas.expression import ExpressionError
 from derive.formulas.numeric import independent, solved
+from derive.formulas.syntax import ExpressionError
 from derive.verification.constrained_motions import equations
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on

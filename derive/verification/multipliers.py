@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Scope
+from derive.formulas.expression import Scope
+from derive.formulas.syntax import ExpressionError
 from derive.system.system import System
 from derive.verification.engine import Context
 from derive.verification.model import Model

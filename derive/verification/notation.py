@@ -6,7 +6,8 @@ from unicodedata import normalize
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Scope, Value, parse
+from derive.formulas.expression import Scope, Value, parse
+from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.model import Model, depends_on, own_names, time_derivative

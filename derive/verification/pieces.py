@@ -10,14 +10,8 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from derive.formulas.expression import (
-    Scope,
-    is_sum,
-    parse,
-    python_source,
-    summands,
-    syntax_tree,
-)
+from derive.formulas.expression import Scope, parse
+from derive.formulas.syntax import is_sum, python_source, summands, syntax_tree
 from derive.verification.samples import FUNCTIONS, Numbers, Samples, applied, power, quotient
 
 OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {

@@ -3,7 +3,8 @@
 from dataclasses import replace
 from functools import partial
 
-from derive.formulas.expression import ExpressionError, number
+from derive.formulas.expression import number
+from derive.formulas.syntax import ExpressionError
 from derive.verification.advice import advised
 from derive.verification.derived import CANONICAL, QUANTITIES
 from derive.verification.engine import joined

@@ -3,7 +3,7 @@
 import ast
 import re
 
-from derive.formulas.expression import is_sum, syntax_tree
+from derive.formulas.syntax import is_sum, syntax_tree
 from derive.verification.pieces import Piece
 from derive.verification.search import Change
 from derive.verification.verdict import Correction

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, is_sum
+from derive.formulas.syntax import ExpressionError, is_sum
 from derive.verification.goals import Goal
 from derive.verification.model import Model, depends_on
 from derive.verification.monomials import CLOSE, Monomial, Monomials

@@ -6,7 +6,8 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import Scope, parse, syntax_tree
+from derive.formulas.expression import Scope, parse
+from derive.formulas.syntax import syntax_tree
 
 
 class SourceNames:

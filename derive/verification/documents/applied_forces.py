@@ -4,7 +4,7 @@ import ast
 from collections.abc import Collection
 from dataclasses import replace
 
-from derive.formulas.expression import ExpressionError, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import Text
 

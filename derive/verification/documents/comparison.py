@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import Value, syntax_tree
+from derive.formulas.expression import Value
+from derive.formulas.syntax import syntax_tree
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.matrix_terms import MatrixTerms
 from derive.verification.documents.roles import Roles

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError
+from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula

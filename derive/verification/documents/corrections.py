@@ -4,8 +4,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from derive.formulas.expression import is_sum, syntax_tree
 from derive.formulas.latex import latex as latex_of
+from derive.formulas.syntax import is_sum, syntax_tree
 from derive.reading.latex.tree import Span
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula

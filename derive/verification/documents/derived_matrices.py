@@ -6,7 +6,8 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value
+from derive.formulas.expression import Value
+from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.entries import ENTRY
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.scope import DocumentScope

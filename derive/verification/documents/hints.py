@@ -7,7 +7,8 @@ from pathlib import Path
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
 from derive.system.system import System
 from derive.system.tables import Table, read
 from derive.verification.documents.candidates import Candidate, candidates, kind_of

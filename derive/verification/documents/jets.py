@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.formulas.expression import syntax_tree
+from derive.formulas.syntax import syntax_tree
 
 #: Taylor coefficients: the value, the rate, and half the second derivative.
 ORDERS = 3

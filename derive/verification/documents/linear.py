@@ -5,7 +5,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError
+from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.verification.model import Model
 

@@ -6,7 +6,8 @@ from itertools import permutations
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value
+from derive.formulas.expression import Value
+from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.positions import COLUMN, POINT
 from derive.verification.documents.scope import DocumentScope
 

@@ -6,14 +6,8 @@ from contextlib import suppress
 
 import sympy as sp
 
-from derive.formulas.expression import (
-    ExpressionError,
-    is_sum,
-    parse,
-    python_source,
-    summands,
-    syntax_tree,
-)
+from derive.formulas.expression import parse
+from derive.formulas.syntax import ExpressionError, is_sum, python_source, summands, syntax_tree
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.roles import Roles
 from derive.verification.documents.scope import DocumentScope

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from derive.formulas.expression import ExpressionError, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.verification.documents.jets import Array, Jet, Value
 
 #: The largest relative variation of a ratio that counts as none.

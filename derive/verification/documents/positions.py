@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, ExpressionError, parse
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME
 from derive.system.system import System

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value, parse, summands, syntax_tree
+from derive.formulas.expression import Value, parse
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope

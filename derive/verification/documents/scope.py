@@ -6,7 +6,8 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value, parse
+from derive.formulas.expression import Value, parse
+from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME, acceleration, velocity

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, parse
+from derive.formulas.expression import parse
+from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.verification.documents.applied_forces import without_unknown_terms
 from derive.verification.documents.comparison import Comparison

@@ -7,7 +7,8 @@ from functools import cache
 
 import sympy as sp
 
-from derive.formulas.expression import ExpressionError, Value, parse
+from derive.formulas.expression import Value, parse
+from derive.formulas.syntax import ExpressionError
 from derive.verification.engine import Check, Context
 from derive.verification.report import contexts
 from derive.verification.report.contexts import STRAY

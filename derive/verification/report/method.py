@@ -6,7 +6,8 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derive.formulas.expression import parse, syntax_tree
+from derive.formulas.expression import parse
+from derive.formulas.syntax import syntax_tree
 
 STAGES = 4
 INCREMENTS = tuple(f"m{k + 1}" for k in range(STAGES))
