@@ -19,6 +19,7 @@ from derive import (
     Parameter,
     RigidBody,
     System,
+    rolling_on_plane,
     rotations,
     velocity,
 )
@@ -82,6 +83,20 @@ def bicycle() -> System:
             Constraint(front[2] - FRONT * height, "front_z", "N"),
             Constraint(up[2] * ahead[0] - up[0] * ahead[2], "front_x", "N"),
             Constraint(ahead[1], "front_y", "N")])  # fmt: skip
+
+
+def test_a_steered_wheel_that_leans_rolls() -> None:
+    # oracle: the velocity of its point of contact, from angular velocities
+    axes = ("zxyyzy", (psi, phi, theta, -TILT, delta, TILT))
+    fork, wheel = rotations(*axes), rotations(axes[0] + "y", (*axes[1], omega))
+    up, centre = fork.matrix.T * UP, Matrix([x, y, phi])
+    arm = Matrix([up[0], 0, up[2]]) * -FRONT / sp.sqrt(up[0] ** 2 + up[2] ** 2)
+    slips = fork.matrix * slip(centre, fork, omega, arm)
+    joint = rolling_on_plane("road", Q, centre, fork.matrix * arm, wheel)
+    random = np.random.default_rng(1)
+    state = {s: random.uniform(-1, 1) for s in (*Q, *map(velocity, Q))}
+    for one, other in zip(joint[:2], slips, strict=False):
+        assert float(one.formula.subs(state)) == pytest.approx(float(other.subs(state)), rel=1e-11)
 
 
 @pytest.fixture(scope="module")

@@ -9,12 +9,15 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import sympy as sp
 
+from derive.formulas.expansion import is_expandable
 from derive.system.constraints import AXES, Constraint, Point
 from derive.system.orientation import Orientation
 from derive.system.parts import SystemDefinitionError, formula, formulas
 from derive.system.symbols import TIME, velocity
 from solvers.io.suggestion import shortened
 
+#: Terms of the largest expression that is expanded.
+MOST_TERMS = 1000
 #: Rows of formulas and meanings, by the ends of the names of their multipliers.
 Rows = Iterable[tuple[str, sp.Expr, str]]
 
@@ -301,7 +304,12 @@ def _unit(name: str, direction: Point) -> tuple[sp.Expr, sp.Expr]:
 
 
 def _shortened(expression: sp.Expr) -> sp.Expr:
-    """A polynomial in sines and cosines without squares of cosines, in which terms cancel."""
+    """A polynomial in sines and cosines without squares of cosines, in which terms cancel.
+
+    A long expression, such as that of a wheel that is steered and leans, remains as it is.
+    """
+    if not is_expandable(expression, largest=MOST_TERMS):
+        return expression
     expression = sp.expand(expression)
     for wave in sorted(expression.atoms(sp.cos), key=sp.default_sort_key):
         square = 1 - sp.sin(wave.args[0]) ** 2
