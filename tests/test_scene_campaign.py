@@ -13,6 +13,8 @@ import generated
 import generated.chain_3 as chain
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
+from solvers.equations.assembly import has_constraints
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule, function, has_function
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
@@ -48,8 +50,10 @@ def random_scene(seed: int) -> Scene:
     velocities = size * reach * random.normal(size=n) * random.integers(0, 2)
     if module.SYSTEM == "henon_heiles":  # bound motions
         q, velocities = q * 0.5, velocities * 0.3
-    accuracy = 10 ** random.uniform(-12.5, -3)
-    return Scene(module, tuple(params), (*q, *velocities), duration, accuracy=accuracy)
+    accuracy, y0 = 10 ** random.uniform(-12.5, -3), (*q, *velocities)
+    if has_constraints(module):
+        y0 = tuple(consistent_start(module, {}, params, guess=y0).y.tolist())
+    return Scene(module, tuple(params), y0, duration, accuracy=accuracy)
 
 
 def collocated(motion: Motion, times: Array, h: float) -> Array:
