@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "a004bd5ed86f7fea"
+DIGEST = "0c1b061460e07d4d"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -79,6 +79,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "k", "beta", "c", "F", "Omega")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 0.1, 0.2, 1.0)
 POSITIVE = ("m",)
+LINKS = (("spring", (0, 1)), ("plate", (2, 3, 4, 5)))
 TIMED = (
     "rhs",
     "parameter_jacobian",
@@ -107,6 +108,7 @@ OPERATIONS = {
     "power": (9, 1),
     "mass_matrix": (0, 0),
     "positions": (0, 0),
+    "points": (2, 0),
     "hamiltonian_state": (1, 0),
     "rhs_hamiltonian": (21, 1),
     "jacobian_hamiltonian": (11, 3),
@@ -470,6 +472,67 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x, _ = y
     # outputs
     return _stacked((1, 2), y[0], x, 0.0)
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    2 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 2 floats
+        x in m; x_dot in m/s.
+    params : iterable of 6 floats
+        m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in rad/s.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    x, _ = y.tolist() if hasattr(y, "tolist") else y
+    # intermediate terms
+    x0 = x - (3.0/20.0)
+    x1 = (3.0/20.0) + x
+    # outputs
+    return (
+        (-2.0, 0.0),
+        (x, 0.0),
+        (x0, (-3.0/20.0)),
+        (x1, (-3.0/20.0)),
+        (x1, (3.0/20.0)),
+        (x0, (3.0/20.0)),
+    )
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (6, 2, ...)."""
+    # inputs
+    x, _ = y
+    # intermediate terms
+    x0 = x - (3.0/20.0)
+    x1 = (3.0/20.0) + x
+    # outputs
+    return _stacked(
+        (6, 2),
+        y[0],
+        -2.0,
+        0.0,
+        x,
+        0.0,
+        x0,
+        (-3.0/20.0),
+        x1,
+        (-3.0/20.0),
+        x1,
+        (3.0/20.0),
+        x0,
+        (3.0/20.0),
+    )
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -53,7 +53,7 @@ Parameters params:
     g [m/s^2] real, default 9.81: gravitational acceleration
 
 Masses and their positions:
-    M at (0, r)
+    M at (-1, r - 2)
     m at (r*sin(theta), -r*cos(theta))
 
 Lagrangian:
@@ -87,7 +87,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "3bd60324293cc784"
+DIGEST = "6057cd57b75ab059"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -121,6 +121,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("M", "m", "g")
 DEFAULTS: tuple[float, ...] = (3.0, 1.0, 9.81)
 POSITIVE = ("M", "m", "r")
+LINKS = (("thread", (0, 1, 2, 3)), ("ring", (1, 4, 5)), ("ring", (2, 6, 7)))
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
@@ -128,6 +129,7 @@ CALLS_FUNCTIONS = (
     "parameter_jacobian",
     "energy",
     "positions",
+    "points",
     "rhs_hamiltonian",
     "jacobian_hamiltonian",
     "energy_hamiltonian",
@@ -139,7 +141,8 @@ OPERATIONS = {
     "parameter_jacobian": (24, 2),
     "energy": (17, 3),
     "mass_matrix": (3, 1),
-    "positions": (5, 0),
+    "positions": (6, 0),
+    "points": (6, 0),
     "hamiltonian_state": (5, 1),
     "rhs_hamiltonian": (21, 4),
     "jacobian_hamiltonian": (26, 4),
@@ -475,7 +478,7 @@ def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
-    5 operations, 0 of them on parameters alone.
+    6 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
@@ -494,7 +497,7 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     # inputs
     r, theta, _, _ = y.tolist() if hasattr(y, "tolist") else y
     # outputs
-    return ((0.0, r), (r*sin(theta), -r*cos(theta)))
+    return ((-1.0, r - 2.0), (r*sin(theta), -r*cos(theta)))
 
 
 def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -504,7 +507,70 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # inputs
     r, theta, _, _ = y
     # outputs
-    return _stacked((2, 2), y[0], 0.0, r, r*sin(theta), -r*cos(theta))
+    return _stacked((2, 2), y[0], -1.0, r - 2.0, r*sin(theta), -r*cos(theta))
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    6 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 4 floats
+        r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
+    params : iterable of 3 floats
+        M, m in kg; g in m/s^2.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    r, theta, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    # outputs
+    return (
+        (-1.0, r - 2.0),
+        (-1.0, 0.0),
+        (0.0, 0.0),
+        (r*sin(theta), -r*cos(theta)),
+        ((-19.0/20.0), 0.0),
+        (-1.0, (1.0/20.0)),
+        ((1.0/20.0), 0.0),
+        (0.0, (1.0/20.0)),
+    )
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (8, 2, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    r, theta, _, _ = y
+    # outputs
+    return _stacked(
+        (8, 2),
+        y[0],
+        -1.0,
+        r - 2.0,
+        -1.0,
+        0.0,
+        0.0,
+        0.0,
+        r*sin(theta),
+        -r*cos(theta),
+        (-19.0/20.0),
+        0.0,
+        -1.0,
+        (1.0/20.0),
+        (1.0/20.0),
+        0.0,
+        0.0,
+        (1.0/20.0),
+    )
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:

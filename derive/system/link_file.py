@@ -4,19 +4,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from derive.system.links import (
-    Block,
-    Box,
-    Cart,
-    Line,
-    Link,
-    Plate,
-    Rail,
-    Rod,
-    Spring,
-    Thread,
-    Wheel,
-)
+from derive.system.centred_links import Block, Box, Cart, Wheel
+from derive.system.line_links import Line, Plate, Rail, Rod, Spring, Thread
+from derive.system.link import Link
 from derive.system.parts import SystemDefinitionError
 from derive.system.tables import Table
 from solvers.io.suggestion import shortened

@@ -6,7 +6,7 @@ r"""A mass on a nonlinear spring with friction and a harmonic force.
 """
 from sympy import cos, symbols
 
-from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
+from derive import TIME, Block, Coordinate, Parameter, PointMass, Spring, System, velocity
 
 x, k, beta, F, Omega, c = symbols("x k beta F Omega c", real=True)
 m = symbols("m", positive=True)
@@ -19,7 +19,7 @@ system = System(
                 Parameter(Omega, "rad/s", 1.0, "frequency of the force")],
     masses=[PointMass(m, (x, 0))],
     potential=k * x**2 / 2 + beta * x**4 / 4 - F * x * cos(Omega * TIME),
-    dissipation=c * velocity(x)**2 / 2)
+    dissipation=c * velocity(x)**2 / 2, links=[Spring((-2, 0), 0), Block(0, 0.3, 0.3)])
 
 PUBLISHED = r'''
 source = "Wikipedia, Duffing equation"

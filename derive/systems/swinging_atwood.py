@@ -7,7 +7,7 @@
 """
 from sympy import cos, sin, symbols
 
-from derive import Coordinate, Parameter, PointMass, System
+from derive import Coordinate, Parameter, PointMass, System, Thread, Wheel
 
 theta, g = symbols("theta g", real=True)
 r, M, m = symbols("r M m", positive=True)
@@ -19,7 +19,9 @@ system = System(
     parameters=[Parameter(M, "kg", 3.0, "mass that moves vertically"),
                 Parameter(m, "kg", 1.0, "mass that swings"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-    masses=[PointMass(M, (0, r)), PointMass(m, (r * sin(theta), -r * cos(theta)))])
+    masses=[PointMass(M, (-1, r - 2)), PointMass(m, (r * sin(theta), -r * cos(theta)))],
+    potential=M * g * r - m * g * r * cos(theta),
+    links=[Thread(0, (-1, 0), (0, 0), 1), Wheel((-1, 0), 0.05), Wheel((0, 0), 0.05)])
 
 PUBLISHED = r'''
 source = "Imperial College, The Swinging Atwood's Machine; after N. B. Tufillaro et al. (1984)"
