@@ -9,6 +9,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from functools import cache
 from itertools import count
 
 from derive.codegen import operation as op
@@ -26,8 +27,18 @@ DIGITS = 40
 SUM, PRODUCT, ATOM = 1, 2, 3
 
 
+@cache
 def _is_float(value: Number) -> bool:
     return bool(-LARGEST < value < LARGEST and value == float(value))
+
+
+@cache
+def _digits(value: Number) -> str:
+    digits = repr(abs(float(value)))
+    if Fraction(digits) != abs(value):
+        with localcontext(prec=DIGITS):
+            digits = f"{abs(Decimal(value.numerator)) / value.denominator:e}"
+    return digits
 
 
 class Notation:
@@ -48,11 +59,7 @@ class Notation:
 
     def decimal(self, value: Number) -> str:
         """A number as a decimal fraction, with `DIGITS` where no float is equal to it."""
-        digits = repr(abs(float(value)))
-        if Fraction(digits) != abs(value):
-            with localcontext(prec=DIGITS):
-                digits = f"{abs(Decimal(value.numerator)) / value.denominator:e}"
-        return f"{'-' * (value < 0)}{digits}"
+        return f"{'-' * (value < 0)}{_digits(value)}"
 
     def call(self, function: str, *arguments: str) -> str:
         """A call of ``select`` or of a mathematical function, by its name in C99."""

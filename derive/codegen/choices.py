@@ -40,11 +40,11 @@ class Choices:
         graph, select = self._graph, self._select
         self._find_switches()
         if isinstance(expression, sp.DiracDelta):
-            return graph.node(0)
+            return graph.zero
         if isinstance(expression, sp.Piecewise):
             return self._pieces(expression.args)
         first, *rest = map(self._translate, expression.args)
-        zero, one = graph.node(0), graph.node(1)
+        zero, one = graph.zero, graph.one
         if isinstance(expression, sp.Abs):
             return select(first, first, -first)
         if isinstance(expression, sp.sign):
@@ -75,7 +75,7 @@ class Choices:
         (value, condition), *rest = pieces
         if not rest:  # its condition holds where no other does
             return self._translate(value)
-        choice, one = self._choice(condition), self._graph.node(1)
+        choice, one = self._choice(condition), self._graph.one
         yes, no = self._translate(value), self._pieces(rest)
         return choice(
             self._guarded(yes, lambda node: choice(node, one)),

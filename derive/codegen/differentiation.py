@@ -29,7 +29,7 @@ class Differentiation:
     def __call__(self, node: Node, leaf: str) -> Node:
         """∂node/∂leaf."""
         if leaf not in self.leaves(node):
-            return self._graph.node(0)
+            return self._graph.zero
         if (node, leaf) not in self._derivatives:
             self._derivatives[node, leaf] = self._derivative(node, leaf)
         return self._derivatives[node, leaf]
@@ -38,7 +38,7 @@ class Differentiation:
         graph = self._graph
         match node:
             case Leaf():
-                return graph.node(1)
+                return graph.one
             case Let(value) | Rewritten(short=value):
                 return self(value, leaf)
             case Call("select", (s, a, b)):
@@ -49,7 +49,7 @@ class Differentiation:
                 if rate.is_number(0):
                     return by_base
                 # where the base is 0, so is the power
-                positive = graph.call("select", base, base, graph.node(1))
+                positive = graph.call("select", base, base, graph.one)
                 return by_base + node * graph.call("log", positive) * rate
             case Call(function, arguments):
                 variables = X[: len(arguments)]
@@ -62,7 +62,8 @@ class Differentiation:
             case Sum(terms):
                 return graph.sum([(self(term, leaf), number) for term, number in terms])
             case Product(powers):
-                return graph.sum([(self._changed(powers, n, leaf), p) for n, p in powers])
+                changing = [(n, p) for n, p in powers if leaf in self.leaves(n)]
+                return graph.sum([(self._changed(powers, n, leaf), p) for n, p in changing])
             case _:
                 raise NotImplementedError(f"no derivative of a {type(node).__name__} node")
 

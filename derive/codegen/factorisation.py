@@ -44,7 +44,7 @@ class Factorisation:
     """U D Uᵀ of a symmetric positive definite matrix of nodes."""
 
     def __init__(self, graph: Graph, matrix: Rows) -> None:
-        n, zero = len(matrix), graph.node(0)
+        n, zero = len(matrix), graph.zero
         self._graph, self._content = graph, _content(matrix)
         self._scale = scale = _common_scale(graph, matrix)
         self._rows = rows = [

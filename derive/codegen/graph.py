@@ -13,7 +13,7 @@ built:
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, reduce
 from math import gcd
 from typing import Any, TypeVar
 
@@ -64,6 +64,16 @@ class Graph:
     def _sum(self, terms: Terms) -> Sum:
         identity = (x for node, c in terms for x in (node, c.numerator, c.denominator))
         return self._intern(Sum, terms, identity=identity)
+
+    @cached_property
+    def zero(self) -> Node:
+        """The number 0."""
+        return self._constant(Fraction(0))
+
+    @cached_property
+    def one(self) -> Node:
+        """The number 1."""
+        return self._constant(ONE)
 
     def leaf(self, name: str) -> Node:
         """The input of this name."""
@@ -136,18 +146,19 @@ class Graph:
         for factor, power in factors:
             number, rest = factor.scaled()
             if number is not ONE:  # operations with fractions take long
-                coefficient *= number**power
+                scale = number if power == 1 else number**power
+                coefficient = scale if coefficient is ONE else coefficient * scale
             if rest is not None:
                 for node, inner in rest.factors():
                     powers[node] = powers.get(node, 0) + inner * power
-        if coefficient == 0:
-            return self.node(0)
+        if not coefficient:
+            return self.zero
         return self._scale(self._monomial(powers), coefficient)
 
     def _monomial(self, powers: Mapping[Node, int]) -> Node:
         nonzero = sorted(((n, p) for n, p in powers.items() if p), key=lambda item: item[0].rank)
         if not nonzero:
-            return self.node(1)
+            return self.one
         if len(nonzero) == 1 and nonzero[0][1] == 1:
             return nonzero[0][0]
         return self._intern(Product, tuple(nonzero))
@@ -162,17 +173,18 @@ class Graph:
     def sum(self, terms: Iterable[tuple[Node, Number]]) -> Node:
         """The sum of coefficient times node; its content is moved outside."""
         collected: dict[Node, Fraction] = {}
-        one = self.node(1)
+        one = self.one
         for node, number in terms:
             coefficient, rest = node.scaled()
             key = one if rest is None else rest
-            value = Fraction(number) if coefficient is ONE else coefficient * number
-            collected[key] = collected[key] + value if key in collected else value
+            if number != 1:
+                coefficient = Fraction(number) if coefficient is ONE else coefficient * number
+            collected[key] = collected[key] + coefficient if key in collected else coefficient
         nonzero = {node: c for node, c in collected.items() if c}
         if len(nonzero) > 1:
             nonzero = self._pythagoras(nonzero)
         if not nonzero:
-            return self.node(0)
+            return self.zero
         if len(nonzero) == 1:
             ((node, coefficient),) = nonzero.items()
             return self._scale(node, coefficient)
@@ -187,7 +199,7 @@ class Graph:
 
     def _primitive(self, terms: Mapping[Node, Fraction]) -> Node:
         ordered = sorted(terms.items(), key=lambda item: item[0].rank)
-        one = self.node(1)
+        one = self.one
         monomials = [{} if n is one else dict(n.factors()) for n, _ in ordered]
         common = {
             n: min(m.get(n, 0) for m in monomials)
@@ -207,7 +219,7 @@ class Graph:
         for (node, coefficient), monomial in zip(ordered, monomials, strict=True):
             if common:
                 node = self._monomial({n: p - common.get(n, 0) for n, p in monomial.items()})
-            rest.append((node, coefficient / content))
+            rest.append((node, coefficient if content == 1 else coefficient / content))
         rest.sort(key=lambda item: item[0].rank)
         primitive = self._sum(tuple(rest))
         # the remaining sum may be one of the common factors

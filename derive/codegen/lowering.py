@@ -203,6 +203,8 @@ def _numeric(node: Node) -> tuple[Fraction, Node | None]:
         case Product(powers):
             numbers = [(n.value, p) for n, p in powers if isinstance(n, Irrational)]
             others = [(n, p) for n, p in powers if not isinstance(n, Irrational)]
+            if not numbers:
+                return ONE, node
             number = prod((value**power for value, power in numbers), start=ONE)
             return number, node.graph.product(others) if others else None
     return ONE, node
