@@ -10,6 +10,7 @@ from derive.codegen.hamiltonian_form import HamiltonianForm
 from derive.codegen.lagrangian_form import LagrangianForm
 from derive.codegen.lowering import Lowering
 from derive.codegen.output_form import OutputForm
+from derive.codegen.projection_form import ProjectionForm
 from derive.codegen.quaternion_form import QuaternionForm
 from derive.codegen.rational import with_fewest_calls
 from derive.mechanics.derivation import Derivation
@@ -140,6 +141,16 @@ SPECS = (
         "`correction` of the rational state.",
         "Changes of coordinates, angles among them, and of velocities.",
         exists=lambda derivation: not _is_free(derivation)),
+    FunctionSpec("correction_variational", "variational", "4 q",
+        "`correction` of the motion, and changes that make its perturbation tangent to the "
+        "constraints.",
+        "Changes of coordinates, of velocities, and of the perturbations of both.",
+        exists=lambda derivation: not _is_free(derivation)),
+    FunctionSpec("correction_sensitivity", "sensitivity", "4 q",
+        "`correction_variational` with perturbed parameters, whose perturbations precede them.",
+        "Changes of coordinates, of velocities, and of the perturbations of both.",
+        exists=lambda derivation: not _is_free(derivation)
+        and bool(derivation.system.params) and _is_small(derivation)),
     FunctionSpec("reactions", "lagrangian", "reactions",
         "Forces that hold {} constant, by Lagrange's multipliers.",
         "One for each: a rod's tension, positive where it pulls.",
@@ -289,6 +300,8 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
         form = OutputForm
     elif derivation.has_quaternions and _is_small(derivation):
         form = QuaternionForm
+    elif spec.name.startswith("correction"):
+        form = ProjectionForm
     outputs = getattr(form(derivation), spec.name)
     angles = [q.name for q in derivation.system.q]
     system = derivation.system

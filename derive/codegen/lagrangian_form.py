@@ -74,7 +74,7 @@ class LagrangianForm(EquationsOfMotion):
         symbols = (*self._system.qddot, *self._system.multipliers)
         values = zip(symbols, [*self._accelerations, *self._multipliers], strict=True)
         known = {symbol.name: value for symbol, value in values}
-        known |= {one.name: self._graph.node(0) for one in self._derivation.redundant}
+        known |= {one.name: self._graph.zero for one in self._derivation.redundant}
         node = Translation(self._graph, known, self._derivation.switching_functions)
         known |= {one.constraint.name: node(one.reaction) for one in self._system.eliminated}
         return [known[one.name] for one in self._system.all_conditions]
@@ -94,26 +94,6 @@ class LagrangianForm(EquationsOfMotion):
     def redundant_constraints(self) -> list[Node]:
         """Constraints that follow from the others."""
         return self._nodes([one.formula for one in self._derivation.redundant])
-
-    @property
-    def correction(self) -> list[Node]:
-        """The smallest change of q and q̇ that removes linearised residuals, by the mass matrix."""
-        holonomic = {*self._derivation.holonomic}
-        residuals = [
-            self._node(one.formula if one.formula in holonomic else sp.S.Zero)
-            for one in self._system.conditions
-        ]
-        still = [self._graph.node(0) for _ in self._n]
-        of_q, of_qdot = (
-            self._constrained.solve(still, [-residual for residual in values])[0]
-            for values in (residuals, self._constraint_rates)
-        )
-        return [*of_q, *of_qdot]
-
-    @property
-    def correction_rational(self) -> list[Node]:
-        """The same as a function of the rational state; changes of angles stay as they are."""
-        return rationalised(self.correction, [q.name for q in self.angles])
 
     @property
     def power(self) -> list[Node]:
@@ -138,7 +118,7 @@ class LagrangianForm(EquationsOfMotion):
     @property
     def _state_rates(self) -> dict[sp.Symbol, Node]:
         """The rates of change of the state and of time."""
-        rates = [*self._qdot, *self._accelerations, self._graph.node(1)]
+        rates = [*self._qdot, *self._accelerations, self._graph.one]
         return dict(zip((*self._system.q, *self._system.qdot, TIME), rates, strict=True))
 
     def _change(self, value: Node, changes: Mapping[sp.Symbol, Node]) -> Node:

@@ -6,15 +6,16 @@ from functools import cached_property
 import sympy as sp
 
 from derive.codegen.constrained_factorisation import ConstrainedFactorisation
-from derive.codegen.lagrangian_form import HALF, LagrangianForm
+from derive.codegen.lagrangian_form import HALF
 from derive.codegen.node import Node
+from derive.codegen.projection_form import ProjectionForm
 from derive.codegen.translation import Translation
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.quasi_velocities import QuasiVelocities, columns
 from derive.system.symbols import TIME
 
 
-class QuaternionForm(LagrangianForm):
+class QuaternionForm(ProjectionForm):
     """Accelerations κ̈ = Eᵀ ḣ - |h|² κ from half the angular velocity h of each quaternion κ.
 
     The norms need no elimination: these equations are much shorter than those with multipliers.
@@ -107,43 +108,24 @@ class QuaternionForm(LagrangianForm):
         ]
         return [self._graph.sum([*terms, (self._potential, 1)])]
 
-    @property
-    def correction(self) -> list[Node]:
-        """A step towards norms of 1, and the smallest one onto the other constraints."""
-        holonomic, norms = {*self._derivation.holonomic}, self._quasi.norms
-        conditions = [*zip(self._system.conditions, self._constraint_jacobian, strict=True)]
-        jacobian = [row for one, row in conditions if one.formula not in norms]
-        formulas = [one.formula for one, _ in conditions if one.formula not in norms]
-        values = [self._node(each if each in holonomic else sp.S.Zero) for each in formulas]
-        rates = [
-            rate
-            for (one, _), rate in zip(conditions, self._constraint_rates, strict=True)
-            if one.formula not in norms
-        ]
-        return [
-            node
-            for column, residuals in ((self._q, values), (self._qdot, rates))
-            for node in self._corrected(column, residuals, jacobian)
-        ]
-
-    def _corrected(
-        self, column: Sequence[Node], residuals: Sequence[Node], jacobian: Sequence[Sequence[Node]]
-    ) -> list[Node]:
-        """The change of coordinates or velocities."""
-        graph, changes = self._graph, [self._graph.node(0) for _ in self._n]
-        for indices in self._indices:
-            norm = graph.sum([(self._q[k] * self._q[k], 1) for k in indices])
-            product = graph.sum([(self._q[k] * column[k], 1) for k in indices])
-            excess = graph.let(((product - 1) / 2 if column is self._q else product) / norm)
+    def _removing(self, residuals: Sequence[Node]) -> list[Node]:
+        """Changes along each κ that remove residuals of norms, and the smallest for the others."""
+        graph, changes = self._graph, [self._graph.zero for _ in self._n]
+        formulas = [one.formula for one in self._system.conditions]
+        of, rows = dict(zip(formulas, residuals, strict=True)), self._constraint_jacobian
+        for norm, indices in zip(self._quasi.norms, self._indices, strict=True):
+            row = rows[formulas.index(norm)]
+            factor = graph.let(of[norm] / graph.sum([(row[k] * self._q[k], 1) for k in indices]))
             for k in indices:
-                changes[k] = -excess * self._q[k]
+                changes[k] = -factor * self._q[k]
         missing = [
-            graph.sum([(r, -1), *((a * x, -1) for a, x in zip(row, changes, strict=True))])
-            for r, row in zip(residuals, jacobian, strict=True)
+            graph.sum([(of[one], -1), *((a * x, -1) for a, x in zip(row, changes, strict=True))])
+            for one, row in zip(formulas, rows, strict=True)
+            if one not in self._quasi.norms
         ]
         if not missing:
             return changes
-        still = [graph.node(0) for _ in self._quasi.u]
+        still = [graph.zero for _ in self._quasi.u]
         moved, _ = self._quasi_system.solve(still, missing)
         pairs = zip(changes, self._coordinates(moved), strict=True)
         return [graph.sum([(a, 1), (b, 1)]) for a, b in pairs]

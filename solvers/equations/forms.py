@@ -16,7 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.module import (
     GeneratedModule,
     function,
+    has_constraints,
     has_function,
+    has_perturbation,
     named,
     parameter_names,
     state_names,
@@ -209,12 +211,11 @@ class Form:
         """The state `z` with sin² + cos² = 1 restored, moved onto the constraints."""
         z = self._normalised(z)
         for _ in range(CORRECTIONS * self.has_constraints):
-            change = self._value(self._correction, t, z[: self._corrected], self.constants)
+            change = self._value(self._correction, t, z, self.params).ravel()
             for k, i in self.angle_columns:
                 z[i : i + 2] += change[k] * np.array([z[i + 1], -z[i]])
             for k, i in self.shared_columns:
-                if k < len(change):
-                    z[i] += change[k]
+                z[i] += change[k]
             z = self._normalised(z)
         return z
 
@@ -224,24 +225,26 @@ class Form:
             z[i : i + 2] /= np.hypot(z[i], z[i + 1])
         return z
 
+    def tangent_change(self, t: float, rows: Array) -> Array:
+        """Changes that make the perturbations of ordinary states, in rows, tangent."""
+        changes = self._many(f"{self.correction}_many", t, self._rearranged(rows))
+        return np.hstack([changes[:, :, 2], changes[:, :, 3]])
+
     @property
     def has_constraints(self) -> bool:
         """Whether motions have constraints."""
-        return has_function(self.module, "correction")
+        return has_constraints(self.module)
 
     @property
     def correction(self) -> str:
         """Name of the function that removes residuals of constraints."""
+        if has_perturbation(self.name):
+            return named("correction", self.name)
         return named("correction", "rational" if self.angle_columns else "lagrangian")
 
     @cached_property
     def _correction(self) -> Callable[..., Any]:
         return function(self.module, self.correction)
-
-    @cached_property
-    def _corrected(self) -> int:
-        """Number of components of the state without perturbation."""
-        return len(self.module.STATES["rational" if self.angle_columns else "lagrangian"])
 
     def to_ordinary(
         self, t: float | Array, z: Array, before: Array, elapsed: float | Array
