@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function
+from solvers.equations.module import (
+    GeneratedModule,
+    function,
+    has_constraints,
+    position_constraints,
+)
 from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
@@ -30,7 +35,7 @@ class Frames:
     params : sequence of float or ndarray of shape (motions,)
         All parameters in order.
     count : int
-        Number of perturbations of each motion.
+        Number of perturbations of each motion, at most `independent_perturbations`.
     begin : float, optional
         Time in s of the starts.
     rtol, atol : float
@@ -71,8 +76,13 @@ class Frames:
         self.status: NDArray[np.intp] = np.full(len(starts), FINISHED)
         # in general directions, since there may be special ones without growth
         rng, size = np.random.default_rng(0), starts.shape[1]
-        frame = np.linalg.qr(rng.normal(size=(size, size)))[0][:count]
-        self.frames = np.tile(frame, (len(starts), 1, 1))
+        frame = np.linalg.qr(rng.normal(size=(size, size)))[0]
+        self.frames = np.tile(frame, (len(starts), 1, 1))[:, :count]
+        if has_constraints(module):
+            normal = self._of_states("constraints_jacobian")
+            allowed = np.eye(size) - np.linalg.pinv(normal) @ normal
+            tangent = np.linalg.qr(allowed @ np.swapaxes(self.frames, 1, 2))[0]
+            self.frames = np.ascontiguousarray(np.swapaxes(tangent, 1, 2))
         rows = self._rows()
         self._batch = Batch(self._program, self._problem, rows) if self._program else None
 
@@ -155,13 +165,34 @@ class Frames:
     def _metric_growth(self) -> Array:
         """The growth if the metric of the mass matrix replaced that of the state's components."""
         n = len(self._module.COORDINATES)
-        arguments = (self.t, self.y.T, [np.asarray(p, float) for p in self._params])
-        with np.errstate(all="ignore"):
-            matrices = np.asarray(function(self._module, "mass_matrix_many")(*arguments))
-        metric = np.broadcast_to(matrices, (n, n, len(self.y))).transpose(2, 0, 1)
+        metric = self._of_states("mass_matrix")
         halves = self.frames.reshape(len(self.y), self._count, 2, n)
+        if has_constraints(self._module):
+            halves = self._tangential(halves, metric)
         gram = np.einsum("mkhi,mij,mlhj->mkl", halves, metric, halves)
         failed = self.status != FINISHED
         gram[failed | ~np.isfinite(gram).all(axis=(1, 2))] = np.eye(self._count)
         diagonal = np.diagonal(np.linalg.cholesky(gram), axis1=1, axis2=2)
         return np.asarray(np.log(diagonal))
+
+    def _tangential(self, halves: Array, metric: Array) -> Array:
+        """Perturbations without the part of velocities that follows from those of coordinates.
+
+        It is perpendicular to the velocities that the constraints allow, whose volumes count.
+        """
+        n, holonomic = halves.shape[-1], position_constraints(self._module)
+        G = self._of_states("constraints_jacobian")[:, holonomic:, n:]
+        m = G.shape[1]
+        matrix = np.zeros((len(G), n + m, n + m))
+        matrix[:, :n, :n], matrix[:, :n, n:], matrix[:, n:, :n] = metric, np.swapaxes(G, 1, 2), G
+        side = np.zeros((len(G), n + m, self._count))
+        side[:, :n] = metric @ np.swapaxes(halves[:, :, 1], 1, 2)
+        solution = np.linalg.pinv(matrix) @ side
+        return np.stack([halves[:, :, 0], np.swapaxes(solution[:, :n], 1, 2)], axis=2)
+
+    def _of_states(self, name: str) -> Array:
+        """A matrix for each motion, by a function of the module."""
+        arguments = (self.t, self.y.T, [np.asarray(p, float) for p in self._params])
+        with np.errstate(all="ignore"):
+            values = np.asarray(function(self._module, f"{name}_many")(*arguments))
+        return np.broadcast_to(values, (*values.shape[:2], len(self.y))).transpose(2, 0, 1)

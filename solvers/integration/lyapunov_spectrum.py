@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.quantities import Values, positive, real_number
 from solvers.integration import validation
 from solvers.integration.frames import FINISHED, Frames
@@ -21,9 +21,10 @@ class LyapunovSpectrum:
 
     Attributes
     ----------
-    exponents : ndarray of shape (state,)
-        In 1/s, from the largest to the smallest.
-    errors : ndarray of shape (state,)
+    exponents : ndarray of shape (state - residuals,)
+        In 1/s, from the largest to the smallest; of systems with constraints, one for each
+        independent perturbation that keeps them.
+    errors : ndarray of the same shape
         Their standard errors in 1/s, from the means over `PARTS` parts of the motion, each of which
         should be much longer than the motion's correlation.
     t, y : float and ndarray of shape (state,)
@@ -90,7 +91,8 @@ def lyapunov_spectrum(
         )
     constants = validation.parameters(module, params)
     start = validation.initial_state(module, y0, params=constants.tolist())
-    frames = Frames(module, start[np.newaxis], constants.tolist(), len(start), rtol=rtol, atol=atol)
+    count = independent_perturbations(module)
+    frames = Frames(module, start[np.newaxis], constants.tolist(), count, rtol=rtol, atol=atol)
     growth = frames.growth(np.array([duration]), round(duration / interval))[:, 0]
     if frames.status[0] != FINISHED:
         raise NotFinishedError(frames.status_of(0), float(frames.t[0]), tuple(frames.y[0].tolist()))

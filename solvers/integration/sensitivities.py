@@ -7,8 +7,11 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.consistent_start import given_names
+from solvers.equations.forms import Form
+from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import Values
+from solvers.equations.tangent_start import tangent_start
 from solvers.integration import validation
 from solvers.integration.ensemble import ensemble
 from solvers.integration.ensemble_solution import Ensemble
@@ -96,6 +99,9 @@ def sensitivities(
         units of the parameter.
     by : sequence of str, optional
         Components of ``module.STATE``, for the start, and of ``module.PARAMETERS``; by default all.
+        Of systems with constraints, components that `y0` leaves out change with the others; where
+        it has all, a change of one changes the others by the least, in the metric of the mass
+        matrix.
     events : Event or sequence of Event, optional
         Events whose times and states have derivatives, too.
     inputs : array_like of shape (inputs,), mapping of str to float, or Held, optional
@@ -131,8 +137,9 @@ def sensitivities(
     located = [events] if isinstance(events, Event) else [*events]
     options = Options("verner98", "lagrangian", rtol, atol, events=located, inputs=inputs)
     problem = validation.problem(module, t_span, y0, params, options)
-    names = _names(module, by)
-    starts, values, units = _perturbed(problem, names)
+    given = given_names(module, y0) if has_constraints(module) else module.STATE
+    names = _names(module, by, given)
+    starts, values, units = _perturbed(problem, names, given)
     occurrences, most = 0, OCCURRENCES
     while most > occurrences:
         occurrences = most
@@ -155,22 +162,32 @@ def sensitivities(
     return _collected(problem, names, motions, units)
 
 
-def _names(module: GeneratedModule, by: Sequence[str] | None) -> tuple[str, ...]:
-    known = (*module.STATE, *module.PARAMETERS)
+def _names(
+    module: GeneratedModule, by: Sequence[str] | None, given: Sequence[str]
+) -> tuple[str, ...]:
+    known = (*given, *module.PARAMETERS)
     names = known if by is None else tuple(by)
     if isinstance(by, str) or not names:
         raise ValueError(f"by = {by!r} must be a list of one or more of {', '.join(known)}")
     for name in names:
+        if name in module.STATE and name not in given:
+            raise ValueError(
+                f"by has {name!r}, which follows from the constraints and {', '.join(given)}: give "
+                "its value in y0"
+            )
         if name not in known:
             hint = did_you_mean(str(name), known)
             raise ValueError(f"by has {name!r}{hint}; known names: {', '.join(known)}")
     return names
 
 
-def _perturbed(problem: Problem, names: Sequence[str]) -> tuple[Array, Array, Array]:
+def _perturbed(
+    problem: Problem, names: Sequence[str], given: Sequence[str]
+) -> tuple[Array, Array, Array]:
     """States and parameters with one perturbation in each column, and the perturbations' sizes.
 
     Those of parameters have the size of the parameter, so that tolerances are relative to it.
+    Components of the start that are not given follow from the constraints.
     """
     module, constants = problem.form.module, np.array(problem.form.params)
     known, count = (*module.STATE, *module.PARAMETERS), len(module.STATE)
@@ -181,7 +198,11 @@ def _perturbed(problem: Problem, names: Sequence[str]) -> tuple[Array, Array, Ar
         np.tile(part[:, np.newaxis], len(names)) for part in (problem.start, constants)
     )
     states = np.vstack([motion, changes[:count]])
-    return states, np.vstack([changes[count:], parameters]), sizes[quantities]
+    params = np.vstack([changes[count:], parameters])
+    if problem.form.has_constraints:
+        form, flags = Form(module, "sensitivity", [*params]), np.isin(module.STATE, given)
+        states = tangent_start(form, problem.span[0], states.T, flags).T
+    return states, params, sizes[quantities]
 
 
 def _collected(

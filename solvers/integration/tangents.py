@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
+from solvers.equations.tangent_start import tangent_start
 from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
@@ -25,7 +26,8 @@ class Tangents:
     module, t_span, y0, params, rtol, atol
         As in `integrate`; the tolerances apply to the perturbations, too.
     changes : array_like of shape (state, n)
-        Perturbations of the initial state, in columns.
+        Perturbations of the initial state, in columns; the nearest ones that constraints permit, in
+        the metric of the mass matrix, take their places.
     parameter_changes : array_like of shape (parameters, n), optional
         Perturbations of the parameters, which belong to those of the state.
 
@@ -74,6 +76,8 @@ class Tangents:
         """Move to time `t` in s; `NotFinishedError` where the motion does not get there."""
         part = replace(self._problem, span=(self.t, t))
         starts = np.array([[*self.y, *change] for change in self.changes.T])
+        if part.form.has_constraints:
+            starts = tangent_start(part.form, self.t, starts, np.ones(len(self.y), bool))
         if self._program is None:
             ends = self._in_python(part, starts)
         else:

@@ -21,7 +21,9 @@ class Transition:
     y : ndarray of shape (state,)
         Coordinates and velocities at the end.
     matrix : ndarray of shape (state, state)
-        ∂y/∂y0: column k is the change of y by a small change of component k of the start.
+        ∂y/∂y0: column k is the change of y by a small change of component k of the start. Of
+        systems with constraints, the nearest change that they permit, in the metric of the mass
+        matrix, takes its place.
     """
 
     y: Array

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.quantities import positive
 from solvers.integration.frames import Frames
 from solvers.sweeps.axes import Array, Axes
@@ -55,10 +55,10 @@ class Spectrum(Map):
     def check(self, module: GeneratedModule, axes: Axes, values: Mapping[str, float | str]) -> None:
         super().check(module, axes, values)
         positive("interval", self.interval)
-        if not 1 <= self.count <= len(module.STATE):
+        most = independent_perturbations(module)
+        if not 1 <= self.count <= most:
             raise ValueError(
-                f"count = {self.count} must be from 1 to {len(module.STATE)}, the exponents of "
-                f"{module.SYSTEM}"
+                f"count = {self.count} must be from 1 to {most}, the exponents of {module.SYSTEM}"
             )
 
     def values(self, motions: Motions) -> Array:
