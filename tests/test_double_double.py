@@ -10,7 +10,7 @@ import pytest
 import generated.cart_3 as cart
 import generated.coupled_pendulums as coupled
 from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.double_double import DoubleDouble, right_hand_side
+from solvers.integration.compiled.double_double import DoubleDouble, in_calls
 from solvers.integration.compiled.equations_source import Equations
 from solvers.integration.compiled.extended_source import NotArithmeticError
 from solvers.integration.compiled.layout import SOURCES
@@ -75,19 +75,20 @@ static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,
     (void)t;
 }"""
     source = Equations(header, "hand_rhs", "", 1, 1, 1, (), (), (), True)
-    body = re.findall(r"v_(?:add|result\[0\]) = (.*);", right_hand_side(source))
+    body = re.findall(r"v_(?:add|result\[0\]) = (.*);", in_calls(source, "RHS", source.rhs))
     tenth = f"constant(0.1, {float(Fraction(1, 10) - Fraction(0.1))!r})"
     assert body == [
         f"multiply(negative(v_params[0]), {tenth})",
         "subtract(divide(add(v_add, v_state[0]), v_t), multiply(constant(2.0, 0.0), v_state[0]))",
     ]
-    assert "(void)v_t;" in right_hand_side(source)
+    assert "(void)v_t;" in in_calls(source, "RHS", source.rhs)
 
 
 def test_functions_and_statements_that_are_no_definitions_are_refused() -> None:
-    assert "v_result[10]" in right_hand_side(equations(cart, "rational"))
+    carts, pair = equations(cart, "rational"), equations(coupled, "rational")
+    assert "v_result[10]" in in_calls(carts, "RHS", carts.rhs)
     with pytest.raises(NotArithmeticError, match="coupled_pendulums_sqrt is a function"):
-        right_hand_side(equations(coupled, "rational"))
+        in_calls(pair, "RHS", pair.rhs)
     start = "static inline void f(int t) {"
     for body, message in (
         ("int i = 0;", "'int i = 0' is no definition"),
@@ -96,6 +97,6 @@ def test_functions_and_statements_that_are_no_definitions_are_refused() -> None:
     ):
         source = Equations(f"{start} {body} }}", "f", "", 1, 1, 1, (), (), (), True)
         with pytest.raises(NotArithmeticError, match=re.escape(message)):
-            right_hand_side(source)
+            in_calls(source, "RHS", source.rhs)
     with pytest.raises(NotArithmeticError, match="g is missing"):
-        right_hand_side(Equations("", "g", "", 1, 1, 1, (), (), (), True))
+        in_calls(Equations("", "g", "", 1, 1, 1, (), (), (), True), "RHS", "g")

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, with_functions
+from solvers.references.decimal_projection import DecimalProjection
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.series import Series
 from solvers.references.series_functions import series_functions
@@ -62,7 +63,8 @@ def taylor(
     Returns
     -------
     ndarray of shape (n, state)
-        The states, rounded to floats at the end.
+        The states, rounded to floats at the end. Those of systems with constraints, the first one
+        too, are moved onto these.
 
     Raises
     ------
@@ -133,10 +135,12 @@ class _Motion:
             self._rates.append(self._state[columns[half + k]])
             self._state.append(Series(self._tape, []))
         self._columns = [columns[k] for k in range(2 * half)]
+        self._project = DecimalProjection(form, params) if form.has_constraints else None
         self.restart(start, decimal_state(form, y0))
 
     def restart(self, t: Decimal, state: Sequence[Decimal]) -> None:
-        """Discard all coefficients and continue from this time and state."""
+        """Discard all coefficients and continue from this time and state, on the constraints."""
+        state = self._project(t, state) if self._project else state
         for series in self._tape:
             series.coefficients.clear()
         self._time.coefficients[:] = [t]
@@ -156,6 +160,7 @@ class _Motion:
     def ordinary_after(self, h: Decimal) -> list[Decimal]:
         """Coordinates and velocities after `h`, at most a step."""
         state = self.state_after(h)
+        state = self._project(self._time.at(0) + h, state) if self._project else state
         return [state[k] for k in self._columns]
 
     def expand(self, order: int) -> Decimal:

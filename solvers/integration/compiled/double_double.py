@@ -16,7 +16,7 @@ from solvers.integration.compiled.layout import source
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS
 
 FUNCTION = """\
-static inline void RHS(
+static inline void {name}(
     double_double v_t, const double_double *v_state, const double_double *v_params,
     double_double *v_result)
 {{
@@ -37,14 +37,16 @@ class DoubleDouble(Precision):
 
     stages, epsilon, may_fuse = 8, "0x1p-104", False
     files = "double_double_stages.h", "double_double_refinement.h"
+    correction = "double_double_correction.h"
 
     def numbers(self, equations: Equations) -> str:
         """The operations, and the right-hand side in calls of them and in lanes of doubles."""
+        functions = {"RHS": equations.rhs, "CORRECTION": equations.correction}
         return "\n".join(
             [
                 source("double_double.h"),
                 "typedef double real, lower;",
-                right_hand_side(equations),
+                *(in_calls(equations, *names) for names in functions.items() if names[1]),
                 "#define HOLONOMIC_REAL lanes",
                 "#define HOLONOMIC_VECTOR",
                 equations.header,
@@ -87,16 +89,16 @@ def _pairs(values: Sequence[Decimal]) -> str:
     return _list([_doubles(values), _doubles(rest)])
 
 
-def right_hand_side(equations: Equations) -> str:
-    """The right-hand side in C as calls of functions for sums and products.
+def in_calls(equations: Equations, name: str, function: str) -> str:
+    """A function of the header in C under a new name, as calls of functions for sums and products.
 
-    Names have the prefix ``v_``, so that they hide none of these functions.
+    Names in it have the prefix ``v_``, so that they hide none of these functions.
     """
-    start = rf"static inline void {equations.rhs}\([^)]*\)\s*\{{"
+    start = rf"static inline void {function}\([^)]*\)\s*\{{"
     match = re.search(rf"{start}(.*?)\}}", COMMENT.sub("", equations.header), re.DOTALL)
     if match is None:
-        raise NotArithmeticError(f"{equations.rhs} is missing")
-    return FUNCTION.format(body="\n".join(_statements(match[1])))
+        raise NotArithmeticError(f"{function} is missing")
+    return FUNCTION.format(name=name, body="\n".join(_statements(match[1])))
 
 
 def _statements(body: str) -> Iterator[str]:

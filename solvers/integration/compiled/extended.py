@@ -139,7 +139,8 @@ def integrate_extended(
     Returns
     -------
     ndarray of shape (n, state)
-        The states, rounded to floats at the end.
+        The states, rounded to floats at the end. Those of systems with constraints, the first one
+        too, are moved onto these, to rounding errors of the numbers.
 
     Raises
     ------

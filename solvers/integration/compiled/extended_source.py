@@ -29,12 +29,16 @@ PROGRAM = """\
 {sizes}
 {numbers}
 static const real EPSILON = {epsilon};
-static const int COLUMN[] = {{{columns}}}, RATE[] = {{{rates}}};
+static const int COLUMN[] = {{{columns}}}, RATE[] = {{{rates}}}, SINE[] = {{{sines}}};
 {coefficients}
 {motion_h}
 {stages_h}
+{projection}
 {extended_c}
 """
+
+#: Of systems without constraints.
+NO_PROJECTION = "static void project(Motion *motion) { (void)motion; (void)SINE; }"
 
 #: The equations in one number type; {prefix} distinguishes them from those in another.
 EQUATIONS = """\
@@ -108,11 +112,12 @@ class Precision(ABC):
     stages: int  # of Gauss collocation, whose order is twice as high
     epsilon: str
     files: Sequence[str]  # with the stages
+    correction: str  # file with changes of components
     may_fuse: bool  # products and sums
 
     @abstractmethod
     def numbers(self, equations: Equations) -> str:
-        """The types of numbers, and the right-hand side in them.
+        """The types of numbers, the right-hand side in them, and CORRECTION with constraints.
 
         `NotArithmeticError` where it cannot be written in them.
         """
@@ -123,7 +128,7 @@ class Precision(ABC):
 
     def program(self, equations: Equations, form: Form) -> str:
         """The C99 program, with ``extended_start``, ``_advance`` and ``_progress``."""
-        rates = [velocity for _, velocity in equations.angles] or [0]
+        sines, rates = zip(*equations.angles or [(0, 0)], strict=True)
         added = {k: equations.state + a for a, (k, _) in enumerate(form.angle_columns)}
         columns = {**dict(form.shared_columns), **added}
         sizes = {
@@ -140,9 +145,13 @@ class Precision(ABC):
             epsilon=self.epsilon,
             columns=", ".join(str(columns[k]) for k in range(equations.ordinary)),
             rates=", ".join(map(str, rates)),
+            sines=", ".join(map(str, sines)),
             coefficients=self.coefficients(),
             motion_h=source("extended_motion.h"),
             stages_h="\n".join(map(source, self.files)),
+            projection="\n".join(map(source, (self.correction, "extended_projection.h")))
+            if equations.correction
+            else NO_PROJECTION,
             extended_c=source("extended.c"),
         )
 
@@ -151,6 +160,7 @@ class Sequential(Precision):
     """One type of C, and a shorter one for first approximations; one stage after the other."""
 
     files, may_fuse = ("extended_stages.h", "extended_refinement.h"), True
+    correction = "extended_correction.h"
 
     def __init__(self, real: NumberType, lower: NumberType, stages: int) -> None:
         self.real, self.lower, self.stages = real, lower, stages
@@ -165,6 +175,7 @@ class Sequential(Precision):
                 self.lower.equations(equations, "LOWER_"),
                 *(f"typedef {kind.name} {name};" for name, kind in types.items()),
                 f"static const lower LOWER_EPSILON = {self.lower.epsilon};",
+                f"#define CORRECTION {equations.correction}" if equations.correction else "",
             ]
         )
 

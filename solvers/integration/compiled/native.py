@@ -66,8 +66,7 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
         to_ordinary = [f"{path.stem}_lagrangian_state(t, z, params, y);"]
     corrected = []
     if layout.has_constraints:
-        changes = len(module.STATE)
-        shared = [(k, i) for k, i in layout.shared_columns if k < changes]
+        shared = layout.shared_columns
         corrected = [f"add_to_component(state, {i}, change[{k}]);" for k, i in shared]
         corrected += [f"turn(state, {i}, change[{k}]);" for k, i in layout.angle_columns]
     called = [named("rhs", form), *([layout.correction] if corrected else [])]

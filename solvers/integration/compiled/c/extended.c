@@ -1,8 +1,9 @@
 /* One motion by Gauss collocation in numbers longer than doubles.
 
    Defined before this file: the motion of extended_motion.h; the types Stages and RefinedStages, with
-   predict(), solve(), refine(), transform(), move() and derivative_at_start(); epsilon(); the indices
-   COLUMN of components of an ordinary state; ORDINARY, PARTS. */
+   predict(), solve(), refine(), transform(), move() and derivative_at_start(); project(), which moves a
+   motion onto its constraints; epsilon(); the indices COLUMN of components of an ordinary state;
+   ORDINARY, PARTS. */
 
 enum { STEPS_BETWEEN_CHECKS = 8 };
 
@@ -46,6 +47,7 @@ static int64_t write_samples(const Motion *motion, lower h, Polynomial polynomia
             return -1;
         }
         move(&moved, elapsed, refined);
+        project(&moved);
         write_row(&moved, row, task);
     }
     return row;
@@ -92,6 +94,7 @@ static double step(Motion *motion, real h, const Task *task)
     }
     motion->rows = rows;
     move(motion, h, refined);
+    project(motion);
     memcpy(motion->polynomial, polynomial, sizeof polynomial);
     motion->last_h = (lower)h;
     return limited;
@@ -127,6 +130,7 @@ void extended_start(
             motion->y[n] = compensated_sum(motion->y[n], state[n][part], motion->y_low + n);
         }
     }
+    project(motion);
     lower rate[DIM];
     derivative_at_start(motion, rate);
     for (int n = 0; n < DIM; n++) {

@@ -1,0 +1,53 @@
+"""States on the manifold of constraints, in decimal numbers of any length."""
+
+from collections.abc import Sequence
+from decimal import Decimal
+from functools import partial
+
+from solvers.equations.forms import Form
+from solvers.equations.module import function, with_functions
+from solvers.references.exact_literals import with_exact_literals
+from solvers.references.series import Series
+from solvers.references.series_functions import series_functions
+
+#: Steps of Newton's method: from a start in doubles, residuals have 16, 32, 64 ... digits.
+STEPS = 4
+
+
+class DecimalProjection:
+    """Steps onto the constraints of a form, whose correction is evaluated as series of order 0."""
+
+    def __init__(self, form: Form, params: Sequence[float]) -> None:
+        self._form, self._tape = form, list[Series]()
+        self._time = Series(self._tape, [])
+        self._state = [Series(self._tape, []) for _ in form.state]
+        number = partial(Series.number, self._tape)
+        exact = with_exact_literals(function(form.module, form.correction), number)
+        correction = with_functions(exact, series_functions(self._tape, []))
+        changes = correction(self._time, self._state, [*map(number, params)])
+        self._changes = [one if isinstance(one, Series) else number(one) for one in changes]
+
+    def __call__(self, t: Decimal, state: Sequence[Decimal]) -> list[Decimal]:
+        """The state of the form, followed by its angles, moved onto the constraints."""
+        result, size = [*state], len(self._form.state)
+        for _ in range(STEPS):
+            changes = self._at(t, result[:size])
+            for k, i in self._form.shared_columns:
+                result[i] += changes[k]
+            for a, (k, i) in enumerate(self._form.angle_columns):
+                sine = result[i] + changes[k] * result[i + 1]
+                cosine = result[i + 1] - changes[k] * result[i]
+                length = (sine * sine + cosine * cosine).sqrt()
+                result[i], result[i + 1] = sine / length, cosine / length
+                result[size + a] += changes[k]
+        return result
+
+    def _at(self, t: Decimal, state: Sequence[Decimal]) -> list[Decimal]:
+        for series in self._tape:
+            series.coefficients.clear()
+        self._time.coefficients[:] = [t]
+        for one, value in zip(self._state, state, strict=True):
+            one.coefficients[:] = [value]
+        for series in self._tape:
+            series.extend(0)
+        return [one.at(0) for one in self._changes]
