@@ -152,7 +152,9 @@ def test_rounded_decimals_are_mended_and_larger_residuals_refused(crank: Generat
     assert rounded.y[:, 1] == pytest.approx(exact.y[:, 1], abs=1e-5)
     for k in range(6):
         wrong = start + 1e-4 * np.eye(6)[k]
-        with pytest.raises(ValueError, match=r"y0 does not satisfy .* pin_1_\w+ = .* instead of 0"):
+        with pytest.raises(
+            ValueError, match=r"the state does not satisfy .* pin_1_\w+ = .* instead of 0"
+        ):
             integrate(crank, (0, 1), wrong, {})
 
 

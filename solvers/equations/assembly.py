@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function, has_function, position_constraints
+from solvers.equations.module import GeneratedModule, function, position_constraints
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -28,11 +28,6 @@ STEPS, LARGEST, HALVINGS = 60, 0.5, 12
 GUESSES = 24
 #: Singular values, relative to the largest, that count as 0.
 SINGULAR = 1e-10
-
-
-def has_constraints(module: GeneratedModule) -> bool:
-    """Whether motions have constraints."""
-    return has_function(module, "constraints")
 
 
 @dataclass(frozen=True)
@@ -193,23 +188,31 @@ class Assembly:
         return self.relative(y)[:, len(self.of_positions) :].max(axis=1, initial=0.0)
 
     def _velocity_changes(self, y: Array, free: Flags) -> Array:
-        """Changes δ of free velocities: M δ = Gᵀ μ, G δ = -residuals."""
-        n, m = self.n, len(self.names)
-        jacobian = self.jacobian(y)
+        """Changes of free velocities that remove the residuals of rates."""
+        rates = self.residuals(y)[:, len(self.of_positions) :]
+        return self.smallest_change(y, rates, free, [*range(len(self.names))])
+
+    def smallest_change(self, y: Array, residuals: Array, free: Flags, rows: list[int]) -> Array:
+        """The changes δ of free components that remove residuals: M δ = Gᵀ μ, G δ = -residuals.
+
+        The constraints are those of these rows of G.
+        """
+        n, m = self.n, len(rows)
+        jacobian = self.jacobian(y)[:, rows]
         sizes = np.linalg.norm(jacobian, axis=2, keepdims=True)
         sizes[sizes == 0] = 1.0
         G = jacobian / sizes
         M = self._many("mass_matrix", y) * self.scales * self.scales[:, np.newaxis]
         largest = np.abs(M).max(axis=(1, 2), keepdims=True)
         M = M / np.where(largest > 0, largest, 1.0)
-        # the given velocities do not change; their equations are replaced by δ = 0
+        # the given components do not change; their equations are replaced by δ = 0
         kept = np.flatnonzero(~free)
         matrix = np.zeros((len(y), n + m, n + m))
         matrix[:, :n, :n], matrix[:, :n, n:], matrix[:, n:, :n] = M, -G.transpose(0, 2, 1), G
         matrix[:, kept], matrix[:, :, kept] = 0.0, 0.0
         matrix[:, kept, kept] = 1.0
         side = np.zeros((len(y), n + m, 1))
-        side[:, n:] = -self.residuals(y)[:, len(self.of_positions) :, np.newaxis] / sizes
+        side[:, n:] = -residuals[:, :, np.newaxis] / sizes
         matrix, side = np.nan_to_num(matrix), np.nan_to_num(side)
         changes = (np.linalg.pinv(matrix, rcond=1e-13) @ side)[:, :n, 0]
         return np.asarray(changes * self.scales * free)

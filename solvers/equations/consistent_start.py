@@ -14,9 +14,8 @@ from solvers.equations.assembly import (
     Array,
     Assembly,
     Flags,
-    has_constraints,
 )
-from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.equations.module import GeneratedModule, function, has_constraints, has_function
 from solvers.equations.quantities import Values, quantities, real_number
 from solvers.io.suggestion import counted
 
@@ -247,9 +246,9 @@ def _refusal(
     state = dict(zip(module.STATE, row[0].tolist(), strict=True))
     if len(names) == len(module.STATE):
         return (
-            f"y0{motion} does not satisfy the constraints of {module.SYSTEM}, with {freedom}: "
-            f"{residuals} instead of 0; give fewer components by name, from which the others "
-            "follow, or take solvers.consistent_start(module, {}, params, guess=y0).y"
+            f"the state{motion} does not satisfy the constraints of {module.SYSTEM}, with "
+            f"{freedom}: {residuals} instead of 0; give fewer components by name, from which the "
+            "others follow, or take solvers.consistent_start(module, {}, params, guess=state).y"
         )
     return (
         f"no state{motion} with {_listed(module, state, names)} satisfies the constraints of "

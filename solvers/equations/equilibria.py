@@ -15,7 +15,7 @@ from solvers.equations.module import (
     GeneratedModule,
     depends_on_time,
     function,
-    has_function,
+    has_constraints,
     with_functions,
 )
 from solvers.equations.quantities import Values, real_numbers
@@ -134,21 +134,17 @@ class _Search:
         with np.errstate(all="ignore"):
             accelerations = self.module.rhs_many(*arguments)[self.n :]
             sizes = [np.full(self.n, np.nanmax(np.abs(accelerations), initial=1e-300))]
-            if self.has_constraints:
+            if has_constraints(self.module):
                 residuals = function(self.module, "constraints_many")(*arguments)
                 sizes.append(np.nanmax(np.abs(residuals), axis=1, initial=1e-300))
         return np.concatenate(sizes)
-
-    @property
-    def has_constraints(self) -> bool:
-        return has_function(self.module, "constraints")
 
     def residuals(self, state: list[float]) -> tuple[Array, Array]:
         """Accelerations and residuals of constraints, and their derivatives by the state."""
         arguments = 0.0, state, self.params
         values = [self.module.rhs(*arguments)[self.n :]]
         rows = [self.module.jacobian(*arguments)[self.n :]]
-        if self.has_constraints:
+        if has_constraints(self.module):
             values.append(function(self.module, "constraints")(*arguments))
             rows.append(function(self.module, "constraints_jacobian")(*arguments))
         return np.concatenate(values), np.concatenate(rows)
@@ -182,7 +178,7 @@ class _Search:
     def candidates(self) -> Array:
         """Points near which there may be an equilibrium, in rows."""
         low, high = self.low[np.newaxis], self.high[np.newaxis]
-        names = ["rhs", *(["constraints"] if self.has_constraints else [])]
+        names = ["rhs", *(["constraints"] if has_constraints(self.module) else [])]
         functions = [
             with_functions(function(self.module, name), {**FUNCTIONS, "select": select})
             for name in names

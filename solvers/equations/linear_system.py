@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
 
+from solvers.equations.assembly import Assembly
+from solvers.equations.consistent_start import consistent
 from solvers.equations.module import (
     GeneratedModule,
     function,
-    has_function,
+    has_constraints,
     position_constraints,
 )
 from solvers.equations.module import inputs as input_names
@@ -26,8 +28,6 @@ Array = NDArray[np.float64]
 #: Real parts of eigenvalues, relative to the largest eigenvalue, that count as 0: a double
 #: eigenvalue 0, as of a free coordinate, has errors of the square root of rounding errors.
 NEUTRAL = 1e-7
-#: Residuals of constraints at which a state violates them.
-VIOLATED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -217,6 +217,9 @@ def linearise(
                 f"outputs has {name!r}{did_you_mean(str(name), known)}; known are "
                 f"{', '.join(known)}"
             )
+    if has_constraints(module):
+        assembly = Assembly(module, np.array([constants]), time)
+        state = consistent(assembly, state[np.newaxis], names)[0]
     point = (time, state.tolist(), constants)
     try:
         A = np.array(module.jacobian(*point))
@@ -245,9 +248,8 @@ def _tangent(
 ) -> tuple[Array, list[int]]:
     """All small changes of a state by those that constraints leave free, and their indices."""
     n = len(module.STATE)
-    if not has_function(module, "constraints"):
+    if not has_constraints(module):
         return np.eye(n), [*range(n)]
-    _check_constraints(module, point)
     G = np.array(function(module, "constraints_jacobian")(*point))
     # of coordinates and of velocities, those that determine the others best
     parts = [np.arange(n // 2), np.arange(n // 2, n)]
@@ -263,17 +265,6 @@ def _tangent(
     tangent[others] = np.eye(len(others))
     tangent[dependent] = -np.linalg.solve(G[:, dependent], G[:, others])
     return tangent, others.tolist()
-
-
-def _check_constraints(
-    module: GeneratedModule, point: tuple[float, list[float], tuple[float, ...]]
-) -> None:
-    residuals = np.array(function(module, "constraints")(*point))
-    if not np.abs(residuals).max() <= VIOLATED:
-        raise ValueError(
-            f"y = {point[1]} violates the constraints of {module.SYSTEM} by {residuals}: give a "
-            "state that satisfies them"
-        )
 
 
 def _of_outputs(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from solvers.equations.module import (
     GeneratedModule,
     function,
+    has_constraints,
     has_function,
     position_constraints,
 )
@@ -64,8 +65,9 @@ def check_condition(
     """
     if _IS_CHECKED.get() or not has_function(module, "mass_matrix"):
         return
-    motions = [*motions]
-    if has_function(module, "constraints"):
+    size = len(module.STATE)  # without perturbations
+    motions = [(name, params, y0 and y0[:size]) for name, params, y0 in motions]
+    if has_constraints(module):
         check_constraints(module, motions, t, stacklevel + 1)
     motion, worst, weakest = max(
         ((name, *_worst(module, t, y0, params)) for name, params, y0 in motions),
@@ -103,14 +105,14 @@ def _worst(
     return worst, weakest
 
 
-def _inertia(
+def inertia(
     module: GeneratedModule, t: float, y: Sequence[float], params: Sequence[float]
 ) -> NDArray[np.float64]:
     """The mass matrix, with the inertia that constraints add where it is singular by design."""
     matrix, G = function(module, "mass_matrix"), np.zeros((0, 0))
-    M = np.array(matrix(t, y[: len(module.STATE)], params))
+    M = np.array(matrix(t, y, params))
     if has_function(module, "constraints_jacobian"):
-        usual = np.array(matrix(t, y[: len(module.STATE)], module.DEFAULTS))
+        usual = np.array(matrix(t, y, module.DEFAULTS))
         derivatives = np.array(function(module, "constraints_jacobian")(t, y, params))
         G = derivatives[position_constraints(module) :, len(module.COORDINATES) :]
         if np.linalg.matrix_rank(usual) < len(usual) and G.any():
@@ -124,7 +126,7 @@ def _condition(
 ) -> tuple[float, str]:
     """The condition, whatever the units of coordinates, and the coordinate of least inertia."""
     try:
-        M = _inertia(module, t, y, params)
+        M = inertia(module, t, y, params)
     except ArithmeticError:
         return 0.0, ""
     inertial = np.flatnonzero(np.diag(M))

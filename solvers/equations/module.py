@@ -143,9 +143,14 @@ def switching_functions(module: GeneratedModule) -> tuple[str, ...]:
     return module.SWITCHES if has_function(module, "switches") else ()
 
 
+def has_constraints(module: GeneratedModule) -> bool:
+    """Whether motions have constraints."""
+    return has_function(module, "constraints")
+
+
 def position_constraints(module: GeneratedModule) -> int:
     """Number of constraints of coordinates, whose residuals are the first of `constraints`."""
-    names = module.RESIDUALS if has_function(module, "constraints") else ()
+    names = module.RESIDUALS if has_constraints(module) else ()
     return sum(f"{name}_dot" in names for name in names)
 
 
@@ -198,6 +203,11 @@ def has_perturbation(form: str) -> bool:
 def state_names(module: GeneratedModule, form: str) -> tuple[str, ...]:
     """Names of an ordinary state: (q, q̇), and in some forms those of a perturbation."""
     return (*module.STATE, *(perturbations(module.STATE) if has_perturbation(form) else ()))
+
+
+def independent_perturbations(module: GeneratedModule) -> int:
+    """Number of independent perturbations of a state that keep the constraints."""
+    return len(module.STATE) - len(module.RESIDUALS if has_constraints(module) else ())
 
 
 def parameter_names(module: GeneratedModule, form: str) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from solvers.integration.ensemble_times import EnsembleTimes
 from solvers.integration.events import Event, Extremum
 from solvers.integration.inputs import Controller, Held
 from solvers.integration.problem import EventFunction, Options
+from solvers.integration.singularity import SingularityWarning, singularities
 from solvers.integration.solution import Interrupted
 from solvers.integration.step_stability import StepWarning, mark_unstable
 from solvers.integration.stop_flag import StopFlag
@@ -102,6 +103,8 @@ def ensemble(
     -----
     solvers.integration.step_stability.StepWarning
         When fixed steps are too long for some motions, whose status is then ``UNSTABLE``.
+    solvers.integration.singularity.SingularityWarning
+        When motions fail where coordinates are singular, as an orientation at gimbal lock.
     UserWarning
         When the motions are integrated in Python, one after another; it states the reason.
 
@@ -131,12 +134,13 @@ def ensemble(
     if inputs is not None:
         count = len(input_names(module))
         constants[:, -count:] = problem.form.params[-count:]
-    held = validation.constants_at_start(problem.form, problem.schedule, problem.span)
-    own = constants[:, constants.shape[1] - len(module.PARAMETERS) :].copy()
+    own = constants.copy()
     if problem.schedule:
         count = len(input_names(module))
+        held = validation.params_at_start(problem.form, problem.schedule, problem.span)
         own[:, -count:] = held[-count:]
-    states = validation.consistent_rows(module, y0, states, own, problem.span[0])
+    name = problem.form.name
+    states = validation.consistent_rows(module, y0, states, own, problem.span[0], name)
     extremes = any(isinstance(event, Extremum) for event in problem.events)
     occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
     skipped = _skipped(skip, problem.events)
@@ -169,6 +173,8 @@ def ensemble(
         return result
     if unstable := mark_unstable(problem, states, constants, result):
         warn(unstable, StepWarning, stacklevel=2)
+    if singular := singularities(problem, states, constants, result):
+        warn(singular, SingularityWarning, stacklevel=2)
     good = np.flatnonzero(result.success)
     own = constants[good] if len(constants) > 1 else constants
     ends = result.t[good], result.y.T[good]

@@ -18,6 +18,7 @@ from solvers.integration.global_error import global_error_estimate
 from solvers.integration.inputs import Controller, Held
 from solvers.integration.memory import limit_steps
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
+from solvers.integration.singularity import singularity
 from solvers.integration.solution import Array, Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
 
@@ -151,7 +152,8 @@ def integrate(
     instability = step_instability(problem, outcome)
     if instability:
         outcome.status = Status.UNSTABLE
-    solution = _solution(problem, outcome, energy, instability)
+    detail = instability or singularity(problem, outcome.status, outcome.end)
+    solution = _solution(problem, outcome, energy, detail)
     if solution.success:
         for warning in accuracy_warnings(problem, *outcome.end):
             warn(warning, stacklevel=2)

@@ -9,9 +9,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from solvers.equations.assembly import has_constraints
 from solvers.equations.mass_matrix import check_condition
-from solvers.equations.module import GeneratedModule, parameter_names
+from solvers.equations.module import GeneratedModule, has_constraints, parameter_names
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import REAL, Values
 from solvers.integration import compiled_loop, validation
@@ -21,6 +20,7 @@ from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.inputs import given
 from solvers.integration.problem import SHORTEST, Options, Problem
+from solvers.integration.singularity import singularity
 from solvers.integration.solution import Status
 from solvers.integration.step_stability import diagnosis
 
@@ -193,10 +193,11 @@ class Prepared:
     def _failure(
         self, status: Status, start: float, end: float, y: tuple[float, ...]
     ) -> NotFinishedError:
-        detail = diagnosis(self._problem_of(start, end)) if status is Status.NOT_FINITE else ""
+        problem, t = self._problem_of(start, end), float(self._batch.motions["t"][0])
+        detail = diagnosis(problem) if status is Status.NOT_FINITE else ""
         if detail:
             status = Status.UNSTABLE
-        return NotFinishedError(status, float(self._batch.motions["t"][0]), y, detail)
+        return NotFinishedError(status, t, y, detail or singularity(problem, status, (t, y)))
 
     def _problem_of(self, start: float, end: float) -> Problem:
         """The problem of the last motion."""
@@ -232,10 +233,8 @@ class Prepared:
         self._params[-len(array) :] = array.tolist()
 
     def _checked(self, y0: Any) -> list[Any]:
-        form, count = self._problem.form, len(self._problem.form.module.PARAMETERS)
-        params = list(self._params)[len(self._params) - count :]
-        t = self._span_start
-        return validation.initial_state(form.module, y0, form.name, params, t).tolist()
+        form, t = self._problem.form, self._span_start
+        return validation.initial_state(form.module, y0, form.name, [*self._params], t).tolist()
 
     @property
     def steps(self) -> int:

@@ -72,6 +72,10 @@ class Problem:
         """The same problem with other parameters: numbers, or arrays for several motions."""
         return self.with_form_of(self.form.with_params(params))
 
+    def motion(self, k: int, states: Array, params: Array) -> "Problem":
+        """The problem of one of many motions, whose initial states and parameters are in rows."""
+        return replace(self.with_params(params[k % len(params)].tolist()), start=states[k])
+
     def with_inputs(self, values: Array) -> "Problem":
         """The same problem with other inputs, the last parameters."""
         return self.with_params([*self.form.params[: -len(values)], *values])

@@ -150,7 +150,7 @@ class Solution:
         t = " to ".join(dict.fromkeys(f"{t:.6g}" for t in (*self.t[:1], *self.t[-1:])))
         components = zip(self.units.items(), y_end, strict=True)
         state = [f"{name} = {y:.6g} {unit}".rstrip() for (name, unit), y in components]
-        headline = self.message if self.status is Status.UNSTABLE else self.status.value
+        headline = self.message.partition(" (t = ")[0]  # the state follows anyway
         times, steps = counted(len(self.t), "time"), counted(self.steps, "step")
         return (
             f"Solution: {headline}\n"

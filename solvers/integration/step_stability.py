@@ -165,14 +165,14 @@ def mark_unstable(problem: Problem, states: Array, params: Array, result: Ensemb
     else:
         unstable = np.zeros(len(states), bool)
         for k in np.flatnonzero(not_finite).tolist():
-            own = _motion(problem, states, params, k)
+            own = problem.motion(k, states, params)
             rates = _rates_at_start(own, with_equilibrium=True)
             unstable[k] = _growth(function, rates, h) * duration > np.log(TOLERABLE)
     if not unstable.any():
         return ""
     result.status[unstable] = Status.UNSTABLE
     first = int(np.argmax(unstable))
-    detail = diagnosis(_motion(problem, states, params, first))
+    detail = diagnosis(problem.motion(first, states, params))
     return f"{unstable.sum()} of {len(states)} motions are unstable; of motion {first}, {detail}"
 
 
@@ -182,8 +182,3 @@ def diagnosis(problem: Problem) -> str:
         return ""
     recorded = replace(problem, samples=np.linspace(*problem.span, EXAMINED), events=[])
     return step_instability(recorded, rerun(recorded))
-
-
-def _motion(problem: Problem, states: Array, params: Array, k: int) -> Problem:
-    """The problem of one motion."""
-    return replace(problem.with_params(params[k % len(params)].tolist()), start=states[k])

@@ -1,22 +1,25 @@
 """Checks of the arguments of an integration, before anything runs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.assembly import Assembly, has_constraints
+from solvers.equations.assembly import Assembly
 from solvers.equations.consistent_start import consistent, given_names, guesses
 from solvers.equations.forms import Form
 from solvers.equations.module import (
     GeneratedModule,
+    has_constraints,
+    has_perturbation,
     parameter_names,
     perturbations,
     state_names,
 )
 from solvers.equations.quantities import Values, quantities, real_number, real_numbers
+from solvers.equations.tangent_start import tangent_start
 from solvers.integration.events import Limit
 from solvers.integration.inputs import Held, Schedule, controlled, given
 from solvers.integration.memory import check_times
@@ -63,7 +66,7 @@ def problem(
     if y0 is None:
         start = np.array([float(s in module.POSITIVE) for s in state_names(module, name)])
     else:
-        start = initial_state(module, y0, name, constants_at_start(form, schedule, span), span[0])
+        start = initial_state(module, y0, name, params_at_start(form, schedule, span), span[0])
     tableau = None if method in SCIPY else load(str(method))
     rtol, atol, h = step_control(options, tableau, span, len(start))
     if atol.ndim and name != "lagrangian":
@@ -115,14 +118,14 @@ def parameters(module: GeneratedModule, values: Values, form: str = "lagrangian"
     return _vector("params", _parameters(module, values, form), parameter_names(module, form))
 
 
-def constants_at_start(
+def params_at_start(
     form: Form, schedule: Schedule | None, span: tuple[float, float]
 ) -> Sequence[Any]:
-    """Parameters without perturbations, and with the first of held inputs."""
+    """Parameters of the form, with the first of held inputs."""
     if schedule is None or schedule.table is None:
-        return form.constants
+        return form.params
     values = schedule.table[:, schedule.pieces(span)[0]]
-    return (*form.constants[: -len(values)], *values.tolist())
+    return (*form.params[: -len(values)], *values.tolist())
 
 
 def initial_state(
@@ -134,25 +137,35 @@ def initial_state(
 ) -> Array:
     """A state in the order of the module; a mapping may leave out velocities, which are 0.
 
-    With `params`, constraints determine components that a mapping leaves out.
+    With `params`, those of the form, constraints determine components that a mapping leaves out.
     """
     is_complete = params is not None and has_constraints(module)
     state = _states(module, values, form, is_complete)
     state = _vector("y0", state, state_names(module, form))
     if params is None:
         return state
-    constants = np.array([params], float)
-    return consistent_rows(module, values, state[np.newaxis], constants, t)[0]
+    return consistent_rows(module, values, state[np.newaxis], np.array([params], float), t, form)[0]
 
 
 def consistent_rows(
-    module: GeneratedModule, values: Values, rows: Array, params: Array, t: float
+    module: GeneratedModule,
+    values: Values,
+    rows: Array,
+    params: Array,
+    t: float,
+    form: str = "lagrangian",
 ) -> Array:
     """Initial states in rows that satisfy the constraints, of which `values` were given."""
     if not has_constraints(module):
         return rows
-    n, assembly = len(module.STATE), Assembly(module, params, t)
-    return np.hstack([consistent(assembly, rows[:, :n], given_names(module, values)), rows[:, n:]])
+    n, constants = len(module.STATE), params[:, params.shape[1] - len(module.PARAMETERS) :]
+    states = consistent(Assembly(module, constants, t), rows[:, :n], given_names(module, values))
+    rows = np.hstack([states, rows[:, n:]])
+    if not has_perturbation(form):
+        return rows
+    names = perturbations(module.STATE)
+    given = [not isinstance(values, Mapping) or name in values for name in names]
+    return tangent_start(Form(module, form, [*params.T]), t, rows, np.array(given))
 
 
 def parameter_rows(
@@ -188,7 +201,7 @@ def _states(module: GeneratedModule, values: Values, form: str, is_complete: boo
     perturbed = module.STATE if form == "sensitivity" else velocities
     defaults = dict.fromkeys([*velocities, *perturbations(perturbed)], 0.0)
     if is_complete:
-        defaults |= guesses(module)
+        defaults |= guesses(module) | dict.fromkeys(perturbations(module.STATE), 0.0)
     return quantities(module, "y0", state_names(module, form), values, defaults)
 
 

@@ -7,8 +7,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
-from solvers.equations.assembly import has_constraints
-from solvers.equations.module import GeneratedModule, title
+from solvers.equations.module import GeneratedModule, has_constraints, title
 from solvers.equations.quantities import check_outputs
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened

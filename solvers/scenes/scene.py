@@ -6,10 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.assembly import has_constraints
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.mass_matrix import check_condition
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import positive
 from solvers.integration import validation
 from solvers.io.arguments import check_texts, check_type

@@ -6,9 +6,8 @@ from math import prod
 
 import numpy as np
 
-from solvers.equations.assembly import has_constraints
 from solvers.equations.mass_matrix import Motion, examined
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import positive, quantity, real_number
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import did_you_mean

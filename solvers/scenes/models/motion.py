@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.assembly import has_constraints
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_constraints
 
 Array = NDArray[np.float64]
 
