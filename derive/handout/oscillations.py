@@ -31,7 +31,7 @@ def oscillations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         yield Paragraph(f"There are no normal modes: {str(error).partition(':')[0]}.")
         return
     M, K, u = (formulas.notation.letter(name) for name in ("M_0", "K_0", "u"))
-    is_column = len(d.system.q) > 1
+    is_column = len(linear.states) > 1
     vector = f"{u}_vector" if is_column else u
     if any(linear.equilibrium):
         yield Paragraph("The system is in equilibrium at these coordinates.")
@@ -40,6 +40,12 @@ def oscillations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         yield Table(("coordinate", "value"), rows)
     else:
         yield Paragraph("The system is in equilibrium where all coordinates are zero.")
+    if d.system.conditions:
+        names = ", ".join(f"`{name}`" for name in linear.states)
+        yield Paragraph(
+            f"Constraints determine the other small displacements by those of {names}, to which "
+            "the matrices below belong."
+        )
     kind = "mass and stiffness matrix" if is_column else "inertia and stiffness"
     yield Paragraph(f"Small displacements `{vector}` obey linear equations with constant {kind}.")
     yield formulas.relation(f"{M}*{vector}_ddot + {K}*{vector}", "0")
@@ -50,12 +56,12 @@ def oscillations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         yield Paragraph(f"They oscillate with the angular frequency `{omega}`.")
         square = sp.cancel(linear.stiffness_matrix[0] / linear.mass_matrix[0])
         yield formulas.equation(f"{omega}**2", f"{K}/{M}", value=square)
-    elif len(d.system.q) <= LARGEST:
+    elif len(linear.states) <= LARGEST:
         yield Paragraph(f"The angular frequency `{omega}` of a normal mode solves this equation.")
         value = _characteristic_polynomial(linear, sp.Symbol(omega, positive=True))
         yield formulas.equation(f"det({K} - {omega}**2*{M})", value=value, after=("0",))
     yield Paragraph("With the default values of the parameters:")
-    yield _table(modes, d, formulas)
+    yield _table(modes, linear, formulas)
 
 
 def _characteristic_polynomial(linear: Linearisation, omega: sp.Symbol) -> sp.Expr:
@@ -65,7 +71,7 @@ def _characteristic_polynomial(linear: Linearisation, omega: sp.Symbol) -> sp.Ex
     return sp.Mul(*(sp.collect(sp.expand(b), omega, sp.factor) ** n for b, n in factors))
 
 
-def _table(modes: list[Mode], d: Derivation, formulas: Numbering) -> Table:
+def _table(modes: list[Mode], linear: Linearisation, formulas: Numbering) -> Table:
     """Frequencies, periods and shapes of the normal modes; a mode that grows has no period."""
     omega = formulas.notation.letter("omega")
     rows = []
@@ -73,7 +79,7 @@ def _table(modes: list[Mode], d: Derivation, formulas: Numbering) -> Table:
         frequency = f"{sqrt(square):.4g}" if square > 0 else "none"
         period = f"{2 * pi / sqrt(square):.4g}" if square > 0 else "none"
         rows.append((f"{square:.4g}", frequency, period, ", ".join(f"{x:.3g}" for x in shape)))
-    title = "shape (" + ", ".join(f"`{q}`" for q in d.system.q) + ")"
+    title = "shape (" + ", ".join(f"`{name}`" for name in linear.states) + ")"
     head = (f"`{omega}**2` in 1/s²", f"`{omega}` in rad/s", "period in s", title)
     return Table(head, tuple(rows))
 
@@ -84,7 +90,7 @@ def normal_modes(d: Derivation, linear: Linearisation) -> list[Mode]:
     A `SystemDefinitionError` reports a mass matrix that is not positive definite.
     """
     values = {p.symbol: sp.Rational(str(p.default)) for p in d.system.parameters}
-    n = len(d.system.q)
+    n = len(linear.states)
 
     def numbers(matrix: sp.MatrixBase) -> mp.matrix:
         at_defaults = Evaluator(values)

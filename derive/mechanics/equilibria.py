@@ -1,57 +1,124 @@
 """Equilibria in closed form: one equation, or a factor of it, after another."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import sympy as sp
 
 from derive.formulas.sampling import is_small
-from derive.mechanics.state_space import Point
+from derive.mechanics.equations import Equations
+from derive.mechanics.free_changes import tidied
+from derive.mechanics.point import Point
+from derive.mechanics.reduction import reduced
 from derive.system.parts import SystemDefinitionError
 
-Values: TypeAlias = Mapping[sp.Symbol, sp.Expr]
+Solution: TypeAlias = dict[sp.Symbol, sp.Expr]
+
+#: Operations in the longest condition that is solved in symbols.
+LONGEST = 400
 
 
-def equilibria(point: Point, forcing: sp.ImmutableDenseMatrix) -> list[dict[sp.Symbol, sp.Expr]]:
-    """All coordinates with which `forcing` is 0 at rest, angles within one turn.
+def equilibria(point: Point, equations: Equations) -> list[Solution]:
+    """All coordinates that remain with the velocities of a point, angles within one turn.
 
     `point` has velocities and inputs; coordinates on which no force depends keep their symbols.
+    With constraints, f + Gᵀ λ = 0, and G q̇ + b and γ of G q̈ = γ are 0.
     """
-    system = point.system
-    forces = [sp.factor(force.xreplace(point.values)) for force in forcing]
-    results: list[dict[sp.Symbol, sp.Expr]] = []
-    for values in _solutions([f for f in forces if f != 0], system.q, system.name):
-        solution = {q: values.get(q, q) for q in system.q}
-        if solution not in results:
+    d, system = equations, point.system
+    reactions = d.constraint_jacobian.T * sp.Matrix(system.multipliers)
+    forces = d.forcing + reactions if system.conditions else d.forcing
+    conditions = [*forces, *d.holonomic, *d.constraint_rates, *d.constraint_forcing]
+    values = [sp.factor(condition.xreplace(point.values)) for condition in conditions]
+    results: list[Solution] = []
+    unknowns = (*system.multipliers, *system.q)
+    for known in _solutions([value for value in values if value != 0], unknowns, system.name):
+        solution = {q: known.get(q, q) for q in system.q}
+        if not any(_contains(other, solution) for other in results):
+            results = [other for other in results if not _contains(solution, other)]
             results.append(solution)
     return sorted(results, key=lambda values: [sp.default_sort_key(v) for v in values.values()])
 
 
 def _solutions(
-    forces: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol], name: str
-) -> Iterator[dict[sp.Symbol, sp.Expr]]:
-    """Solutions of all equations force = 0."""
-    if not forces:
+    conditions: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol], name: str
+) -> Iterator[Solution]:
+    """Solutions of all equations condition = 0."""
+    if not conditions:
         yield {}
         return
-    factors = [[*_factors(force)] for force in forces]
-    counts = [
-        max((len(f.free_symbols & {*unknowns}) for f in parts), default=0) for parts in factors
-    ]
-    if 0 in counts:  # a force that no coordinate changes
+    factors = [[f for f in _factors(c) if f.free_symbols & {*unknowns}] for c in conditions]
+    if [] in factors:  # a condition that no unknown changes
         return
-    index = counts.index(min(counts))
-    for factor in factors[index]:
-        own = [q for q in unknowns if q in factor.free_symbols]
-        if not own:
-            continue
-        if len(own) > 1:
-            raise SystemDefinitionError(_no_closed_form(name, factor, own))
-        for root in _roots(factor, own[0], name):
-            others = [sp.factor(f.subs(own[0], root)) for f in forces]
-            rest = [q for q in unknowns if q != own[0]]
-            for values in _solutions([f for f in others if not is_small(f)], rest, name):
-                yield {own[0]: root, **values}
+    steps = [[_step(factor, unknowns) for factor in parts] for parts in factors]
+    index = min(range(len(steps)), key=lambda k: max(step.cost for step in steps[k]))
+    others = [*conditions[:index], *conditions[index + 1 :]]
+    for step in steps[index]:
+        for root in step.roots(name):
+            rest = [q for q in unknowns if q != step.unknown]
+            changed = [sp.factor(reduced(c.subs(step.unknown, root))) for c in others]
+            for values in _solutions([c for c in changed if not is_small(c)], rest, name):
+                value = tidied(root.subs(values)) if root.free_symbols & {*rest} else root
+                if _is_possible(step.unknown, value) and not is_small(step.slope.subs(values)):
+                    yield {step.unknown: value, **values}
+        if step.may_be_singular:
+            remainder = step.factor.xreplace({step.unknown: sp.S.Zero})
+            both = [sp.factor(reduced(c)) for c in (step.slope, remainder)]
+            yield from _solutions([*others, *(c for c in both if c != 0)], unknowns, name)
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A factor that is to be 0, and the unknown for which it is solved."""
+
+    factor: sp.Expr
+    unknown: sp.Symbol
+    count: int  # of unknowns
+
+    @cached_property
+    def slope(self) -> sp.Expr:
+        """The coefficient of the unknown in a linear equation of several unknowns, or else 1."""
+        return self.factor.diff(self.unknown) if self.count > 1 else sp.S.One
+
+    @property
+    def is_linear(self) -> bool:
+        return self.unknown not in self.slope.free_symbols
+
+    @property
+    def may_be_singular(self) -> bool:
+        """Whether the slope can be 0, where the factor does not determine the unknown."""
+        return self.slope.is_zero is not False
+
+    @property
+    def cost(self) -> tuple[bool, bool, int]:
+        """Factors of one unknown are solved first, those of uncertain slopes late."""
+        return not self.is_linear, self.may_be_singular, self.count
+
+    def roots(self, name: str) -> list[sp.Expr]:
+        """Values of the unknown, those of equations of several unknowns by the others."""
+        if not self.is_linear or self.factor.count_ops() > LONGEST:
+            own = sorted(self.factor.free_symbols, key=str)
+            raise SystemDefinitionError(_no_closed_form(name, self.factor, own))
+        if self.count > 1:
+            return [-self.factor.xreplace({self.unknown: sp.S.Zero}) / self.slope]
+        return _roots(self.factor, self.unknown, name)
+
+
+def _step(factor: sp.Expr, unknowns: Sequence[sp.Symbol]) -> _Step:
+    """The easiest of the unknowns."""
+    own = [q for q in unknowns if q in factor.free_symbols]
+    return min((_Step(factor, q, len(own)) for q in own), key=lambda step: step.cost)
+
+
+def _contains(general: Solution, special: Solution) -> bool:
+    """Whether a solution is another one with values of free coordinates."""
+    free = {q: special[q] for q, value in general.items() if q == value}
+    return all(is_small(general[q].subs(free) - special[q]) for q in general)
+
+
+def _is_possible(unknown: sp.Symbol, value: sp.Expr) -> bool:
+    return value.is_real is not False and not (unknown.is_positive and value.is_nonpositive)
 
 
 def _factors(force: sp.Expr) -> Iterator[sp.Expr]:
@@ -75,12 +142,11 @@ def _roots(factor: sp.Expr, unknown: sp.Symbol, name: str) -> list[sp.Expr]:
         degree
     ):
         raise SystemDefinitionError(_no_closed_form(name, factor, [unknown]))
+    waves_of = {sine: sp.sin(unknown), cosine: sp.cos(unknown)}
     return [
         root
-        for root in sp.solve(
-            expanded.xreplace({sine: sp.sin(unknown), cosine: sp.cos(unknown)}), unknown
-        )
-        if root.is_real is not False and not (unknown.is_positive and root.is_nonpositive)
+        for root in sp.solve(expanded.xreplace(waves_of), unknown)
+        if _is_possible(unknown, root)
     ]
 
 

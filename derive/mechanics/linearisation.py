@@ -1,30 +1,41 @@
 """Small oscillations about an equilibrium."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
 import sympy as sp
 
 from derive.formulas.sampling import is_small
+from derive.mechanics.equations import Equations
+from derive.mechanics.free_changes import FreeChanges, tidied
+from derive.mechanics.kinetics import Matrix
+from derive.mechanics.point import Point
 from derive.mechanics.reduction import reduced
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
-from derive.system.system import System
 
-Matrix: TypeAlias = sp.ImmutableDenseMatrix
+Values: TypeAlias = Mapping[sp.Symbol, sp.Expr]
 INFINITE = (sp.zoo, sp.oo, sp.nan)
 
 
 @dataclass(frozen=True)
 class Linearisation:
-    """M₀ ẍ + K x = 0 for small displacements x = q - q₀ from an equilibrium q₀.
+    """M₀ ẍ + K x = 0 for small displacements x from an equilibrium q₀: q = q₀ + Z x.
+
+    Constraints φ determine some displacements by the others, which are x. The multipliers λ at q₀
+    add -λ ∂²φ/∂q² to the stiffness (C. Lanczos, The Variational Principles of Mechanics, II.5).
 
     Attributes
     ----------
     equilibrium : tuple of sympy.Expr
         q₀.
     mass_matrix, stiffness_matrix : sympy.Matrix
-        M₀ = M(q₀) and K = ∂²U/∂q² at q₀, n × n.
+        M₀ = Zᵀ M Z and K = Zᵀ ∂²(U - λ φ)/∂q² Z at q₀.
+    states : tuple of str
+        Names of the coordinates whose displacements are x.
+    tangent : sympy.Matrix
+        Z: the unit matrix without constraints.
 
     Examples
     --------
@@ -37,38 +48,57 @@ class Linearisation:
     equilibrium: tuple[sp.Expr, ...]
     mass_matrix: Matrix
     stiffness_matrix: Matrix
+    states: tuple[str, ...]
+    tangent: Matrix
 
 
 @dataclass(frozen=True)
-class Energies:
-    """The mass matrix, potential and momenta that determine small oscillations."""
+class SmallOscillations:
+    """Small oscillations of a system about its equilibria."""
 
-    system: System
-    mass_matrix: Matrix  # M(q, t)
-    potential: sp.Expr  # the effective one, U(q, t)
-    drift: Matrix  # momenta b at q̇ = 0, a column
+    equations: Equations
 
     def linearised(self, equilibrium: tuple[sp.Expr, ...]) -> Linearisation:
         """M₀ and K at `equilibrium`; an error if it is none, or if these are not sufficient."""
         self._refuse(self._other_terms())
         values = self.check_equilibrium(equilibrium)
-        gradient = [self.potential.diff(q) for q in self.system.q]
-        stiffness = Matrix([[force.diff(q) for q in self.system.q] for force in gradient])
-        matrices = self.mass_matrix.xreplace(values), stiffness.xreplace(values)
+        d, q = self.equations, self.equations.system.q
+        pairs = zip(self._multipliers(values), d.holonomic, strict=True)
+        potential = d.effective_potential - sp.Add(*(force * phi for force, phi in pairs))
+        gradient = [potential.diff(x) for x in q]
+        stiffness = Matrix([[force.diff(x) for x in q] for force in gradient])
+        matrices = d.mass_matrix.xreplace(values), stiffness.xreplace(values)
         self._refuse({"have infinite terms": any(matrix.has(*INFINITE) for matrix in matrices)})
-        return Linearisation(equilibrium, *matrices)
+        changes = self._changes(values)
+        Z, states = changes.directions, tuple(q[k].name for k in changes.free)
+        if d.holonomic:
+            M, K = ((Z.T * matrix * Z).applyfunc(tidied) for matrix in matrices)
+            matrices = M, K
+        return Linearisation(equilibrium, *matrices, states, Z)
+
+    def _changes(self, values: Values) -> FreeChanges:
+        """Displacements that constraints leave free."""
+        jacobian = self.equations.constraint_jacobian.xreplace(values)
+        return FreeChanges.of(self.equations.system, jacobian)
+
+    def _multipliers(self, values: Values) -> Matrix:
+        """Multipliers with which the constraints balance the forces of the potential, a column."""
+        d = self.equations
+        gradient = Matrix([d.effective_potential.diff(q) for q in d.system.q])
+        return self._changes(values).multipliers(gradient.xreplace(values))
 
     def _refuse(self, problems: dict[str, bool]) -> None:
+        name = self.equations.system.name
         for problem, exists in problems.items():
             if exists:
                 raise SystemDefinitionError(
-                    f"small motions of {self.system.name!r} {problem}: a mass and a stiffness "
-                    "matrix do not describe them; use eigenvalues of the generated jacobian"
+                    f"small motions of {name!r} {problem}: a mass and a stiffness matrix do not "
+                    "describe them; use Derivation.state_space"
                 )
 
     def check_equilibrium(self, equilibrium: tuple[sp.Expr, ...]) -> dict[sp.Symbol, sp.Expr]:
-        """`equilibrium` by coordinate; an error if a force is not 0 there."""
-        system = self.system
+        """`equilibrium` by coordinate; an error if a force or a constraint is not 0 there."""
+        d, system = self.equations, self.equations.system
         if len(equilibrium) != len(system.q):
             raise SystemDefinitionError(
                 f"an equilibrium of {system.name!r} has {len(system.q)} coordinates "
@@ -76,9 +106,13 @@ class Energies:
             )
         values = dict(zip(system.q, equilibrium, strict=True))
         still = dict.fromkeys(system.qdot, sp.S.Zero)
+        reactions = sp.zeros(len(system.q), 1)
+        if system.conditions:
+            Point(system, values | still).check_constraints(d)
+            reactions = d.constraint_jacobian.xreplace(values).T * self._multipliers(values)
         for i, q in enumerate(system.q):
-            gradient = self.potential.diff(q) + self.drift[i].diff(TIME)
-            everywhere = system.applied[i].xreplace(still) - gradient
+            gradient = d.effective_potential.diff(q) + d.drift[i].diff(TIME)
+            everywhere = system.applied[i].xreplace(still) - gradient + reactions[i]
             force, reason = everywhere.xreplace(values), ""
             if force.has(*INFINITE):
                 reason = f"the force along {q.name} is not finite there"
@@ -87,7 +121,8 @@ class Energies:
             elif not is_small(force):
                 force = sp.factor_terms(reduced(force))
                 reason = f"the force along {q.name} is {force} there"
-                if all(is_small(everywhere.diff(other)) for other in system.q):
+                is_constant = all(is_small(everywhere.diff(other)) for other in system.q)
+                if is_constant and not system.conditions:
                     raise SystemDefinitionError(
                         f"{system.name!r} has no equilibrium: the force along {q.name} is {force} "
                         "for all coordinates"
@@ -101,10 +136,12 @@ class Energies:
 
     def _other_terms(self) -> dict[str, bool]:
         """Terms of small motions beside those of masses and springs, and whether they exist."""
-        rotation = self.drift.jacobian(self.system.q)
-        parts = (self.mass_matrix, self.potential, self.drift)
+        d = self.equations
+        rotation = d.drift.jacobian(d.system.q)
+        parts = (d.mass_matrix, d.effective_potential, d.drift, *d.holonomic)
         return {
             "depend on time": any(part.has(TIME) for part in parts),
-            "have applied forces": any(self.system.applied),
+            "have applied forces": any(d.system.applied),
+            "have constraints of velocities": bool(d.velocity_constraints),
             "have gyroscopic forces": not (rotation - rotation.T).is_zero_matrix,
         }

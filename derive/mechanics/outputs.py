@@ -6,7 +6,7 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS
 from derive.mechanics.kinetics import Kinetics
-from derive.mechanics.state_space import Formula, expression
+from derive.mechanics.point import Formula, expression
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 from solvers.io.suggestion import did_you_mean, shortened

@@ -6,23 +6,24 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, number
-from derive.formulas.syntax import ExpressionError
-from derive.mechanics.reduction import reduced
+from derive.formulas.expression import FUNCTIONS
+from derive.mechanics.equations import Equations
+from derive.mechanics.free_changes import tidied
+from derive.mechanics.kinetics import Matrix
+from derive.mechanics.nearby_motions import NearbyMotions
+from derive.mechanics.point import Formula, Point, expression, named
 from derive.system.parts import SystemDefinitionError, formula, items
 from derive.system.symbols import TIME
 from derive.system.system import System
-from solvers.io.suggestion import did_you_mean, shortened
 
-Matrix: TypeAlias = sp.ImmutableDenseMatrix
 Numbers: TypeAlias = list[list[float]]
-#: A formula, or its text.
-Formula: TypeAlias = sp.Expr | float | str
 
 
 @dataclass(frozen=True)
 class StateSpace:
     """x' = r + A x + B w and z = C x + D w, for small changes x of the state and w of the inputs.
+
+    Constraints determine some components of the state by the others, which are x.
 
     Attributes
     ----------
@@ -31,9 +32,13 @@ class StateSpace:
     point : dict of sympy.Symbol to sympy.Expr
         Coordinates, velocities and inputs of the point.
     rate : sympy.Matrix
-        The rate r of the state at the point, a column: 0 at an equilibrium.
+        The rate r of the whole state at the point, a column: 0 at an equilibrium.
     A, B, C, D : sympy.Matrix
         Derivatives of the rates (q̇, q̈) by the state and by the inputs, and of the outputs.
+    states : tuple of str
+        Names of the components of x, which determine the others best with the default parameters.
+    tangent : sympy.Matrix
+        Derivatives of the whole state by x: the unit matrix without constraints.
 
     Examples
     --------
@@ -52,6 +57,8 @@ class StateSpace:
     B: Matrix
     C: Matrix
     D: Matrix
+    states: tuple[str, ...]
+    tangent: Matrix
 
     def numbers(
         self, params: Mapping[str, float] | None = None
@@ -69,7 +76,7 @@ class StateSpace:
             p.symbol: formula(p.default) for p in self.system.parameters
         }
         given = params or {}
-        values |= {_symbol(values, name): formula(value) for name, value in given.items()}
+        values |= {named(values, name): formula(value) for name, value in given.items()}
         a, b, c, d = (self._numbers(matrix, values) for matrix in (self.A, self.B, self.C, self.D))
         return a, b, c, d
 
@@ -83,50 +90,10 @@ class StateSpace:
             ) from None
 
 
-@dataclass(frozen=True)
-class Point:
-    """A point of a system: values of coordinates, velocities, inputs and time."""
-
-    system: System
-    values: dict[sp.Symbol, sp.Expr]
-
-    @classmethod
-    def of(cls, system: System, given: Mapping[str, Formula]) -> "Point":
-        """A point by names; others are at the equilibrium, or zeros, at rest and without inputs."""
-        rest = system.equilibrium or (sp.S.Zero,) * len(system.q)
-        values = dict(zip(system.q, rest, strict=True))
-        values |= dict.fromkeys((*system.qdot, *system.u), sp.S.Zero)
-        known = dict.fromkeys((*values, TIME))
-        scope = FUNCTIONS | {s.name: s for s in (*system.params, *known)}
-        for name, value in given.items():
-            values[_symbol(known, str(name))] = expression(str(name), value, scope)
-        return cls(system, values)
-
-    def __call__(self, matrix: Matrix) -> Matrix:
-        """A matrix at the point; refused where it is infinite."""
-        result = matrix.xreplace(self.values)
-        if result.has(sp.zoo, sp.oo, sp.nan):
-            raise SystemDefinitionError(
-                f"the equations of {self.system.name!r} are not finite at {self.values}"
-            )
-        return result
-
-
-def expression(what: str, value: Formula, scope: Mapping[str, object]) -> sp.Expr:
-    """A formula given as an expression, a number or text."""
-    try:
-        return formula(number(value, scope) if isinstance(value, str) else value)
-    except (ExpressionError, SystemDefinitionError) as error:
-        raise SystemDefinitionError(f"{what}: {error}") from error
-
-
 def state_space(
-    point: Point,
-    mass_matrix: Matrix,
-    forcing: Matrix,
-    outputs: Sequence[Formula] | None,
+    point: Point, equations: Equations, outputs: Sequence[Formula] | None
 ) -> StateSpace:
-    """The state space of M q̈ = f at a point: M δq̈ = δf - δM q̈.
+    """The state space of M q̈ - Gᵀ λ = f and G q̈ = γ at a point, by their differentials.
 
     By default, outputs are the components of the state.
     """
@@ -137,43 +104,20 @@ def state_space(
     if outputs is not None:
         results = items("outputs", outputs, "a list of formulas")
         results = tuple(expression("an output", value, scope) for value in results)
-    M, f = point(mass_matrix), point(forcing)
-    adjugate, determinant = M.adjugate(), M.det()
-
-    def solved(right: Matrix) -> list[sp.Expr]:
-        return [tidied(entry / determinant) for entry in adjugate * right]
-
-    acceleration = Matrix(solved(f))
-
-    def column(symbol: sp.Symbol) -> list[sp.Expr]:
-        change = point(forcing.diff(symbol)) - point(mass_matrix.diff(symbol)) * acceleration
-        return [*(sp.Integer(v == symbol) for v in system.qdot), *solved(change)]
+    motion = NearbyMotions.at(point, equations)
 
     def jacobian(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Matrix:
         entries = [e.diff(s) for e in expressions for s in symbols]
-        return point(Matrix(len(expressions), len(symbols), entries)).applyfunc(tidied)
+        return point(Matrix(len(expressions), len(symbols), entries))
 
-    size = len(state)
-    columns = [[column(s) for s in symbols] for symbols in (state, system.u)]
-    A, B = (Matrix(size, len(c), lambda i, j, c=c: c[j][i]) for c in columns)
-    rate = Matrix([*(point.values[v] for v in system.qdot), *acceleration])
-    C, D = jacobian(results, state), jacobian(results, system.u)
-    return StateSpace(system, point.values, rate, A, B, C, D)
-
-
-def tidied(entry: sp.Expr) -> sp.Expr:
-    """An entry in factors, where it is a rational function of parameters."""
-    if entry.has(sp.Function):
-        return sp.factor_terms(reduced(entry))
-    return sp.factor(entry)
-
-
-def _symbol(known: Mapping[sp.Symbol, object], name: str) -> sp.Symbol:
-    for symbol in known:
-        if symbol.name == name:
-            return symbol
-    names = [symbol.name for symbol in known]
-    raise SystemDefinitionError(
-        f"{shortened(name)} is no quantity of the point{did_you_mean(name, names)}; known are "
-        f"{', '.join(names)}"
+    tangent, rows = motion.tangent, motion.independent
+    A = Matrix.vstack(tangent[len(system.q) :, :], motion.changes(state, tangent))
+    B = Matrix.vstack(
+        sp.zeros(len(system.q), len(system.u)), motion.changes(system.u, sp.eye(len(system.u)))
     )
+    A, B = (matrix.extract(rows, [*range(matrix.cols)]) for matrix in (A, B))
+    C, D = jacobian(results, state) * tangent, jacobian(results, system.u)
+    rate = Matrix([*(point.values[v] for v in system.qdot), *motion.accelerations])
+    states = tuple(state[k].name for k in rows)
+    A, B, C, D = (matrix.applyfunc(tidied) for matrix in (A, B, C, D))
+    return StateSpace(system, point.values, rate, A, B, C, D, states, tangent)
