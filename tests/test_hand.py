@@ -15,6 +15,7 @@ from mutation import Mutation
 
 from derive import Derivation, load, names
 from derive.system.catalogue import published
+from derive.system.shipped import large_names
 from derive.verification.hand import EQUATIONS, HEADER, judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
@@ -23,7 +24,7 @@ from solvers.app.cli import main
 from solvers.io.toml_input import InputError
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", [*names(), *large_names()])
 def test_published_equations_hold(name: str) -> None:
     derivation = judge(name)
     assert derivation.source
@@ -40,7 +41,8 @@ def mutants(text: str) -> Iterator[str]:
         yield ast.unparse(changed)
 
 
-QUICK = [name for name in names() if name not in ("chain_3", "foucault_pendulum")]
+SLOW = ("chain_3", "foucault_pendulum", "free_body", "rolling_disc")
+QUICK = [name for name in names() if name not in SLOW]
 
 
 @pytest.mark.parametrize("name", QUICK)

@@ -93,6 +93,16 @@ def test_the_document_states_why_there_is_no_hamiltonian(path: Path, reason: str
     assert ("must not be used to remove velocities" in texts) == (path.read_text() == DISC)
 
 
+@pytest.mark.parametrize("path", [SWING + '[equilibrium]\nx = "0"\ny = "-l"'], indirect=True)
+def test_small_oscillations_are_those_of_independent_coordinates(path: Path) -> None:
+    formulas = judged(path, (r"\frac{K_0}{M_0} = \frac{g}{l}", r"\frac{K_0}{M_0} = \frac{l}{g}"))
+    (stiffness,) = (one for one in formulas.formulas if one.latex.startswith("K_0"))
+    assert stiffness.latex == r"K_0 & = \frac{m g}{l}"
+    assert [one.latex for one in formulas.formulas if one.verdict == "wrong"] == [
+        r"\omega^2 & = \frac{K_0}{M_0} = \frac{l}{g}"
+    ]
+
+
 def test_other_documents_have_no_section_on_constraints() -> None:
     titles = [one.title for one in document(Derivation(load("single_pendulum"))).sections]
     assert "Constraints" not in titles

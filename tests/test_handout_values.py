@@ -93,7 +93,7 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
         "V": d.potential_energy,
         "L": d.lagrangian,
         "E": d.energy,
-        "R": s.dissipation,
+        "R": s.dissipation or d.routhian,
         **dict(zip((p.name for p in s.p), d.momenta, strict=True)),
         "M": d.mass_matrix,
         "f_vector" if many else "f": d.forcing,
@@ -103,14 +103,23 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     for q, qdot, left, slope, applied in zip(
         s.q, s.qdot, d.euler_lagrange, slopes, s.applied, strict=True
     ):
-        reactions = sp.Add(*(c.symbol * c.formula.diff(qdot) for c in s.conditions))
+        reactions = sp.Add(
+            *(
+                c.symbol * c.formula.diff(qdot if c.formula.has(*s.qdot) else q)
+                for c in s.conditions
+            )
+        )
         values[f"ddt(d(L, {qdot}))"] = left + slope + applied + reactions
         values[f"d(L, {q})"] = slope
         force = f" - Q_{q}" if applied else ""
-        reaction = Notation(s).reaction(s.q.index(q))
+        reaction = Notation(s).reaction(s.q.index(q)).replace("_sys", "")
         values[f"ddt(d(L, {qdot})) - d(L, {q}){force}{reaction}"] = left
         values[f"Q_{q}"] = applied
         values[f"pdot_{q}"] = slope + applied  # with the momenta of the velocities
+    others = [k for k, q in enumerate(s.q) if q not in d.cyclic_coordinates]
+    for k, residual in zip(others, d.routh_equations, strict=True):
+        force = f" - Q_{s.q[k]}" if s.applied[k] else ""
+        values[f"ddt(d(R, {s.qdot[k]})) - d(R, {s.q[k]}){force}"] = residual
     if s.conditions:
         values |= {f"phi_{k}": one.formula for k, one in enumerate(s.conditions, 1)}
         values |= {"G": d.constraint_jacobian, "gamma_vector": d.constraint_forcing}

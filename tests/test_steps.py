@@ -24,6 +24,8 @@ def values_by_name(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
             **dict(zip((q.name for q in s.qdot), rates, strict=True)),
             **dict(zip(force_names, forces, strict=True)),
         }
+    if 0 < len(d.cyclic_coordinates) < len(s.q):
+        last["R"] = d.routhian
     return {
         "K": d.kinetic_energy,
         "P": d.potential_energy,
@@ -60,7 +62,12 @@ def test_every_formula_is_the_derived_one(name: str) -> None:
     products = [residual for residual in residuals if "*[[" in residual]
     equations = [parse(one, scope) for one in residuals if one not in products]
     conditions = [one.formula for one in system.conditions]
-    assert equations == [*conditions, *derivation.euler_lagrange]
+    reduced = [*derivation.routh_equations] if "R" in values else []
+    assert equations[: len(equations) - len(reduced)] == [*conditions, *derivation.euler_lagrange]
+    for equation, residual in zip(
+        equations[-len(reduced) :] if reduced else [], reduced, strict=True
+    ):
+        assert sp.simplify(equation - residual) == 0
     assert [product[0] for product in products] == (["M", "G"] if conditions else ["M"])
 
 

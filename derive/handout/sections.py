@@ -1,8 +1,9 @@
 """The document of a derivation, from positions to code."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from textwrap import fill
+from typing import TypeAlias
 
 from derive.codegen.backend import find_backends
 from derive.codegen.factorisation import LARGE
@@ -13,11 +14,14 @@ from derive.handout.motion import accelerations, energy, euler_lagrange, lagrang
 from derive.handout.notation import Notation, words
 from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
+from derive.handout.routhian import routhian
 from derive.handout.setup import constraints, energies, system, velocities
 from derive.mechanics.derivation import Derivation
 from derive.system.parts import SystemDefinitionError
 
-SECTIONS = {
+Blocks: TypeAlias = Callable[[Derivation, Numbering], Iterator[Block]]
+
+SECTIONS: dict[str, Blocks] = {
     "System": system,
     "Constraints": constraints,
     "Velocities": velocities,
@@ -26,6 +30,7 @@ SECTIONS = {
     "Euler–Lagrange equations": euler_lagrange,
     "Accelerations": accelerations,
     "Hamilton's equations": hamilton,
+    "Routhian": routhian,
     "Energy balance": energy,
     "Small oscillations": oscillations,
 }
@@ -71,10 +76,17 @@ def document(derivation: Derivation) -> Document:
     sections = [
         Section(title, tuple(blocks(derivation, formulas)))
         for title, blocks in SECTIONS.items()
-        if derivation.system.conditions or blocks is not constraints
+        if _exists(blocks, derivation)
     ]
     sections.append(Section("Generated code", tuple(_code(derivation))))
     return Document(words(derivation.system.title), tuple(sections))
+
+
+def _exists(blocks: Blocks, derivation: Derivation) -> bool:
+    """Whether a system has a section."""
+    if blocks is routhian:
+        return 0 < len(derivation.cyclic_coordinates) < len(derivation.system.q)
+    return blocks is not constraints or bool(derivation.system.conditions)
 
 
 def with_letters(derivation: Derivation) -> Derivation:

@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from derive.mechanics.constraints import Constraints
-from derive.mechanics.equations import Equations
+from derive.mechanics.cyclic_coordinates import CyclicCoordinates
 from derive.mechanics.equilibria import equilibria
 from derive.mechanics.independence import check_independence
-from derive.mechanics.linearisation import Energies, Linearisation
+from derive.mechanics.linearisation import Linearisation, SmallOscillations
 from derive.mechanics.outputs import outputs as output_formulas
-from derive.mechanics.state_space import Formula, Point, StateSpace, state_space
+from derive.mechanics.point import Formula, Point
+from derive.mechanics.state_space import StateSpace, state_space
 from derive.system.constraints import Constraint
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.prescribed import motions
@@ -49,7 +50,7 @@ def warn_of_redundancy(system: System, redundant: Sequence[Constraint]) -> None:
 
 
 @dataclass(frozen=True)
-class Derivation(Equations):
+class Derivation(CyclicCoordinates):
     """The mechanics of `system`; each result is derived when it is first used.
 
     Parameters
@@ -137,24 +138,17 @@ class Derivation(Equations):
             return True
         return False
 
-    def _check_free(self, results: str) -> None:
-        if self.system.conditions:
-            raise SystemDefinitionError(
-                f"{results} of system {self.system.name!r} are derived without constraints only: "
-                "use solvers.equilibria and solvers.linearise with the built module, or "
-                "Derivation(derive.reduced(system)) if no constraint remains there"
-            )
-
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small oscillations about an equilibrium, by default the system's own, or zeros.
 
-        A `SystemDefinitionError` states that a force is not 0 there, or that small motions depend
-        on time, have applied or gyroscopic forces, or no finite mass and stiffness matrix.
+        With constraints, displacements are those of independent coordinates. A
+        `SystemDefinitionError` states that a force or a constraint is not 0 there, or that small
+        motions depend on time, have applied or gyroscopic forces, constraints of velocities, or no
+        finite mass and stiffness matrix.
         """
-        self._check_free("small oscillations")
         if equilibrium is None:
             return self._default_linearisation
-        return self._energies.linearised(tuple(map(formula, equilibrium)))
+        return self._small_oscillations.linearised(tuple(map(formula, equilibrium)))
 
     def state_space(
         self,
@@ -162,6 +156,9 @@ class Derivation(Equations):
         outputs: Sequence[Formula] | None = None,
     ) -> StateSpace:
         """A, B, C and D about any point, as functions of parameters.
+
+        With constraints, these are matrices of independent components of the state, as those of
+        `solvers.linearise`.
 
         Parameters
         ----------
@@ -178,7 +175,8 @@ class Derivation(Equations):
         Raises
         ------
         SystemDefinitionError
-            When a name is unknown, or the equations are not finite there.
+            When a name is unknown, when the equations are not finite there, or when a constraint or
+            its rate is not 0 there, or constraints depend on each other.
 
         Examples
         --------
@@ -187,9 +185,8 @@ class Derivation(Equations):
         >>> hanging.C
         Matrix([[l, 0]])
         """
-        self._check_free("the state space")
         point = Point.of(self.system, at or {})
-        return state_space(point, self.mass_matrix, self.forcing, outputs)
+        return state_space(point, self, outputs)
 
     def identifiable(
         self,
@@ -223,7 +220,12 @@ class Derivation(Equations):
         l1, l2, g: determined
         m1, m2: only as m2/m1; give one of them a value
         """
-        self._check_free("identifiable parameters")
+        if self.system.conditions:
+            raise SystemDefinitionError(
+                f"identifiable parameters of system {self.system.name!r} are derived without "
+                "constraints only: use Derivation(derive.reduced(system)) if no constraint remains "
+                "there"
+            )
         known = {part.symbol.name: part.symbol for part in self.system.parameters}
         for name in unknown or ():
             if name not in known:
@@ -268,19 +270,18 @@ class Derivation(Equations):
         {theta: -acos(g/(Omega**2*R)) + 2*pi}
         {theta: acos(g/(Omega**2*R))}
         """
-        self._check_free("equilibria")
         point = Point.of(self.system, at or {})
         moving = {*self.system.qdot}
         values = {s: x for s, x in point.values.items() if s in moving or s.name in (at or {})}
-        return equilibria(Point(self.system, values), self.forcing)
+        return equilibria(Point(self.system, values), self)
 
     @cached_property
     def _default_linearisation(self) -> Linearisation:
-        return self._energies.linearised(self._default_equilibrium)
+        return self._small_oscillations.linearised(self._default_equilibrium)
 
     @cached_property
     def is_linearisable(self) -> bool:
-        """Whether masses and springs alone describe small motions."""
+        """Whether masses and springs describe small motions of all coordinates."""
         if self.system.conditions:
             return False
         try:
@@ -298,7 +299,7 @@ class Derivation(Equations):
         if self.system.conditions:
             return None
         try:
-            self._energies.check_equilibrium(self._default_equilibrium)
+            self._small_oscillations.check_equilibrium(self._default_equilibrium)
         except SystemDefinitionError:
             if self.system.equilibrium is not None:
                 raise
@@ -306,8 +307,8 @@ class Derivation(Equations):
         return self._default_equilibrium
 
     @property
-    def _energies(self) -> Energies:
-        return Energies(self.system, self.mass_matrix, self.effective_potential, self.drift)
+    def _small_oscillations(self) -> SmallOscillations:
+        return SmallOscillations(self)
 
     @property
     def _default_equilibrium(self) -> tuple[sp.Expr, ...]:

@@ -21,6 +21,8 @@ WORDS = {
     "Hamiltonian": "The energy as a function of coordinates and momenta.",
     "Hamilton's equations": "Rates of coordinates and momenta, from the derivatives of the "
     "Hamiltonian.",
+    "Routhian": "Momenta of cyclic coordinates are constant; L less the products with their "
+    "velocities is a Lagrangian of the others.",
 }
 
 
@@ -34,7 +36,7 @@ class Step:
 
 
 def steps(derivation: Derivation) -> Iterator[Step]:
-    """The steps of a derivation, from positions to Hamilton's equations.
+    """The steps of a derivation, from positions to Hamilton's equations and Routh's.
 
     With constraints, G contains their derivatives by coordinates, or by velocities, and there are
     no Hamilton's equations. K and P denote kinetic and potential energy, as in the report on the
@@ -85,6 +87,9 @@ def steps(derivation: Derivation) -> Iterator[Step]:
         formulas["Hamiltonian"] = _each("H", (d.hamiltonian,))
         both = _each((*_names(system.qdot), *pdot), (*rates, *forces))
         formulas["Hamilton's equations"] = both
+    if 0 < len(d.cyclic_coordinates) < len(system.q):
+        equations = [*map(_zero, d.routh_equations)]
+        formulas["Routhian"] = [*_each("R", (d.routhian,)), *equations]
     for title, results in formulas.items():
         if system.conditions or not title.startswith("Constraints"):
             yield Step(title, WORDS[title], tuple(results))

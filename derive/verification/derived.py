@@ -6,6 +6,7 @@ import sympy as sp
 
 from derive.system.symbols import TIME
 from derive.verification.model import Model, time_derivative
+from derive.verification.routhians import routhian, value_of
 
 
 def _acceleration(model: Model, name: str) -> sp.Expr:
@@ -30,7 +31,8 @@ def _rate(
 
 #: Functions of coordinates, velocities, accelerations and momenta. Momenta, accelerations and rates
 #: have a formula for each coordinate, or name of one: a mirrored angle has the opposite momentum.
-#: The last is any other quantity that a name stands for.
+#: The name of a Routhian is that of its eliminated coordinates. The last is any other quantity that
+#: a name stands for.
 QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
     "kinetic_energy": lambda model, _: model.derivation.kinetic_energy,
     "potential_energy": lambda model, _: model.derivation.potential_energy,
@@ -40,11 +42,25 @@ QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
     "momenta": lambda model, name: model.context.scope[f"p_{name}"],
     "accelerations": _acceleration,
     "hamilton": _hamilton,
+    "routhian": value_of,
     "value": lambda model, name: model.context.scope[name],
 }
 
 #: Quantities that are functions of momenta instead of velocities.
 CANONICAL = ("hamiltonian", "hamilton")
+
+
+def foreign_symbols(model: Model, kind: str, name: str) -> frozenset[sp.Symbol]:
+    """Symbols that a formula for a quantity cannot contain."""
+    system = model.derivation.system
+    if kind == "value":
+        return frozenset()
+    others = [*(system.qdot if kind in CANONICAL else system.p)]
+    if kind == "routhian":
+        indices = [k for k, q in enumerate(system.q) if q.name in name.split()]
+        others = [v if k in indices else p
+                  for k, (v, p) in enumerate(zip(system.qdot, system.p, strict=True))]  # fmt: skip
+    return frozenset((*system.qddot, *others))
 
 
 def printed_formula(model: Model, kind: str, name: str) -> sp.Expr | None:
@@ -55,6 +71,8 @@ def printed_formula(model: Model, kind: str, name: str) -> sp.Expr | None:
     match kind:
         case "hamiltonian":
             return derivation.hamiltonian
+        case "routhian":
+            return routhian(model, name).function
         case "hamilton":
             return _rate(model, name, *derivation.hamilton_equations)
         case "accelerations":

@@ -6,7 +6,7 @@ An index i in a name stands for every number: ``q_i_dot`` for ``q1_dot`` and ``q
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -91,6 +91,18 @@ class Context:
         """Whether all `expressions` are zero at one of the states."""
         places = self.evaluators
         return any(all(self._is_small(one, place) for one in expressions) for place in places)
+
+    def are_multiples(
+        self, one: sp.Expr, other: sp.Expr, accelerations: Iterable[sp.Symbol]
+    ) -> bool:
+        """Whether two equations that are linear in accelerations are multiples of each other."""
+        factors = ((one.diff(a), other.diff(a)) for a in accelerations)
+        return any(
+            not self.is_small(factor)
+            and not self.is_small(other_factor)
+            and self.is_small(one * other_factor - other * factor)
+            for factor, other_factor in factors
+        )
 
     def agreement(self, *differences: sp.Expr) -> str | None:
         """Return "" if all `differences` are proved zero, `IN_NUMBERS` if they are zero at states.

@@ -88,7 +88,18 @@ def judge_set(model: Model, judged: Sequence[Verdict]) -> list[Verdict]:
         correction = "; ".join(f"{model.derivation.euler_lagrange[k]} = 0" for k in missing)
         printed, note = f"{len(judged)} equations", joined(follows, lacking)
         return [*judged, Verdict("euler_lagrange", "wrong", printed, correction, note=note)]
+    if all(_is_conserved(model, k, judged) for k in missing):
+        return [*judged]
     return [*judged[:-1], replace(judged[-1], note=joined(judged[-1].note, lacking))]
+
+
+def _is_conserved(model: Model, k: int, judged: Sequence[Verdict]) -> bool:
+    """Whether equations contain the constant momentum of a cyclic coordinate, as Routh's do."""
+    system = model.derivation.system
+    if system.q[k] not in model.derivation.cyclic_coordinates:
+        return False
+    values = (difference(one.printed, model.context.scope) for one in judged)
+    return any(depends_on(value, (system.p[k],)) for value in values)
 
 
 def _row(model: Model, text: str) -> tuple[sp.Expr, ...]:

@@ -7,6 +7,7 @@ import sympy as sp
 from derive.system.symbols import TIME
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on, time_derivative
+from derive.verification.routhians import equivalents
 
 Differences = tuple[sp.Expr, ...]
 
@@ -70,6 +71,7 @@ CANDIDATES = {
     "potential_energy": _potentials,
     "energy": _energies,
     "hamiltonian": _hamiltonians,
+    "routhian": equivalents,
 }
 
 #: The note on T + V where positions depend on time.

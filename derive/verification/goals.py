@@ -7,7 +7,7 @@ import sympy as sp
 
 from derive.formulas.expansion import is_expandable
 from derive.system.symbols import TIME
-from derive.verification.derived import CANONICAL, QUANTITIES
+from derive.verification.derived import QUANTITIES, foreign_symbols
 from derive.verification.model import Model, depends_on, variables
 
 #: Quantities with an arbitrary constant.
@@ -30,7 +30,7 @@ def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
     if kind == "euler_lagrange":
         yield Goal(sp.S.Zero, True, frozenset(system.p), is_equation=True)
         return
-    foreign = frozenset((*system.qddot, *(system.qdot if kind in CANONICAL else system.p)))
+    foreign = foreign_symbols(model, kind, name)
     derived = QUANTITIES[kind](model, name)
     if kind == "value":
         state = {*system.qdot, *system.qddot, *system.p}

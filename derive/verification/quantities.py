@@ -6,18 +6,21 @@ from functools import partial
 from derive.formulas.expression import number
 from derive.formulas.syntax import ExpressionError
 from derive.verification.advice import advised
-from derive.verification.derived import CANONICAL, QUANTITIES
+from derive.verification.derived import QUANTITIES, foreign_symbols
 from derive.verification.engine import joined
 from derive.verification.equations_of_motion import judge_equation
 from derive.verification.equivalence import TOTAL_ENERGY, equivalence
 from derive.verification.model import Model
-from derive.verification.substitution import mistake
+from derive.verification.routhians import eliminated_names, without_legendre_term
+from derive.verification.substitution import substituted_constraints
 from derive.verification.terms import difference
 from derive.verification.verdict import Verdict
 
 #: Quantities that follow from a Lagrangian and differ between equivalent ones.
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")
-FROM_LAGRANGIAN = ("momenta", "energy", "hamiltonian", "hamilton")
+FROM_LAGRANGIAN = ("momenta", "energy", "hamiltonian", "hamilton", "routhian")
+#: Notes on common mistakes.
+MISTAKES = (substituted_constraints, without_legendre_term)
 
 
 def judge_formula(
@@ -27,6 +30,8 @@ def judge_formula(
 
     `source` is the model with the source's Lagrangian, if this is an equivalent one.
     """
+    if kind == "routhian":
+        name = eliminated_names(model, text)
     verdict = _judged(model, label, text, kind, name)
     if verdict.verdict == "wrong" and source and kind in FROM_LAGRANGIAN:
         other = _judged(source, label, text, kind, name)
@@ -42,8 +47,10 @@ def judge_formula(
         return result.verdict in ("verified", "equivalent")
 
     result = advised(verdict, own, kind, name, holds)
-    if verdict.witness and (reason := mistake(model, kind, difference(text, model.context.scope))):
-        return replace(result, note=joined(result.note, reason))
+    if verdict.witness:
+        value = difference(text, model.context.scope)
+        reasons = (find(model, kind, value) for find in MISTAKES)
+        return replace(result, note=joined(result.note, *reasons))
     return result
 
 
@@ -62,8 +69,7 @@ def _judge_quantity(model: Model, label: str, text: str, kind: str, name: str) -
     derivation, system = model.derivation, model.derivation.system
     verdict = partial(Verdict, label, printed=text)
     context = model.motions if kind == "accelerations" else model.context
-    foreign = {*system.qddot, *(system.qdot if kind in CANONICAL else system.p)}
-    foreign -= {*foreign} if kind == "value" else set()
+    foreign = foreign_symbols(model, kind, name)
     if invalid := sorted(symbol.name for symbol in value.free_symbols & foreign):
         raise ExpressionError(f"{', '.join(invalid)} cannot occur in a formula of this kind")
     derived = QUANTITIES[kind](model, name)

@@ -10,7 +10,7 @@ from derive.verification.model import Model, time_derivative
 Removed = dict[sp.Symbol, sp.Expr]
 
 
-def mistake(model: Model, kind: str, value: sp.Expr) -> str:
+def substituted_constraints(model: Model, kind: str, value: sp.Expr) -> str:
     """A note if a wrong Lagrangian or equation of motion follows from this mistake, or else "".
 
     Such a Lagrangian is that of motions alone: its derivatives lack the displacements by which
@@ -68,10 +68,4 @@ def _is_multiple(model: Model, value: sp.Expr, wrong: sp.Expr, removed: Removed)
     }
     one, other = (form.xreplace(accelerations).xreplace(removed) for form in (value, wrong))
     remaining = [a for a in system.qddot if a not in accelerations]
-    pairs = ((one.diff(a), other.diff(a)) for a in remaining)
-    return any(
-        not model.context.is_small(factor)
-        and not model.context.is_small(other_factor)
-        and model.context.is_small(one * other_factor - other * factor)
-        for factor, other_factor in pairs
-    )
+    return model.context.are_multiples(one, other, remaining)

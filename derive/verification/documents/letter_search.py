@@ -67,6 +67,8 @@ def letters_of(
         coordinate = _coordinate(one, moving) if orders[one] < 2 else None
         if one not in quantities and coordinate is not None:
             momenta[one] = coordinate
+    quantities |= _routhians(formulas, momenta)
+    defined -= {*quantities}
     coordinates = [one for one in moving if one not in momenta]
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
     if all(re.fullmatch(r"q_\d", one) for one in coordinates):
@@ -140,6 +142,12 @@ def _quantity(name: str) -> str | None:
     if letter == "E" and index in ENERGIES:
         return ENERGIES[index]
     return QUANTITIES.get(letter) if index in TOTAL else None
+
+
+def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:
+    """Names R of functions of momenta; other quantities of this name, as radii, contain none."""
+    subjects = {one.subject for one in formulas if {*momenta} & {*one.words}}
+    return {name: "routhian" for name in subjects if name.partition("_")[0] == "R"}
 
 
 def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:

@@ -149,6 +149,10 @@ class Numbers:
         if kind is None or len(variables) != 1:
             return None
         name, times = stem(variables[0]), order(variables[0])
+        if kind == "routhian":  # its other derivatives are those of L
+            if name in self._letters.momenta and not times:
+                return Jet.of(-self._motions.speeds[self._letters.momenta[name]], np.nan, np.nan)
+            kind = "lagrangian"
         is_coordinate = name in self._motions.places and times < 2
         if kind in ("hamiltonian", "energy"):
             if name in self._letters.momenta and not times:

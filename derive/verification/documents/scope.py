@@ -2,14 +2,17 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import sympy as sp
 
 from derive.formulas.expression import Value, parse
+from derive.formulas.sampling import is_small
 from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
+from derive.mechanics.routhian import Routhian
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.verification.documents.entries import composed
 from derive.verification.documents.letters import Letters
@@ -47,6 +50,7 @@ class DocumentScope:
         own, *_ = usual_names(self._system)
         self.names |= own
         self._add_energies()
+        self._add_routhians(formulas)
         self._add_derivatives()
         self._add_usual_names()
         defined = {formula.subject for formula in formulas}
@@ -152,6 +156,26 @@ class DocumentScope:
         for name, kind in self.letters.quantities.items():
             if kind in values:
                 self.names[name] = values[kind]
+
+    def _add_routhians(self, formulas: Sequence[DocumentFormula]) -> None:
+        """Routhians of the coordinates whose momenta their formulas contain, with their sign."""
+        p = self._system.p
+        for name, kind in self.letters.quantities.items():
+            if kind == "routhian":
+                own = [one for one in formulas if one.subject == name]
+                momenta = {self.names.get(word) for one in own for word in one.words}
+                indices = tuple(k for k, symbol in enumerate(p) if symbol in momenta)
+                function = Routhian(self.derivation, indices).function
+                self.names[name] = -function if self._has_value(own, -function) else function
+
+    def _has_value(self, formulas: Sequence[DocumentFormula], value: sp.Expr) -> bool:
+        """Whether a side of formulas has this value, with the momenta of any motion."""
+        momenta = dict(zip(self._system.p, self.derivation.momenta, strict=True))
+        for side in (side for one in formulas for side in one.sides[1:]):
+            with suppress(ExpressionError):
+                if is_small((self.value(side.text) - value).xreplace(momenta)):
+                    return True
+        return False
 
     @property
     def _matrices(self) -> dict[str, Value]:
