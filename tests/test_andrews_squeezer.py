@@ -1,7 +1,6 @@
 """Andrews' squeezer, from positions and points that coincide, against published numbers.
 
-Seven bodies in the plane, driven by a torque and pulled by a spring: 1 turns about the origin, 3
-about B, 5 and 7 about A, and the ends of 2, 3, 4 and 6 meet in one point. Data and equations:
+Data and equations:
 E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, VII.7; initial
 values and solution: F. Mazzia, C. Magherini, Test Set for Initial Value Problem Solvers, II.10.
 """
@@ -10,54 +9,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from sympy import I, Rational, exp, sqrt, symbols
 
-from derive import Coordinate, Parameter, RigidBody, System
-from holonomic import build, integrate
+from holonomic import integrate, load
 from solvers.references.taylor import taylor
-
-*q, c0, l0, torque = symbols("beta Theta Gamma Phi delta Omega epsilon c0 l0 torque", real=True)
-angles = (q[0], q[0] + q[1], q[2], q[3] + q[4], q[4], q[5] + q[6], q[6])
-e1, e2, e3, e4, e5, e6, e7 = (exp(I * angle) for angle in angles)  # points are x + I y in 1e-5 m
-A, B, C, K1, mm = -6934 - 227 * I, -3635 + 3273 * I, 1400 + 7200 * I, 700 * e1, Rational(1, 10**5)
-K5, K7, end, D = A + 4000 * e5, A - 4000 * I * e7, K1 - 2800 * e2, B + (2000 - 1800 * I) * e3
-centres = (
-    92 * e1,
-    K1 - 1150 * e2,
-    B + (1043 - 1874 * I) * e3,
-    K5 - 579 * I * e4,
-    A + (2308 + 916 * I) * e5,
-    K7 + 579 * e6,
-    A - (449 + 1228 * I) * e7,
-)
-bodies = zip(
-    (43250, 3650, 23730, 7060, 70500, 7060, 54980),
-    centres,
-    (21940, 4410, 52550, 5667, 116900, 5667, 191200),
-    angles,
-    strict=True,
-)  # mass in mg, centre, moment of inertia in 1e-10 kg m², angle
-x, y = (mm * (D - C)).as_real_imag()
-system = System(
-    "andrews_squeezer",
-    "Andrews' squeezer: seven bodies and a spring",
-    [Coordinate(s, "rad", f"angle {s}") for s in q],
-    [
-        Parameter(c0, "N/m", 4530.0, "stiffness"),
-        Parameter(l0, "m", 0.07785, "free length"),
-        Parameter(torque, "N m", 0.033, "of the drive"),
-    ],
-    [
-        RigidBody(Rational(m, 10**6), (mm * r).as_real_imag(), Rational(i, 10**10), a)
-        for m, r, i, a in bodies
-    ],
-    c0 * (sqrt(x**2 + y**2) - l0) ** 2 / 2,
-    forces=[torque, *[0] * 6],
-    coincide=[
-        ((mm * end).as_real_imag(), (mm * r).as_real_imag())
-        for r in (B - 3500 * I * e3, K5 - 2000 * I * e4, K7 + 2000 * e6)
-    ],
-)
 
 #: Published angles at the start, where the mechanism is at rest.
 START = (
@@ -74,7 +28,7 @@ END = (
 
 @pytest.fixture(scope="module")
 def module() -> ModuleType:
-    return build(system)  # type: ignore[return-value]
+    return load("andrews_squeezer")  # type: ignore[return-value]
 
 
 def test_the_mass_matrix_is_the_published_one(module: ModuleType) -> None:

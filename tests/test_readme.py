@@ -70,6 +70,7 @@ def test_the_scene_runs_to_its_accuracy() -> None:
 
 
 def test_the_number_of_systems_and_operations_are_those_of_the_modules() -> None:
-    words = dict(enumerate("Sixteen Seventeen Eighteen Nineteen Twenty".split(), 16))
+    ones = ("", *(f"-{digit}" for digit in "one two three four five six seven eight nine".split()))
+    words = dict(enumerate((f"Twenty{digit}" for digit in ones), 20))
     assert f"{words[len(generated.__all__)]} systems ship" in README
     assert f"{dp.OPERATIONS['rhs'][0]} operations for the double pendulum" in README

@@ -3,7 +3,7 @@
 from argparse import Action, ArgumentParser
 from pathlib import Path
 
-from derive.system.shipped import names
+from derive.system.shipped import large_names, names
 
 EXAMPLES = """\
 examples:
@@ -18,7 +18,8 @@ examples:
 def add_arguments(parser: ArgumentParser) -> Action:
     """Describe the command and its arguments; return the argument SYSTEM."""
     parser.description = "Derive systems from their positions; write Python modules and C headers."
-    parser.epilog = f"systems: {', '.join(names())}\n\n{EXAMPLES}"
+    large = f"only with --output: {', '.join(large_names())}"
+    parser.epilog = f"systems: {', '.join(names())}\n{large}\n\n{EXAMPLES}"
     systems = "a name, or a TOML file (default: all systems)"
     action = parser.add_argument("systems", nargs="*", metavar="SYSTEM", help=systems)
     check = "write nothing; list differences and exit with 1 if there are any"

@@ -92,12 +92,13 @@ def planned(systems: list[str], output: Path | None) -> Tree:
     """The files that the command writes to a folder."""
     files: dict[str, str] = {}
     for name in systems or names():
-        system = reduced(load(name))
+        system = load(name)
         if output is None and name not in names():
             raise SystemDefinitionError(
-                f"{name} does not ship: give a folder for its module, with --output DIR"
+                f"{name} is not part of the package generated: give a folder for its module, "
+                "with --output DIR"
             )
-        files |= texts(Derivation(system))
+        files |= texts(Derivation(reduced(system)))
     if output is not None:
         return Tree(output, files, complete=False)
     modules = "\n".join(f'    "{name}",' for name in names())

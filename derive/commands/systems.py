@@ -6,9 +6,11 @@ from itertools import groupby
 from textwrap import TextWrapper
 
 from derive.system.catalogue import LARGEST, drawing, load, published
-from derive.system.shipped import USUAL, names
+from derive.system.shipped import USUAL, large_names, names
 
 WIDTH = 96
+#: Remark on systems whose modules do not ship.
+LARGE = "derived when it is first used"
 
 
 def description(name: str) -> str:
@@ -27,6 +29,8 @@ def description(name: str) -> str:
     }
     if system.inputs:
         rows["inputs"] = ", ".join(f"{u.symbol} [{u.unit}]" for u in system.inputs)
+    if name in large_names():
+        rows["module"] = LARGE
     layout = TextWrapper(WIDTH + 2, initial_indent="  ", subsequent_indent=" " * 6)
     lines = [layout.fill(f"{title}: {text}") for title, text in rows.items()]
     return "\n".join([f"{name}: {system.title}", *picture, "", *lines])
@@ -35,7 +39,7 @@ def description(name: str) -> str:
 def markdown_table() -> str:
     """The systems that ship, as a table in Markdown; each row comes from the system's file."""
     head = "| system | coordinates | description | source of the published equations |"
-    return "\n".join([head, "|---|---|---|---|", *map(_row, names()), ""])
+    return "\n".join([head, "|---|---|---|---|", *map(_row, (*names(), *large_names())), ""])
 
 
 def _row(name: str) -> str:
@@ -44,4 +48,5 @@ def _row(name: str) -> str:
     source = tomllib.loads(published(name)).get("source", "")
     stem = re.sub(rf"{USUAL}\Z", "", name)
     family = f"; `{stem}1` to `{stem}{LARGEST}`" if stem != name else ""
-    return f"| `{name}`{family} | {coordinates} | {summary} | {source} |"
+    remark = f" ({LARGE})" if name in large_names() else ""
+    return f"| `{name}`{family}{remark} | {coordinates} | {summary} | {source} |"

@@ -2,18 +2,17 @@
 
 A file whose name ends in ``_n`` holds a family: its ``system`` is a function of n, and
 ``chain_5`` is its member with n = 5. A file may also define ``PUBLISHED``: published equations of
-the system, as TOML text in the format of ``holonomic verify``.
+the system, as TOML text in the format of ``holonomic verify``. The modules of the systems in the
+folder ``large`` are too long to ship: they are derived when they are first used.
 """
 
 import re
 from importlib import import_module
 from os import PathLike, fspath
-from pkgutil import iter_modules
 from types import ModuleType
 
-from derive import systems
 from derive.system.parts import SystemDefinitionError
-from derive.system.shipped import USUAL, names
+from derive.system.shipped import USUAL, large_names, names, stems
 from derive.system.system import System
 from derive.system.system_file import read_system
 from solvers.io.suggestion import did_you_mean
@@ -87,19 +86,20 @@ def published(name: str) -> str:
 
 
 def _module(stem: str) -> ModuleType:
-    return import_module(f"derive.systems.{stem}")
+    package = "derive.systems.large" if stem in large_names() else "derive.systems"
+    return import_module(f"{package}.{stem}")
 
 
 def _file(name: str) -> tuple[str, int]:
     """The file of a system, and n of a member of a family, otherwise 0."""
     family = re.match(r"(\w+)_([1-9]\d{0,2})\Z", name)
-    stems = {module.name for module in iter_modules(systems.__path__)}
-    if family and f"{family[1]}_n" in stems and int(family[2]) <= LARGEST:
+    if family and f"{family[1]}_n" in stems() and int(family[2]) <= LARGEST:
         return f"{family[1]}_n", int(family[2])
-    if name not in stems or name.endswith("_n"):
+    known = (*names(), *large_names())
+    if name not in {*stems(), *large_names()} or name.endswith("_n"):
         raise UnknownSystemError(
-            f"no system is called {name[:50]!r}{did_you_mean(name, names())}; known are "
-            f"{', '.join(names())}, with any number up to {LARGEST} instead of {USUAL}; the path "
+            f"no system is called {name[:50]!r}{did_you_mean(name, known)}; known are "
+            f"{', '.join(known)}, with any number up to {LARGEST} instead of {USUAL}; the path "
             "of a system file ends in .toml"
         )
     return name, 0

@@ -4,13 +4,14 @@ import re
 from pkgutil import iter_modules
 
 from derive import systems
+from derive.systems import large
 
 #: The member of a family that is listed and shipped.
 USUAL = 3
 
 
 def names() -> tuple[str, ...]:
-    """Names of all systems, in alphabetical order; of a family its usual member.
+    """Names of the systems whose modules ship, in alphabetical order; of a family its usual member.
 
     Returns
     -------
@@ -23,5 +24,16 @@ def names() -> tuple[str, ...]:
     >>> "double_pendulum" in names()
     True
     """
-    stems = (module.name for module in iter_modules(systems.__path__))
-    return tuple(sorted(re.sub(r"_n\Z", f"_{USUAL}", stem) for stem in stems))
+    return tuple(sorted(re.sub(r"_n\Z", f"_{USUAL}", stem) for stem in stems()))
+
+
+def large_names() -> tuple[str, ...]:
+    """Names of the systems that are derived when they are first used: their modules are long."""
+    found = iter_modules(large.__path__)
+    return tuple(sorted(module.name for module in found))
+
+
+def stems() -> set[str]:
+    """Names of the files of the systems whose modules ship."""
+    found = iter_modules(systems.__path__)
+    return {module.name for module in found if not module.ispkg}

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.system.checks import check
 from derive.system.constraints import Constraint, Point, constraints
 from derive.system.eliminated import Eliminated
-from derive.system.links import Link, Shape
+from derive.system.link import Link, Shape
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,

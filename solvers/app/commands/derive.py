@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 
 from derive.commands import arguments as derive_arguments
-from derive.system.shipped import names
+from derive.system.shipped import large_names, names
 from solvers.app.commands.options import complete_with
 
 SUMMARY = "write generated modules, or check them"
@@ -11,7 +11,8 @@ SUMMARY = "write generated modules, or check them"
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Describe the command and its arguments."""
-    complete_with(derive_arguments.add_arguments(parser), "systems", names())
+    action = derive_arguments.add_arguments(parser)
+    complete_with(action, "systems", (*names(), *large_names()))
 
 
 def run(arguments: Namespace) -> int:

@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 
-from derive.system.shipped import names
+from derive.system.shipped import large_names, names
 from solvers.app.commands.options import add_examples, complete_with
 
 SUMMARY = "list systems, with drawings"
@@ -13,7 +13,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.description = "List systems with their drawings, coordinates and parameters."
     meaning = "a name, such as chain_5 (default: all systems)"
     action = parser.add_argument("systems", nargs="*", metavar="SYSTEM", help=meaning)
-    complete_with(action, "systems", names())
+    complete_with(action, "systems", (*names(), *large_names()))
     add_examples(parser, "holonomic systems chain_5")
 
 
@@ -21,5 +21,5 @@ def run(arguments: Namespace) -> int:
     """Print the descriptions."""
     from derive.commands.systems import description
 
-    print("\n\n".join(map(description, arguments.systems or names())))
+    print("\n\n".join(map(description, arguments.systems or (*names(), *large_names()))))
     return 0
