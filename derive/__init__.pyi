@@ -10,12 +10,6 @@ from derive.system.centred_links import Box as Box
 from derive.system.centred_links import Cart as Cart
 from derive.system.centred_links import Wheel as Wheel
 from derive.system.constraints import Constraint as Constraint
-from derive.system.joints import ball as ball
-from derive.system.joints import fixed_distance as fixed_distance
-from derive.system.joints import pin as pin
-from derive.system.joints import rolling_on_line as rolling_on_line
-from derive.system.joints import rolling_on_plane as rolling_on_plane
-from derive.system.joints import slider as slider
 from derive.system.line_links import Plate as Plate
 from derive.system.line_links import Rail as Rail
 from derive.system.line_links import Rod as Rod
@@ -29,7 +23,13 @@ from derive.system.parts import Coordinate as Coordinate
 from derive.system.parts import Input as Input
 from derive.system.parts import Parameter as Parameter
 from derive.system.parts import PointMass as PointMass
+from derive.system.point_joints import ball as ball
+from derive.system.point_joints import fixed_distance as fixed_distance
+from derive.system.point_joints import pin as pin
+from derive.system.point_joints import slider as slider
 from derive.system.rigid_body import RigidBody as RigidBody
+from derive.system.rolling_joints import rolling_on_line as rolling_on_line
+from derive.system.rolling_joints import rolling_on_plane as rolling_on_plane
 from derive.system.shipped import names as names
 from derive.system.symbols import TIME as TIME
 from derive.system.symbols import velocity as velocity

@@ -1,4 +1,4 @@
-"""Joints of a system in a TOML file, with the arguments of `derive.system.joints` as keys."""
+"""Joints of a system in a TOML file, with the arguments of the functions as keys."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -7,19 +7,19 @@ from typing import Any
 
 import sympy as sp
 
-from derive.system import joints
 from derive.system.constraints import Constraint
 from derive.system.orientation import Orientation, rotation_matrix
 from derive.system.parts import SystemDefinitionError
+from derive.system.point_joints import ball, fixed_distance, pin, slider
+from derive.system.rolling_joints import rolling_on_line, rolling_on_plane
 from derive.system.tables import Table
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
 
 JOINTS: dict[str, Callable[..., list[Constraint]]] = {
     joint.__name__: joint
-    for joint in (joints.pin, joints.ball, joints.slider, joints.fixed_distance,
-        joints.rolling_on_line, joints.rolling_on_plane)
-}  # fmt: skip
+    for joint in (pin, ball, slider, fixed_distance, rolling_on_line, rolling_on_plane)
+}
 #: Arguments that are no keys: the name is the value of the kind, coordinates are the system's.
 IMPLIED = ("name", "coordinates")
 
