@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 import generated
+import generated.free_body as free_body
 from derive import load
 from derive.codegen.summary import units
-from solvers import integrate, run_scene
+from solvers import consistent_start, integrate, run_scene
 from solvers import load as load_module
 from solvers.app.cli import main
 from solvers.equations.module import inputs
+from solvers.io.notation import axis_label
 from solvers.io.quantity import QuantityError, quantity
+from solvers.io.units import with_unit
 from solvers.scenes.summary import summary
 from solvers.sweeps import map_kinds
 
@@ -124,6 +127,17 @@ def test_the_printed_state_and_times_of_a_scene_are_read(scene: str) -> None:
     seconds = re.findall(r"[\d.e-]+ [muµ]?s\b", text)
     assert len(seconds) >= 3
     assert all(quantity(each, "s") > 0 for each in seconds)
+
+
+def test_the_unit_1_is_not_printed() -> None:
+    assert with_unit(-0.25, "1") == "-0.25"
+    assert with_unit(1 / 3, "kg m", 3) == "0.333 kg m"
+    assert axis_label("w", "1") == "w"
+    state = (1.0, 0.0, 0.0, 0.0, *[0.0] * 4)
+    motion = integrate(free_body, (0, 1), state, free_body.DEFAULTS)
+    for text in (repr(motion), repr(consistent_start(free_body, state, {}))):
+        assert "w = 1" in text
+        assert not re.search(r"= \S+ 1(,|$)", text)
 
 
 def test_units_of_maps_are_read() -> None:

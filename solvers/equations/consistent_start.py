@@ -18,6 +18,7 @@ from solvers.equations.assembly import (
 from solvers.equations.module import GeneratedModule, function, has_constraints, has_function
 from solvers.equations.quantities import Values, quantities, real_number
 from solvers.io.suggestion import counted
+from solvers.io.units import with_unit
 
 #: Guesses of other configurations, and the distance at which two are the same.
 OTHERS, CLOSE = 48, 1e-6
@@ -275,4 +276,4 @@ def _check_redundant(assembly: Assembly, rows: Array) -> None:
 
 def _listed(module: GeneratedModule, state: Mapping[str, float], names: Sequence[str]) -> str:
     units = module.UNITS
-    return ", ".join(f"{name} = {state[name]:.6g} {units[name]}".strip() for name in names)
+    return ", ".join(f"{name} = {with_unit(state[name], units[name])}" for name in names)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.suggestion import counted
+from solvers.io.units import with_unit
 from solvers.io.xarray_dataset import dataset
 
 Array = NDArray[np.float64]
@@ -149,7 +150,7 @@ class Solution:
         # requested times need contain neither the start nor the end
         t = " to ".join(dict.fromkeys(f"{t:.6g}" for t in (*self.t[:1], *self.t[-1:])))
         components = zip(self.units.items(), y_end, strict=True)
-        state = [f"{name} = {y:.6g} {unit}".rstrip() for (name, unit), y in components]
+        state = [f"{name} = {with_unit(y, unit)}" for (name, unit), y in components]
         headline = self.message.partition(" (t = ")[0]  # the state follows anyway
         times, steps = counted(len(self.t), "time"), counted(self.steps, "step")
         return (

@@ -58,6 +58,11 @@ def dimension(unit: str) -> tuple[float, Dimension]:
         raise UnitError(f"unit {unit!r} is not known: use {KNOWN}") from error
 
 
+def with_unit(value: float, unit: str, digits: int = 6) -> str:
+    """A number to `digits` significant digits and its unit, which is left out if it is 1."""
+    return f"{value:.{digits}g} {unit if unit != '1' else ''}".rstrip()
+
+
 def _value(node: ast.AST) -> tuple[float, Dimension]:
     match node:
         case ast.Constant(value=1):

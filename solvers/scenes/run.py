@@ -10,6 +10,7 @@ import numpy as np
 
 from solvers.equations.energy import supplied_energy
 from solvers.equations.module import GeneratedModule, has_function
+from solvers.io.units import with_unit
 from solvers.scenes.models.method_choice import MethodChoice, cheapest
 from solvers.scenes.models.motion import Array, Motion
 from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
@@ -63,7 +64,7 @@ class SceneResult:
     def __repr__(self) -> str:
         scene, model, units = self.scene, self.selection.model, self.scene.module.UNITS
         by = f" by {self.method}, {self.form} form" if self.method else ""
-        values = [f"{name} = {x:.6g} {units[name]}" for name, x in self.final_state.items()]
+        values = [f"{name} = {with_unit(x, units[name])}" for name, x in self.final_state.items()]
         return (
             f"SceneResult: {scene.title}\n"
             f"  t = {self.t[0]:.6g} to {self.t[-1]:.6g} s, {len(self.t)} samples\n"

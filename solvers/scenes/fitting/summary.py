@@ -7,6 +7,7 @@ import numpy as np
 
 from solvers.io.suggestion import counted
 from solvers.io.text_table import text_table
+from solvers.io.units import with_unit
 from solvers.scenes.fitting.fit import Fit
 from solvers.scenes.fitting.prediction import Comparison
 
@@ -24,7 +25,7 @@ def summary(fit: Fit) -> Iterator[str]:
         f"{counted(len(fit.unknown), 'unknown parameter')}"
     )
     for name, reason in fit.held.items():
-        yield f"held: {name} = {fit.params[name]:g} {units[name]}: {reason}"
+        yield f"held: {name} = {with_unit(fit.params[name], units[name])}: {reason}"
     rows = []
     for name, interval in fit.intervals.items():
         digits = _decimals(interval.error)
@@ -52,10 +53,10 @@ def summary(fit: Fit) -> Iterator[str]:
     if strong:
         yield f"strong correlations: {', '.join(strong)}"
     all_units = zip(fit.outputs.names, fit.outputs.units, strict=True)
-    noise = [f"{name} {fit.noise[name]:.2g} {unit}".rstrip() for name, unit in all_units]
+    noise = [f"{name} {with_unit(fit.noise[name], unit, 2)}" for name, unit in all_units]
     yield f"noise (standard deviation): {', '.join(noise)}"
     for run, start in zip(fit.runs, fit.starts, strict=True):
-        state = ", ".join(f"{q} = {start[q]:.4g} {units[q]}" for q in module.STATE)
+        state = ", ".join(f"{q} = {with_unit(start[q], units[q], 4)}" for q in module.STATE)
         yield f"start of {run.name} at t = {run.t[0]:g} s: {state}"
     for note in fit.notes:
         yield f"note: {note}"

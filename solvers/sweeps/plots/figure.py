@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from solvers.io import figures
 from solvers.io.notation import symbol
+from solvers.io.units import with_unit
 from solvers.sweeps.checks import ENERGY
 from solvers.sweeps.plots.diagram import diagram
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
@@ -118,7 +119,9 @@ def _section(name: str, results: Results) -> Panels:
     groups = [quantity for quantity in names if quantity != over]
     for indices in product(*(range(len(axes[quantity])) for quantity in groups)):
         group = dict(zip(groups, indices, strict=True))
-        words = [f"{letter(q)} = {axes[q][k]:.4g} {results.unit(q)}" for q, k in group.items()]
+        words = [
+            f"{letter(q)} = {with_unit(axes[q][k], results.unit(q), 4)}" for q, k in group.items()
+        ]
         selection: Any = tuple(group.get(quantity, slice(None)) for quantity in axes)
         selection = selection if definition.axes.is_grid else (...,)
         if not over:

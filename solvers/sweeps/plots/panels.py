@@ -11,6 +11,7 @@ from matplotlib.colors import ListedColormap, to_rgba
 from solvers.equations.module import has_function
 from solvers.io.figures import COLOURS
 from solvers.io.notation import axis_label, symbol
+from solvers.io.units import with_unit
 from solvers.sweeps.axes import Array, Grid
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.initial_states import initial_states
@@ -54,7 +55,7 @@ def image(panel: Axes, *, quantity: Quantity) -> None:
     label_axis(panel, "x", results, x)
     label_axis(panel, "y", results, y)
     if fixed:
-        at = (f"{letter(q)} = {v:.4g} {results.unit(q)}" for q, v in fixed.items())
+        at = (f"{letter(q)} = {with_unit(v, results.unit(q), 4)}" for q, v in fixed.items())
         panel.set_xlabel(f"{panel.get_xlabel()}, at {', '.join(at)}")
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from solvers.io.figures import COLOURS
 from solvers.io.notation import axis_label, symbol
+from solvers.io.units import with_unit
 from solvers.sweeps.axes import Array
 from solvers.sweeps.plots.quantity import label_axis, letter
 from solvers.sweeps.results import Results
@@ -51,6 +52,8 @@ def _curves(results: Results, name: str, component: int) -> Iterator[tuple[str, 
     *others, _ = results.axes
     for indices in product(*(range(len(results.axes[axis])) for axis in others)):
         at = zip(others, indices, strict=True)
-        words = (f"{letter(q)} = {results.axes[q][k]:.4g} {results.unit(q)}" for q, k in at)
+        words = (
+            f"{letter(q)} = {with_unit(results.axes[q][k], results.unit(q), 4)}" for q, k in at
+        )
         selection: Any = (*indices, slice(None), component)
         yield ", ".join(words), np.asarray(results.maps[name][selection])
