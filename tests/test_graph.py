@@ -7,6 +7,7 @@ import pytest
 import sympy as sp
 
 from derive.codegen import operation as op
+from derive.codegen.assignments import Assignments, Notation
 from derive.codegen.factorisation import Factorisation
 from derive.codegen.graph import Graph
 from derive.codegen.lowering import Lowering
@@ -175,6 +176,18 @@ def test_equal_named_terms_and_factors_are_merged() -> None:
     ]
     results = evaluated(Lowering(outputs, ()), {"p": 2.0, "q": 3.0})
     assert results == [5.0, 0.0, 2.0, 3.0, 1.0]
+
+
+def test_a_sum_that_cancels_with_a_shared_pair_is_the_number_0() -> None:
+    graph = Graph()
+    p, q, r = map(graph.leaf, "pqr")
+    named = graph.let(p + q)
+    cancelling = graph.sum([(p, 1), (q, 1), (named, -1)])
+    more = graph.sum([(p, 1), (q, 1), (r, 1), (named, -1)])
+    lowering = Lowering([named * r, cancelling, more], ())
+    assert evaluated(lowering, {"p": 2.0, "q": 3.0, "r": 7.0}) == [35.0, 0.0, 7.0]
+    texts = Assignments(lowering, (), Notation()).outputs
+    assert texts == ["r*(p + q)", "0.0", "r"]
 
 
 @pytest.mark.parametrize("expression", [

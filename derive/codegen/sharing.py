@@ -13,7 +13,7 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from math import gcd
 
-from derive.codegen.operation import Operation, Product, Sum
+from derive.codegen.operation import Constant, Operation, Product, Sum
 
 #: Whether it is in a sum, two operands, and the ratio of their coefficients: its numerator and
 #: denominator, since fractions are compared and hashed slowly.
@@ -146,5 +146,9 @@ def _without(operation: Operation, pair: Pair, number: int) -> Operation:
     coefficient = terms.pop(a)
     del terms[b]
     terms[number] = terms.get(number, Fraction(0)) + coefficient
+    if not terms[number]:  # the sum contained the pair's negative under the pair's own name
+        del terms[number]
+    if not terms:
+        return Constant((), True, Fraction(0))
     operands, coefficients = zip(*sorted(terms.items()), strict=True)
     return replace(operation, operands=operands, coefficients=coefficients)
