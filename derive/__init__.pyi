@@ -4,6 +4,8 @@ from derive.mechanics.linearisation import Linearisation as Linearisation
 from derive.mechanics.reduced_coordinates import reduced as reduced
 from derive.mechanics.specialisation import with_inputs as with_inputs
 from derive.mechanics.state_space import StateSpace as StateSpace
+from derive.system.body_joints import hinge as hinge
+from derive.system.body_joints import prismatic as prismatic
 from derive.system.catalogue import load as load
 from derive.system.centred_links import Block as Block
 from derive.system.centred_links import Box as Box

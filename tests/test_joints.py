@@ -18,7 +18,9 @@ from derive import (
     System,
     ball,
     fixed_distance,
+    hinge,
     pin,
+    prismatic,
     rolling_on_line,
     rolling_on_plane,
     rotation_matrix,
@@ -193,7 +195,8 @@ mass = "m"
 position = OTHER
 [[joints]]
 """
-SPIN = '[["cos(phi)", 0, "sin(phi)"], [0, 1, 0], ["-sin(phi)", 0, "cos(phi)"]]'
+SPIN = '{ rotations = "y", angles = ["phi"] }'
+TURN = '{ rotations = "x", angles = ["y"] }'
 IN_FILES = [
     ('pin = "A"\np = ["x", "y"]\nq = ["l*sin(phi)", 0]',
      pin("A", (x, y), (length * sp.sin(phi), 0))),
@@ -206,11 +209,17 @@ IN_FILES = [
      rolling_on_line("A", (x, y), R, phi)),
     (f'rolling_on_plane = "A"\ncentre = ["x", "y", "R"]\narm = [0, 0, "-R"]\norientation = {SPIN}',
      rolling_on_plane("A", (x, y, z, phi), (x, y, R), (0, 0, -R), rotations("y", [phi]))),
+    (f'hinge = "A"\np = ["x", "y", "z"]\nq = [0, 0, "l"]\nfirst = {SPIN}',
+     hinge("A", (x, y, z), (0, 0, length), rotations("y", [phi]))),
+    (f'prismatic = "A"\np = ["x", "y", "z"]\nq = [0, 0, 0]\nfirst = {TURN}\nsecond = {SPIN}\n'
+     'axis = "x"', prismatic("A", (x, y, z), (0, 0, 0), rotations("x", [y]),
+                             rotations("y", [phi]), "x")),
 ]  # fmt: skip
 
 
 def file(tmp_path: Path, joint: str) -> Path:
-    path, axes = tmp_path / "jointed.toml", 3 if "ball" in joint or "plane" in joint else 2
+    path, spatial = tmp_path / "jointed.toml", ("ball", "plane", "first")
+    axes = 3 if any(word in joint for word in spatial) else 2
     positions = '["x", "y", "z"]', '["l*cos(phi)", "l*sin(phi)", "z"]'
     if axes == 2:
         positions = '["x", "y"]', '["l*cos(phi)", "z"]'
@@ -235,7 +244,11 @@ def test_joints_in_files(text: str, joint: list[Constraint], tmp_path: Path) -> 
         ('slider = "x"\np = ["x", "y"]\nthrough = [0, 0]\ndirection = [1, 2]',
          "uses a name twice: x"),
         ('rolling_on_plane = "A"\ncentre = ["x", "y", "R"]\narm = [0, 0, 1]\norientation = [[1]]',
+         "must be a table"),
+        ('hinge = "A"\np = ["x", "y", "z"]\nq = [0, 0, 0]\nfirst = { matrix = [[1]] }',
          "has not three rows"),
+        (f'hinge = "A"\np = ["x", "y", "z"]\nq = [0, 0, 0]\nfirst = {SPIN}\naxis = "w"',
+         "axis of A is 'w'"),
         ('slider = "A"\np = ["x", "y"]\nthrough = [0, 0]\ndirection = [0, 0]',
          "direction of A is 0"),
         ('fixed_distance = "A"\np = ["x", "y"]\nq = [0, 0]\nlength = -1', "length of A is -1"),

@@ -28,12 +28,14 @@ def rigid_body(row: Table, value: Value, mass: sp.Expr, position: tuple[sp.Expr,
         return RigidBody(mass, position, inertia, angle)
     if "angle" in row.values:
         raise InputError(f"{row.name} has an angle and an orientation: omit one of them")
-    given = Table(f"orientation of {row.name}", row.values["orientation"],
-                  ("rotations", "angles", "quaternion", "matrix"))  # fmt: skip
-    return RigidBody(mass, position, _formulas(row, "inertia", value), _orientation(given, value))
+    axes = orientation(row, "orientation", value)
+    return RigidBody(mass, position, _formulas(row, "inertia", value), axes)
 
 
-def _orientation(table: Table, value: Value) -> Orientation:
+def orientation(row: Table, key: str, value: Value) -> Orientation:
+    """The orientation of a table at a key of a row."""
+    known = ("rotations", "angles", "quaternion", "matrix")
+    table = Table(f"{key} of {row.name}", row.values[key], known)
     kinds = [key for key in table.values if key != "angles"]
     if len(kinds) != 1 or ("angles" in table.values) != (kinds == ["rotations"]):
         raise InputError(f"{table.name} has the keys {', '.join(table.values)}: give {KINDS}")

@@ -14,11 +14,19 @@ MOST_TERMS = 1000
 Rows = Iterable[tuple[str, sp.Expr, str]]
 
 
-def constraint_rows(name: str, rows: Rows) -> Iterator[Constraint]:
-    """Constraints with forces in N as multipliers, without those that hold identically."""
+def constraint_rows(name: str, rows: Rows, unit: str = "N") -> Iterator[Constraint]:
+    """Constraints with multipliers of a unit, without those that hold identically."""
     for end, value, meaning in rows:
         if value != 0:
-            yield Constraint(value, f"{name}_{end}" if end else name, "N", meaning)
+            yield Constraint(value, f"{name}_{end}" if end else name, unit, meaning)
+
+
+def coincidence(name: str, p: Point, q: Point, size: int) -> Iterator[Constraint]:
+    """Two points of as many components as `size` remain together."""
+    first, second = components(name, p, size), components(name, q, size)
+    rows = zip(AXES[size], first, second, strict=True)
+    meaning = f"force of {name} on the first point, along"
+    return constraint_rows(name, ((axis, a - b, f"{meaning} {axis}") for axis, a, b in rows))
 
 
 def components(name: str, point: Point, size: int) -> tuple[sp.Expr, ...]:

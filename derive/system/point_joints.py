@@ -7,8 +7,8 @@ that hold identically, such as that of a point on a rail whose height is 0, are 
 
 import sympy as sp
 
-from derive.system.constraints import AXES, Constraint, Point
-from derive.system.joint import components, constraint_rows, unit_vector
+from derive.system.constraints import Constraint, Point
+from derive.system.joint import coincidence, components, constraint_rows, unit_vector
 from derive.system.parts import SystemDefinitionError, formula
 
 
@@ -40,7 +40,7 @@ def pin(name: str, p: Point, q: Point) -> list[Constraint]:
     >>> [one.name for one in pin("A", (x, y), (l * sin(theta), -l * cos(theta)))]
     ['A_x', 'A_y']
     """
-    return _coincidence(name, p, q, 2)
+    return [*coincidence(name, p, q, 2)]
 
 
 def ball(name: str, p: Point, q: Point) -> list[Constraint]:
@@ -70,7 +70,7 @@ def ball(name: str, p: Point, q: Point) -> list[Constraint]:
     >>> ball("socket", (x, y, z), (0, 0, 1))[2].formula
     z - 1
     """
-    return _coincidence(name, p, q, 3)
+    return [*coincidence(name, p, q, 3)]
 
 
 def slider(name: str, p: Point, through: Point, direction: Point) -> list[Constraint]:
@@ -147,10 +147,3 @@ def fixed_distance(name: str, p: Point, q: Point, length: sp.Expr) -> list[Const
     square = sp.Add(*((a - b) ** 2 for a, b in pairs))
     meaning = "tension, positive where the rod pulls"
     return [*constraint_rows(name, [("", (length**2 - square) / (2 * length), meaning)])]
-
-
-def _coincidence(name: str, p: Point, q: Point, size: int) -> list[Constraint]:
-    first, second = components(name, p, size), components(name, q, size)
-    rows = zip(AXES[size], first, second, strict=True)
-    meaning = f"force of {name} on the first point, along"
-    return [*constraint_rows(name, ((axis, a - b, f"{meaning} {axis}") for axis, a, b in rows))]
