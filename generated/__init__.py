@@ -12,6 +12,7 @@ __all__ = [
     "duffing",
     "elastic_pendulum",
     "foucault_pendulum",
+    "four_bar",
     "free_body",
     "furuta_pendulum",
     "gyroscope",
@@ -20,6 +21,8 @@ __all__ = [
     "rolling_disc",
     "rotating_hoop",
     "single_pendulum",
+    "slider_crank",
     "spherical_pendulum",
     "swinging_atwood",
+    "two_link_arm",
 ]

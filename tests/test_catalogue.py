@@ -23,13 +23,14 @@ from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
 import generated
-from derive import TIME, PointMass, RigidBody, System, load, names, systems, write
+from derive import TIME, PointMass, RigidBody, System, load, names, reduced, systems, write
 from derive.system.catalogue import drawing
 from derive.system.shipped import large_names
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.forms import Form
+from solvers.equations.module import has_constraints
 
 SYSTEMS = Path(systems.__path__[0])
 #: Lines of a system's definition, and of one with many bodies.
@@ -72,23 +73,40 @@ def cases(module: ModuleType) -> list[Case]:
     defaults, with which the systems can be assembled.
     """
     system = strange.system if module.SYSTEM == "strange" else load(module.SYSTEM)
-    coordinates, random = system.coordinates, np.random.default_rng(7)
+    positive = {s.name for s in system.q if s.is_positive}
+    random = np.random.default_rng(7)
     results: list[Case] = []
     while len(results) < 6:
         y = random.uniform(0.2, 0.9, len(module.STATE)) * random.choice([-1, 1], len(module.STATE))
         params = random.uniform(1.5, 2.5, len(module.PARAMETERS))
-        for k, coordinate in enumerate(coordinates):
-            if coordinate.symbol.is_positive:
+        for k, name in enumerate(module.COORDINATES):
+            if name in positive:
                 y[k] = abs(y[k]) + 0.5
         t = float(random.uniform(0.1, 2))
         if system.all_conditions:
             params = np.array(module.DEFAULTS) * random.uniform(0.9, 1.1, len(params))
+        if has_constraints(module):
             try:
                 y = consistent_start(module, {}, params, t, guess=y).y
             except ValueError:  # Newton's steps from this guess do not converge
                 continue
         results.append((t, y.tolist(), params.tolist()))
     return results
+
+
+def with_eliminated(
+    system: System, module: ModuleType, t: float, y: list[float], params: list[float]
+) -> tuple[list[float], list[float]]:
+    """State and rates of all coordinates, also of those that the module is without."""
+    rates = module.rhs(t, y, params)
+    if tuple(map(str, system.q)) == module.COORDINATES:
+        return y, rates
+    states = dict(zip(module.STATE, zip(y, rates, strict=True), strict=True))
+    changes = turned(module, "outputs", t, y, np.array(rates), params)
+    outputs = zip(module.outputs(t, y, params), changes, strict=True)
+    states |= dict(zip(module.OUTPUTS, outputs, strict=True))
+    pairs = [states[str(s)] for s in (*system.q, *system.qdot)]
+    return [value for value, _ in pairs], [rate for _, rate in pairs]
 
 
 def quaternions(system: System) -> list[tuple[sp.Symbol, ...]]:
@@ -192,15 +210,15 @@ def test_motions_and_reactions_satisfy_d_alembert_s_principle(
     system: System, module: ModuleType
 ) -> None:
     alembert, n = Alembert(system), len(system.q)
-    for t, y, params in cases(module)[:2]:
-        rates = module.rhs(t, y, params)
+    for t, own, params in cases(module)[:2]:
+        y, rates = with_eliminated(system, module, t, own, params)
         with workdps(50):
             values = dict(zip(system.params, map(mpf, params), strict=True))
             q, v, a = ([mpf(x) for x in part] for part in (y[:n], y[n:], rates[n:]))
             needed = alembert.forces(mpf(t), q, v, a, values)
             applied = [*alembert.applied(t, *q, *v, *values.values())]
             if system.conditions:
-                reactions = module.multipliers(t, y, params)
+                reactions = module.multipliers(t, own, params)
                 directions = alembert.directions(mpf(t), q, v, values)
                 for reaction, direction in zip(reactions, directions, strict=True):
                     applied = [f + reaction * x for f, x in zip(applied, direction, strict=True)]
@@ -217,7 +235,7 @@ def test_motions_and_reactions_satisfy_d_alembert_s_principle(
             wrong = zip(alembert.forces(mpf(t), q, v, a, values), needed, strict=True)
             assert system.conditions or max(abs(one - other) for one, other in wrong) > 1e-9
         if system.reactions:
-            results = module.reactions(t, y, params)
+            results = module.reactions(t, own, params)
             for force, reaction in zip(needed[n:], results, strict=True):
                 assert abs(force + mpf(reaction)) < 1e-11 * scale
 
@@ -271,6 +289,7 @@ def test_the_hamiltonian_is_the_maximum_of_p_v_minus_the_lagrangian_over_velocit
     # the definition of Legendre's transform, with rates of the positions by the chain rule
     if "hamiltonian" not in module.FORMS:
         return
+    system = reduced(system)
     n, symbols = len(system.q), (TIME, *system.q, *system.qdot, *system.params)
     kinetic = sum(
         inertia * (r.diff(TIME) + sum(map(mul, map(r.diff, system.q), system.qdot))) ** 2 / 2

@@ -41,7 +41,7 @@ def mutants(text: str) -> Iterator[str]:
         yield ast.unparse(changed)
 
 
-SLOW = ("chain_3", "foucault_pendulum", "free_body", "rolling_disc")
+SLOW = ("chain_3", "foucault_pendulum", "four_bar", "free_body", "rolling_disc", "slider_crank")
 QUICK = [name for name in names() if name not in SLOW]
 
 
