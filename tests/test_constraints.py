@@ -1,4 +1,4 @@
-"""Systems with constraints: multipliers, projection, and the order of every method."""
+"""Systems with constraints: multipliers, and projection."""
 
 from collections.abc import Callable
 from math import cos, sin
@@ -25,7 +25,7 @@ from holonomic import build, ensemble, integrate
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.references.elliptic import pendulum
-from solvers.runge_kutta.catalogue import SCIPY, load, names
+from solvers.runge_kutta.catalogue import SCIPY
 
 x, y, theta, phi, g = sp.symbols("x y theta phi g", real=True)
 m, length = sp.symbols("m l", positive=True)
@@ -125,26 +125,6 @@ def test_jacobians_are_derivatives(make: Callable[[], System]) -> None:
     form = Form(one, "variational", one.DEFAULTS)
     perturbed = form.rhs(0.3, form.from_ordinary(0.3, np.array([*z, *change])))[-len(z) :]
     assert np.allclose(perturbed, np.transpose(rows) @ change, atol=1e-5)
-
-
-@pytest.mark.parametrize("backend", ["python", "compiled"])
-@pytest.mark.parametrize("name", names())
-def test_every_method_keeps_constraints_and_order(
-    name: str, backend: str, module: GeneratedModule
-) -> None:
-    method, end = load(name), 0.75
-    base = {1: 4000, 2: 200, 3: 100, 4: 48, 5: 36, 6: 20}.get(method.order, 10)
-    errors = []
-    for steps in (base, 2 * base):
-        options = {"method": name, "backend": backend, "h": end / steps, "compensated": False}
-        motion = integrate(module, (0, end), START, module.DEFAULTS, **options)
-        residuals = module.constraints_many(0.0, motion.y, module.DEFAULTS)
-        assert np.abs(residuals).max() < 4e-16 * (1 + np.abs(motion.y).max())
-        errors.append(np.abs(motion.y[:, -1] - exact(np.array([0.0, end]))[:, -1]).max())
-    if errors[1] > 1e-13:
-        assert np.log2(errors[0] / errors[1]) > method.order - 0.35, errors
-    else:
-        assert errors[0] < 1e-9
 
 
 @pytest.mark.parametrize("method", SCIPY)

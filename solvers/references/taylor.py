@@ -80,6 +80,20 @@ def taylor(
     integration of ODEs by means of high-order Taylor methods, Experimental Mathematics 14
     (2005): order -ln(ε)/2 + 1, and 1/e² of the distance to the nearest singularity.
     """
+    states = decimal_motion(module, params, y0, times, digits, max_products, progress)
+    return np.array(states, dtype=float)
+
+
+def decimal_motion(
+    module: GeneratedModule,
+    params: Sequence[float],
+    y0: Sequence[float],
+    times: ArrayLike,
+    digits: int = 32,
+    max_products: float = inf,
+    progress: Callable[[float], None] = lambda t: None,
+) -> list[list[Decimal]]:
+    """The states of `taylor` with all their digits."""
     samples = [Decimal(float(t)) for t in np.asarray(times, dtype=float)]
     with localcontext(prec=digits + GUARD):
         motion = _Motion(module, params, y0, samples[0])
@@ -105,8 +119,8 @@ def taylor(
                 if h < shortest and abs(sample - t) > h:
                     raise motion.error("a step is below the resolution of time, at a singularity")
             motion.check_choices(sample - t)
-            states.append([float(x) for x in motion.ordinary_after(sample - t)])
-    return np.array(states)
+            states.append(motion.ordinary_after(sample - t))
+    return states
 
 
 class _Motion:
