@@ -1,9 +1,10 @@
-"""Mechanisms in the plane that ship: laws of each body with its joint forces, and closed forms.
+"""Mechanisms in the plane: laws of each body with its joint forces, and closed forms.
 
 The oracle assembles, by hand and without energies, Newton's and Euler's laws of every body with
 the forces in its joints as unknowns, and accelerations of joints from the motions of both bodies.
 """
 
+import warnings
 from math import acos, atan2, cos, hypot, pi, sin, sqrt
 from pathlib import Path
 
@@ -11,13 +12,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad
+from sympy import Symbol, symbols
 
 import generated.double_pendulum as dp
 import generated.four_bar as four_bar
 import generated.slider_crank as crank
 import generated.two_link_arm as arm
-from derive import load, reduced
-from solvers import consistent_start, integrate, load_scene, run_scene
+from derive import Coordinate, Parameter, PointMass, System, fixed_distance, load, reduced
+from solvers import build, consistent_start, integrate, load_scene, run_scene
 from solvers.equations.module import GeneratedModule
 
 Array = NDArray[np.float64]
@@ -337,3 +339,97 @@ def test_torques_that_follow_from_the_equations_move_the_hand_along_a_line() -> 
         assert torque == pytest.approx(torques(p, now, rates, moved)[0], rel=1e-10)
         hand = arm.outputs(0.0, state, arm.DEFAULTS)
         assert hand == pytest.approx((0.3 + 0.2 * t, 0.1), rel=1e-12)
+
+
+def peaucellier() -> System:
+    """Joints with mass and seven bars; O and Q below it are fixed, and D moves on a line."""
+    L, s, r, m = symbols("L s r m", positive=True)
+    g = Symbol("g", real=True)
+    joints = {name: symbols(f"x_{name} y_{name}", real=True) for name in "ABCD"}
+    points = {"O": (0, 0), "Q": (0, -r)} | joints
+    bars = {"OA": L, "OC": L, "AB": s, "BC": s, "CD": s, "DA": s, "QB": r}
+    values = {L: (0.5, "m"), s: (0.25, "m"), r: (0.16, "m"), m: (2.0, "kg"), g: (9.81, "m/s^2")}
+    constraints = [fixed_distance(p + q, points[p], points[q], bars[p + q]) for p, q in bars]
+    return System("peaucellier", "Peaucellier-Lipkin linkage",
+        [Coordinate(one, "m", "of a joint") for pair in joints.values() for one in pair],
+        [Parameter(p, unit, value, str(p)) for p, (value, unit) in values.items()],
+        [PointMass(m, joint) for joint in joints.values()],
+        constraints=[one for (one,) in constraints])  # fmt: skip
+
+
+def inverted(angle: float) -> dict[str, float]:
+    """Joints by inversion, with OB at an angle from the downward vertical: OB OD = L² - s²."""
+    L, s, r = 0.5, 0.25, 0.16
+    near = 2 * r * cos(angle)
+    far = (L**2 - s**2) / near
+    half = sqrt(s**2 - (far - near) ** 2 / 4)
+    down, side = np.array([sin(angle), -cos(angle)]), np.array([cos(angle), sin(angle)])
+    middle = (near + far) / 2 * down
+    joints = (middle + half * side, near * down, middle - half * side, far * down)
+    return {
+        f"{axis}_{name}": float(x)
+        for name, joint in zip("ABCD", joints, strict=True)
+        for axis, x in zip("xy", joint, strict=True)
+    }
+
+
+@pytest.fixture(scope="module")
+def straight() -> GeneratedModule:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of redundant constraints, as where A and C coincide
+        return build(peaucellier())
+
+
+def test_peaucellier_s_joint_moves_on_a_straight_line(straight: GeneratedModule) -> None:
+    start = consistent_start(straight, {"x_D_dot": 0.0}, {}, guess=inverted(0.4))
+    given = [inverted(0.4)[name] for name in straight.COORDINATES]
+    assert start.y[:8] == pytest.approx(given, abs=1e-14)
+    times = np.linspace(0, 3, 61)
+    motion = integrate(straight, (0, 3), start.y, {}, t_eval=times, **STRICT)
+    states = dict(zip(straight.STATE, motion.y, strict=True))
+    assert np.ptp(states["x_D"]) > 0.4
+    height = -(0.5**2 - 0.25**2) / (2 * 0.16)
+    assert np.abs(states["y_D"] - height).max() < 1e-14
+    assert np.ptp(np.hypot(states["x_B"], states["y_B"] + 0.16)) < 1e-14  # B on a circle
+    for x, y in zip(states["x_B"], motion.y.T, strict=True):
+        angle = np.arcsin(x / 0.16) / 2
+        expected = [inverted(angle)[name] for name in straight.COORDINATES]
+        assert y[:8] == pytest.approx(expected, abs=1e-12)
+    energy = straight.energy_many(times, motion.y, straight.DEFAULTS)
+    assert np.abs(energy - energy[0]).max() < 1e-12 * abs(energy[0])
+
+
+def test_tensions_of_peaucellier_s_bars_accelerate_its_joints(straight: GeneratedModule) -> None:
+    y = consistent_start(straight, {"x_D_dot": 1.7}, {}, guess=inverted(0.3)).y
+    tensions = dict(
+        zip(straight.MULTIPLIERS, straight.multipliers(0.0, y, straight.DEFAULTS), strict=True)
+    )
+    moved = np.array(straight.rhs(0.0, y, straight.DEFAULTS)[8:]).reshape(4, 2)
+    places = dict(zip("ABCD", y[:8].reshape(4, 2), strict=True))
+    places |= {"O": np.zeros(2), "Q": np.array([0.0, -0.16])}
+    forces = {name: np.array([0.0, -2.0 * 9.81]) for name in places}
+    for (p, q), tension in tensions.items():
+        toward = (places[q] - places[p]) / np.linalg.norm(places[q] - places[p])
+        forces[p] = forces[p] + tension * toward
+        forces[q] = forces[q] - tension * toward
+    for name, acceleration in zip("ABCD", moved, strict=True):
+        assert forces[name] == pytest.approx(2.0 * acceleration, abs=1e-11)
+    # each bar keeps its length: d²(|p - q|²)/dt² = 0
+    rates = dict(zip("ABCD", y[8:].reshape(4, 2), strict=True)) | {"O": 0 * moved[0]}
+    second = dict(zip("ABCD", moved, strict=True)) | {"O": 0 * moved[0]}
+    for p, q in ("OA", "OC", "AB", "BC", "CD", "DA"):
+        change = (places[p] - places[q]) @ (second[p] - second[q])
+        assert change == pytest.approx(-np.sum((rates[p] - rates[q]) ** 2), abs=1e-11)
+
+
+def test_cranks_of_peaucellier_s_linkage_that_coincide_are_refused(
+    straight: GeneratedModule,
+) -> None:
+    # where A and C coincide, D turns about them: bars' constraints depend on each other
+    folded = inverted(0.3)
+    folded |= {"x_C": folded["x_A"], "y_C": folded["y_A"]}
+    folded |= {"x_D": folded["x_A"] + 0.25, "y_D": folded["y_A"]}
+    y = [*(folded[name] for name in straight.COORDINATES), *[0.0] * 8]
+    assert np.abs(straight.constraints(0.0, y, straight.DEFAULTS)).max() < 1e-15
+    with pytest.raises(ValueError, match="depends on the others, as at a toggle point"):
+        integrate(straight, (0, 1), y, {})

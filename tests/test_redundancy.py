@@ -59,6 +59,13 @@ def parallelogram() -> System:
         coincide=[(bar, at(theta2, dx=d)), (middle, at(theta3, dx=d / 2))])  # fmt: skip
 
 
+def locked() -> System:
+    """A point on an axis, or at a place of another one, where both constraints are needed."""
+    space = [Coordinate(q, "m", f"along {q}") for q in (x, y, z)]
+    return System("locked", "A point that may be locked", space, PARAMETERS,
+        [PointMass(m, (x, y, z))], constraints=[x * y, x * (x - d)])  # fmt: skip
+
+
 def loop_in_space() -> System:
     """A four-bar linkage by positions in space and distances."""
     p, q = sp.symbols("p_x p_y p_z", real=True), sp.symbols("q_x q_y q_z", real=True)
@@ -88,6 +95,7 @@ CIRCLE = x**2 + y**2 - length**2
     (in_plane(velocity(x) - velocity(y), x - y), ["lambda_1"]),  # that of velocities follows
     (in_plane(x - y, (x - y) ** 2), ["lambda_2"]),
     (parallelogram(), ["pin_2_y"]),
+    (locked(), ["lambda_2"]),
     (loop_in_space(), ["lambda_6"]),
 ])  # fmt: skip
 def test_redundant_constraints_are_left_out(system: System, left_out: list[str]) -> None:

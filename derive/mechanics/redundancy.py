@@ -47,8 +47,10 @@ def independent(equations: Constraints) -> tuple[tuple[Constraint, ...], tuple[C
     for at in closure.configurations():
         groups.setdefault(len(closure.independent_rows([at])), []).append(at)
     problem = ""
-    # the branch with most degrees of freedom, unless these are those of singular configurations
-    for _, group in sorted(groups.items()):
+    # the branch in which fewest coordinates are locked, and of these the one that most constraints
+    # restrict: two cranks that coincide have more freedom, but are not the linkage
+    order = sorted(groups, key=lambda count: (closure.locked(groups[count]), -count))
+    for group in map(groups.__getitem__, order):
         kept = closure.independent_rows(group)
         rest = [k for k in range(len(closure.conditions)) if k not in kept]
         if not (name := closure.not_implied(kept, rest, group)):
@@ -220,6 +222,15 @@ class Closure:
         sizes = np.array([np.linalg.norm(self.values(at)[2], axis=1) for at in self.guesses])
         finite = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
         return np.where(finite > 0, finite, 1.0)
+
+    def locked(self, configurations: Sequence[Configuration]) -> int:
+        """The number of coordinates that can move at none of the configurations."""
+        moves = np.zeros(len(self.scales), dtype=bool)
+        for at in configurations:
+            _, sizes, directions = np.linalg.svd(self._rows(at))
+            rank = int((sizes > DEPENDENT * sizes.max(initial=0.0)).sum())
+            moves |= np.linalg.norm(directions[rank:], axis=0) > DEPENDENT
+        return int(np.sum(~moves))
 
     def not_implied(
         self, kept: Sequence[int], rest: Sequence[int], configurations: Sequence[Configuration]
