@@ -4,7 +4,6 @@ Programs are prepared before: ours is the compiled loop that `integrate` calls, 
 integrator of our equations whose events have callbacks in Python.
 """
 
-import ctypes
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -13,8 +12,6 @@ import numpy as np
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, function
-from solvers.integration import compiled_loop, validation
-from solvers.integration.compiled.kernel import Batch
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
@@ -24,6 +21,7 @@ from solvers.io.text_table import text_table
 from solvers.studies import heyoka
 from solvers.studies.benchmarks.median_times import median_times
 from solvers.studies.benchmarks.motions import END, START, Array, Curves, tolerances
+from solvers.studies.benchmarks.repeated_loop import RepeatedLoop
 
 #: Components of the state and their values, and all their crossings in the report's scene until
 #: `END`, by Taylor series of 28 digits.
@@ -81,17 +79,8 @@ def _curves(module: GeneratedModule, hy: Any, event: Event, exact: Array) -> Cur
 
 def _loop(module: GeneratedModule, event: Event, method: str, tol: float) -> Program:
     options = Options(method, None, tol, tol, events=(event,))
-    problem = validation.problem(module, (0.0, END), START, module.DEFAULTS, options)
-    problem = problem.with_form(fastest_form(module))
-    batch = Batch(compiled_loop.loop(problem), problem, occurrences=compiled_loop.EVENT_CAPACITY)
-    size, there = batch.motions.nbytes, batch.motions.ctypes.data
-    first = ctypes.create_string_buffer(batch.motions.tobytes(), size)
-
-    def run() -> None:
-        ctypes.memmove(there, first, size)
-        batch.restart()
-        batch.run()
-
+    run = RepeatedLoop(module, START, END, options)
+    batch = run.batch
     return run, lambda: batch.event_rows[0, 0, : batch.motions["occurred"][0, 0]]["t"]
 
 
