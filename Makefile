@@ -25,7 +25,7 @@ docs: .venv/docs  ## build the documentation site, into out/docs
 derive: .venv/base  ## write the generated modules and the tables of READMEs anew
 	$(BIN)/holonomic derive
 
-bench: .venv/bench  ## time compiled loops beside other programs (twelve minutes, idle machine)
+bench: .venv/bench  ## time compiled loops beside other programs (fifteen minutes, idle machine)
 	$(BIN)/holonomic bench
 
 lint: .venv/ready  ## style and common mistakes

@@ -9,14 +9,17 @@ from typing import Any
 from solvers.app.commands import options
 
 SUMMARY = "time compiled loops and other programs"
-PARTS = ("pendulum", "starts", "precision", "events", "fits", "pipelines", "chains", "maps")
+PARTS = (
+    *("pendulum", "starts", "precision", "events", "fits", "pipelines", "chains", "maps"),
+    "mechanisms",
+)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Describe the command and its arguments."""
     parser.description = (
-        "Time compiled loops and other programs at equal global error. All parts take about twelve "
-        "minutes; nothing else should run on the machine meanwhile."
+        "Time compiled loops and other programs at equal global error. All parts take about "
+        "fifteen minutes; nothing else should run on the machine meanwhile."
     )
     meaning = f"one of {', '.join(PARTS)} (default: all)"
     action = parser.add_argument("parts", nargs="*", metavar="PART", help=meaning)
@@ -55,16 +58,20 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
     from solvers.app import derivation_timing as timing
     from solvers.app.modules import load
     from solvers.io.figures import save
+    from solvers.studies import exudyn
     from solvers.studies.benchmarks import (
         chains,
         double_pendulum,
         events,
         fits,
         flip_maps,
+        mechanisms,
         pipeline,
         precision,
+        squeezer,
         starts,
     )
+    from solvers.studies.benchmarks.mechanism_models import MECHANISMS
 
     peer = partial(options.required_package, extra="bench")
     module = load("double_pendulum")
@@ -92,6 +99,12 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
             plot = folder / "growth.png"
             save(chains.plot(results["growth"]), plot)
             return results, [*chains.summary(results), f"plot: {plot}"]
-        case _:  # maps
+        case "maps":
             results = flip_maps.figures(module, peer("heyoka"), peer("numba"))
             return results, flip_maps.summary(results)
+        case _:  # mechanisms
+            systems = {name: load(name) for name in MECHANISMS}
+            beside = mechanisms.figures(systems, exudyn.fast(peer))
+            squeezed = squeezer.figures(load("andrews_squeezer"))
+            lines = [*mechanisms.summary(beside), *squeezer.summary(squeezed)]
+            return {"exudyn": beside, "squeezer": squeezed}, lines
