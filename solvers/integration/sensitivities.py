@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +21,7 @@ from solvers.integration.inputs import Held
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import Options, Problem
+from solvers.integration.singularity import SingularityWarning, singularity
 from solvers.integration.solution import Array
 from solvers.integration.switching import started
 from solvers.io.suggestion import did_you_mean
@@ -143,7 +145,8 @@ def sensitivities(
     occurrences, most = 0, OCCURRENCES
     while most > occurrences:
         occurrences = most
-        with ignore_predictability():
+        with ignore_predictability(), catch_warnings():
+            simplefilter("ignore", SingularityWarning)  # the error states it
             motions = ensemble(
                 module,
                 t_span,
@@ -210,8 +213,9 @@ def _collected(
 ) -> Sensitivities:
     count = len(problem.start)
     for k in np.flatnonzero(~motions.success):
-        state = tuple(motions.y[:count, k].tolist())
-        raise NotFinishedError(motions.status[k], float(motions.t[k]), state)
+        status, end = motions.status[k], (float(motions.t[k]), motions.y[:count, k])
+        detail = singularity(problem, status, end)
+        raise NotFinishedError(status, end[0], tuple(end[1].tolist()), detail)
     y, derivatives = motions.y[:count, 0], motions.y[count:] / sizes
     t_events, y_events, of_times, of_states = [], [], [], []
     for i, event in enumerate(cast("list[Event]", problem.events)):
