@@ -156,6 +156,29 @@ def test_substitution_into_the_lagrangian_is_recognised(system: str, tmp_path: P
     assert verdicts[-1].note.startswith("it is the Lagrangian of motions alone")
 
 
+# L of the shipped disc with x_dot = R*chi_dot*cos(psi), y_dot = R*chi_dot*sin(psi); of its own
+# equations that of phi holds, and those of chi and psi lack the moments of the multipliers
+def test_a_rolling_disc_by_substitution_is_wrong(tmp_path: Path) -> None:
+    path = tmp_path / "disc.toml"
+    path.write_text("""
+system = "rolling_disc"
+lagrangian = '''m*R**2*((2*k + 1)*n**2 + (k + 1)*phi_dot**2 + k*psi_dot**2*cos(phi)**2)/2
+ - m*g*R*cos(phi)'''
+euler_lagrange = ["(2*k + 1)*n_dot = 0",
+ '''k*psi_ddot*cos(phi)**2 - 2*k*psi_dot*phi_dot*sin(phi)*cos(phi)
+ + (2*k + 1)*(n_dot*sin(phi) + n*phi_dot*cos(phi)) = 0''',
+ '''(k + 1)*phi_ddot + k*psi_dot**2*sin(phi)*cos(phi) - (2*k + 1)*psi_dot*n*cos(phi)
+ - g*sin(phi)/R = 0''']
+names.n = "chi_dot + psi_dot*sin(phi)"
+""")
+    lagrangian, turn, heading, lean = judge(path).equations
+    assert lagrangian.note.startswith("it is the Lagrangian of motions alone")
+    for one in (turn, heading):
+        assert one.verdict == "wrong"
+        assert one.note.startswith("it follows from the Lagrangian without x_dot, y_dot; ")
+    assert (lagrangian.verdict, lean.verdict) == ("wrong", "verified")
+
+
 def test_other_mistakes_are_not_this_one(tmp_path: Path) -> None:
     wrong = [X, Y.replace("- m*a*theta_dot", "+ m*a*theta_dot"), TURN]
     assert not any("differentiated" in one.note for one in judged(tmp_path, "sleigh", wrong))
