@@ -1,5 +1,6 @@
 """Routhians: published ones, the motion that they give, and mistakes of hand derivations."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -112,6 +113,17 @@ def test_documents_contain_it_and_are_verified(name: str, tmp_path: Path) -> Non
     formulas = judge_document(read_document(path), hints(name, None)).formulas
     own = [one for one in formulas if one.latex.startswith("R &") or "partial R" in one.latex]
     assert [one.verdict for one in own] == ["verified", "verified"]
+
+
+def test_friction_and_routhian_have_different_letters(tmp_path: Path) -> None:
+    c, spherical = sp.Symbol("c", positive=True), load("spherical_pendulum")
+    rubbing = replace(spherical, dissipation=c * spherical.qdot[0] ** 2 / 2,
+        parameters=[*spherical.parameters, Parameter(c, "N m s", 0.1, "friction")])  # fmt: skip
+    (path,) = write_document(Derivation(rubbing), tmp_path / "document.tex")
+    formulas = judge_document(read_document(path), hints("spherical_pendulum", None)).formulas
+    of = {one.latex.split("=")[0].strip(" &"): one.verdict for one in formulas}
+    assert of["R"] == "definition"
+    assert of[r"R_{\mathrm{cyc}}"] == "verified"
 
 
 @pytest.mark.parametrize(("sign", "verdict"), [("-", "verified"), ("+", "wrong")])

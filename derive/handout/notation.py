@@ -29,6 +29,11 @@ class Notation:
         names = chain((name, f"{name}_sys"), (f"{name}_sys{k}" for k in count(2)))
         return next(one for one in names if one not in taken)
 
+    @property
+    def routhian(self) -> str:
+        """The letter of the Routhian, which is not that of Rayleigh's function."""
+        return self.letter("R" if self.system.dissipation == 0 else "R_cyc")
+
     @cached_property
     def positions(self) -> list[str]:
         """The letters of the positions: r for a single one, or with the indices of the masses."""

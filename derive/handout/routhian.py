@@ -12,7 +12,7 @@ def routhian(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     if not formulas.are_readable([d.routhian]):
         yield Paragraph("The Routhian is too long to read.")
         return
-    L, R = map(formulas.notation.letter, "LR")
+    L, R = formulas.notation.letter("L"), formulas.notation.routhian
     indices = [d.system.q.index(q) for q in d.cyclic_coordinates]
     momenta = [d.system.p[k] for k in indices]
     work = "".join(f" - {d.system.p[k]}*{d.system.qdot[k]}" for k in indices)
