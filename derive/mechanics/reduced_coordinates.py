@@ -113,7 +113,7 @@ def _next_solution(
 ) -> _Solution | None:
     # positions must not depend on inputs other than prescribed motions
     prescribed = {s for parts in motions(system.inputs).values() for s in parts}
-    excluded = {*system.u} - prescribed | {*system.qdot}
+    excluded, moving = {*system.u} - prescribed, {*system.qdot}
     stages: tuple[tuple[Solver, bool], ...] = (
         (_divided_by_number, False),
         (_divided, False),
@@ -122,6 +122,8 @@ def _next_solution(
     )
     for solver, is_positive in stages:
         for constraint, formula in formulas.items():
+            if formula.free_symbols & moving:  # no velocity determines a coordinate
+                continue
             for q in reversed(coordinates):
                 if bool(q.is_positive) != is_positive or q not in formula.free_symbols:
                     continue

@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterator
 import sympy as sp
 
 from derive.formulas.expansion import is_expandable
+from derive.mechanics.harmonics import Harmonics
 
 Square = Callable[[sp.Expr], sp.Expr]
-Wave = tuple[bool, sp.Expr]  # (is a sine, argument)
-HALF = sp.Rational(1, 2)
 #: Terms of the largest expression that is expanded to collect them.
 MOST_TERMS = 1000
 #: Forms of cos 2a.
@@ -25,7 +24,10 @@ def reduced(expression: sp.Expr) -> sp.Expr:
     """The form of `expression` with the fewest operations."""
     if not expression.has(sp.sin, sp.cos) or not is_expandable(expression, waves=2):
         return expression
-    waves = harmonics(expression)
+    harmonics, operations = Harmonics(expression), int(expression.count_ops())
+    if harmonics.fewest_operations > operations:
+        return expression
+    waves = harmonics.sum
     candidates = [waves, expression]
     if halves := _halves(waves):
         candidates += [_halved(waves, halves, square) for square in SQUARES]
@@ -61,42 +63,6 @@ def _terms(
                 yield coefficient * inner, function
         else:
             yield coefficient, dependent
-
-
-def harmonics(expression: sp.Expr) -> sp.Expr:
-    """`expression` as a sum of coefficient times sine or cosine of a sum of angles."""
-    total: dict[Wave, sp.Expr] = {}
-    for term in sp.Add.make_args(sp.expand(expression)):
-        coefficient, waves = sp.S.One, []
-        for factor in sp.Mul.make_args(term):
-            base, exponent = factor.as_base_exp()
-            if isinstance(base, sp.sin | sp.cos) and exponent.is_Integer and exponent > 0:
-                waves += [(isinstance(base, sp.sin), base.args[0])] * int(exponent)
-            else:
-                coefficient *= factor
-        for wave, number in _product(waves).items():
-            total[wave] = total.get(wave, sp.S.Zero) + coefficient * number
-    return sp.Add(
-        *(c * (sp.sin(angle) if sine else sp.cos(angle)) for (sine, angle), c in total.items())
-    )
-
-
-def _product(waves: list[Wave]) -> dict[Wave, sp.Expr]:
-    """The product of sines and cosines as a sum of them."""
-    product: dict[Wave, sp.Expr] = {(False, sp.S.Zero): sp.S.One}
-    for sine_b, b in waves:
-        longer: dict[Wave, sp.Expr] = {}
-        for (sine_a, a), number in product.items():
-            # cos a cos b, sin a cos b, cos a sin b, sin a sin b: half of f(a+b) ± f(a-b)
-            sine = sine_a != sine_b
-            signs = (-1 if sine_a and sine_b else 1, -1 if sine_b and not sine_a else 1)
-            for angle, sign in zip((a + b, a - b), signs, strict=True):
-                wave, sign = (sine, angle), sp.Integer(sign)
-                if angle.could_extract_minus_sign():
-                    wave, sign = (sine, -angle), -sign if sine else sign
-                longer[wave] = longer.get(wave, sp.S.Zero) + HALF * sign * number
-        product = longer
-    return product
 
 
 def _halves(expression: sp.Expr) -> dict[sp.Expr, sp.Expr]:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.formulas.expression import Scope, number
-from derive.mechanics.reduction import collected, harmonics
+from derive.mechanics.harmonics import Harmonics
+from derive.mechanics.reduction import collected
 
 #: Coefficients, which depend on parameters only, by the function of the state that they multiply.
 Coefficients = dict[sp.Expr, sp.Expr]
@@ -30,7 +31,7 @@ def difference(text: str, scope: Scope) -> sp.Expr:
 def coefficients(expression: sp.Expr, state: Symbols) -> Coefficients:
     """Expand `expression` over functions of the state, with products of waves as sums."""
     totals: Coefficients = {}
-    for term in sp.Add.make_args(sp.expand(harmonics(expression))):
+    for term in sp.Add.make_args(sp.expand(Harmonics(expression).sum)):
         coefficient, function = term.as_independent(*state, as_Add=False)
         totals[function] = totals.get(function, sp.S.Zero) + coefficient
     return {f: reduced for f, coefficient in totals.items() if (reduced := sp.cancel(coefficient))}
