@@ -93,8 +93,10 @@ Masses and their positions:
     m at (R*sin(phi)*sin(psi) + x, -R*sin(phi)*cos(psi) + y, R*cos(phi)), principal moments R**2*k*m, 2*R**2*k*m, R**2*k*m, orientation: rotations zxy by psi, phi, chi
 
 Constraints, with their multipliers:
-    -R*chi_dot*cos(psi) + x_dot = 0: ground_x [N], friction on the body along x
-    -R*chi_dot*sin(psi) + y_dot = 0: ground_y [N], friction on the body along y
+    -R*chi_dot + x_dot*cos(psi)
+        + y_dot*sin(psi) = 0: ground_along [N], friction on the body, along its path
+    -x_dot*sin(psi)
+        + y_dot*cos(psi) = 0: ground_across [N], friction on the body, to the left of its path
 
 Degrees of freedom:
     5 coordinates, 2 constraints, 3 degrees of freedom
@@ -123,7 +125,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "86e08bce8822dc27"
+DIGEST = "e0a5d41b36a9d3ec"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x",
@@ -217,8 +219,8 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "R", "k", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 0.3, 0.25, 9.81)
 POSITIVE = ("m", "R", "k")
-MULTIPLIERS = ("ground_x", "ground_y")
-RESIDUALS = ("ground_x", "ground_y")
+MULTIPLIERS = ("ground_along", "ground_across")
+RESIDUALS = ("ground_along", "ground_across")
 LINKS = (("wheel", (0, 1, 2)),)
 TIMED = ()
 CALLS_FUNCTIONS = (
@@ -237,25 +239,25 @@ CALLS_FUNCTIONS = (
     "rational_state",
 )
 OPERATIONS = {
-    "rhs": (223, 13),
-    "jacobian": (683, 24),
-    "parameter_jacobian": (535, 22),
+    "rhs": (223, 12),
+    "jacobian": (745, 24),
+    "parameter_jacobian": (538, 20),
     "energy": (52, 5),
-    "constraints": (7, 0),
-    "constraints_jacobian": (10, 0),
-    "multipliers": (186, 12),
-    "correction": (146, 10),
-    "correction_rational": (142, 10),
-    "correction_variational": (177, 10),
-    "correction_sensitivity": (182, 10),
+    "constraints": (10, 0),
+    "constraints_jacobian": (11, 1),
+    "multipliers": (187, 11),
+    "correction": (140, 9),
+    "correction_rational": (136, 9),
+    "correction_variational": (174, 9),
+    "correction_sensitivity": (176, 9),
     "mass_matrix": (27, 6),
     "positions": (10, 0),
     "points": (37, 0),
     "angular_momentum": (91, 3),
     "rational_state": (4, 0),
-    "rhs_rational": (224, 13),
-    "rhs_variational": (451, 17),
-    "rhs_sensitivity": (527, 24),
+    "rhs_rational": (224, 12),
+    "rhs_variational": (458, 17),
+    "rhs_sensitivity": (533, 23),
 }
 UNITS = {
     "m": "kg",
@@ -286,8 +288,8 @@ UNITS = {
     "chi_dot": "rad/s",
     "delta_chi": "rad",
     "delta_chi_dot": "rad/s",
-    "ground_x": "N",
-    "ground_y": "N",
+    "ground_along": "N",
+    "ground_across": "N",
 }
 
 
@@ -312,7 +314,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    223 operations, 13 of them on parameters alone.
+    223 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -337,73 +339,70 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = 1.0 + k
-    c6 = m*(1.0/(m*c5))
+    c4 = 1.0 + k
+    c5 = m*(1.0/(m*c4))
+    c6 = c2*R
     c7 = m*R
     c8 = k*c2
-    c9 = c2*R
-    c10 = 1.0/R
+    c9 = 1.0/R
     # intermediate terms
-    cos_psi = cos(psi)
     sin_phi = sin(phi)
-    x0 = cos_psi*sin_phi
+    x0 = sin_phi*sin_phi
     cos_phi = cos(phi)
-    x1 = k*sin_phi
-    x2 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x1
-    x3 = c2*sin_phi
-    x4 = 1.0/(m*(x2 - 2.0*x3*x1))
-    x5 = x4*x0
+    x1 = c2*sin_phi
+    x2 = x0 + k*cos_phi*cos_phi + 2.0*k*x0 - 2.0*k*sin_phi*x1
+    x3 = 1.0/(m*x2)
+    x4 = 1.0 - c3*x0*x3
+    cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x6 = sin_psi*sin_phi
-    x7 = x4*x6
-    x8 = c6*cos_phi
-    x9 = sin_psi*x8
-    x10 = cos_phi*x9
-    x11 = m*x5
-    x12 = cos_psi*x10 - x11*x6
-    x13 = cos_psi*x8
-    x14 = m*x7
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x13 - x14*x6))
-    x16 = x12*x15
-    x17 = m*x15
-    x18 = x12*x17
-    x19 = m*(1.0 - sin_psi*x10 - x11*x0 - x12*x18)
-    x20 = (1.0 - c3*x0*x5 + c4*x0*x7*x16)/x19
-    x21 = R*psi_dot
-    x22 = chi_dot*x21
-    x23 = psi_dot*psi_dot
-    x24 = phi_dot*phi_dot
-    x25 = phi_dot*cos_phi
-    x26 = psi_dot*x25
-    x27 = psi_dot*sin_phi
-    x28 = c5*x27
-    x29 = k*chi_dot
-    x30 = cos_phi*(x28 + 2.0*x29)*x21 + g*sin_phi
-    x31 = x25*(c7*(x28 + x29 - c8*x27))
-    x32 = R*(x6*x23 + x6*x24 - 2.0*cos_psi*x26) - x9*x30 + 2.0*x5*x31
-    x33 = R*(x0*x23 + 2.0*sin_psi*x26 + x0*x24) - x30*x13 - 2.0*x7*x31
-    x34 = m*(x32 + x33*x18)/x19
-    x35 = (x33 + x12*x34)*x17
-    x36 = 2.0*x4*x31 + x11*x34 - x14*x35
-    x37 = c9*x26 - x3*x36
-    x38 = cos_psi*x22 + (x35 - sin_psi*x37)
-    x39 = c2*x7
-    x40 = x39*x0
-    x41 = 1.0 - c3*x6*x7
-    x42 = m*(x40 + x41*x16)/x19
-    x43 = x15*(x41 + m*x12*x42)
-    x44 = x39 + x11*x42 - x14*x43
-    x45 = 0.5*c1*sin_psi + x3*x44
-    x46 = x42 - cos_psi*x45
-    x47 = 1.0/(x43 + sin_psi*x45)
-    x48 = x46*x47
-    x49 = (x40 + x12*x20)*x17
-    x50 = c2*x5 + x14*x49 - x11*x20
-    x51 = 0.5*c1*cos_psi + x3*x50
-    x52 = (sin_psi*x22 + (x34 + cos_psi*x37) - x38*x48)/(x20 + cos_psi*x51 - x46*x48)
-    x53 = x47*(x38 - x46*x52)
-    x54 = x52*(x9*x20 + x49*x13) + x53*(x9*x42 + x43*x13) - (x9*x34 + x35*x13 - c6*x30)
+    x5 = cos_phi*cos_psi
+    x6 = c5*x5
+    x7 = sin_psi*sin_phi
+    x8 = m*x3
+    x9 = x7*x8
+    x10 = 1.0/(m*(1.0 - x5*x6 - x9*x7))
+    x11 = cos_phi*sin_psi
+    x12 = c5*x11
+    x13 = cos_psi*sin_phi
+    x14 = x13*x8
+    x15 = x12*x5 - x14*x7
+    x16 = m*x15
+    x17 = x10*x16
+    x18 = m*(1.0 - x12*x11 - x14*x13 - x15*x17)
+    x19 = x4*(cos_psi - sin_psi*x17)/x18
+    x20 = phi_dot*cos_phi
+    x21 = psi_dot*x20
+    x22 = psi_dot*sin_phi
+    x23 = c4*x22
+    x24 = k*chi_dot
+    x25 = c7*(x3*(x23 + x24 - c8*x22))
+    x26 = x20*x25
+    x27 = psi_dot*psi_dot
+    x28 = phi_dot*phi_dot
+    x29 = phi_dot*x5
+    x30 = R*psi_dot*cos_phi*(x23 + 2.0*x24) + g*sin_phi
+    x31 = c5*x30
+    x32 = R*(x7*x27 + x7*x28 - 2.0*psi_dot*x29) - x31*x11 + 2.0*sin_phi*x25*x29
+    x33 = R*(x13*x27 + 2.0*sin_psi*x21 + x13*x28) - x30*x6 - 2.0*x26*x7
+    x34 = m*(x32 + x33*x17)/x18
+    x35 = m*x10*(x33 + x15*x34)
+    x36 = 2.0*x26 + x14*x34 - x9*x35
+    x37 = c6*x21 - x1*x36
+    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
+    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
+    x40 = (sin_psi + cos_psi*x17)/x18
+    x41 = x10*(cos_psi + x40*x16)
+    x42 = x14*x40 - x9*x41
+    x43 = x1*x42
+    x44 = x43 + sin_psi*x41 - cos_psi*x40
+    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
+    x46 = x44*x45
+    x47 = x10*(sin_psi*x4 - x19*x16)
+    x48 = x14*x19 + x9*x47 - x1*x3
+    x49 = 0.5*c1 - x1*x48
+    x50 = (x38 + x39*x46)/(x49 + cos_psi*x19 + sin_psi*x47 - x44*x46)
+    x51 = x45*(x39 + x44*x50)
+    x52 = x50*(x12*x19 - x47*x6) + x51*(x12*x40 + x41*x6) - (x12*x34 + x35*x6 - x31)
     # outputs
     return (
         x_dot,
@@ -411,11 +410,11 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         psi_dot,
         phi_dot,
         chi_dot,
-        -(x20*x52 + x42*x53 - x34),
-        x49*x52 + x43*x53 - x35,
-        -c10*(x36 + x50*x52 - x44*x53),
-        c10*x54,
-        -c10*(x37 + x45*x53 - x51*x52),
+        -(x19*x50 + x40*x51 - x34),
+        -(x35 + x47*x50 - x41*x51),
+        c9*(x48*x50 + x42*x51 - x36),
+        c9*x52,
+        -c9*(x37 + x43*x51 - x49*x50),
     )
 
 
@@ -431,73 +430,70 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = 1.0 + k
-    c6 = m*(1.0/(m*c5))
+    c4 = 1.0 + k
+    c5 = m*(1.0/(m*c4))
+    c6 = c2*R
     c7 = m*R
     c8 = k*c2
-    c9 = c2*R
-    c10 = 1.0/R
+    c9 = 1.0/R
     # intermediate terms
-    cos_psi = cos(psi)
     sin_phi = sin(phi)
-    x0 = cos_psi*sin_phi
+    x0 = sin_phi*sin_phi
     cos_phi = cos(phi)
-    x1 = k*sin_phi
-    x2 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x1
-    x3 = c2*sin_phi
-    x4 = 1.0/(m*(x2 - 2.0*x3*x1))
-    x5 = x4*x0
+    x1 = c2*sin_phi
+    x2 = x0 + k*cos_phi*cos_phi + 2.0*k*x0 - 2.0*k*sin_phi*x1
+    x3 = 1.0/(m*x2)
+    x4 = 1.0 - c3*x0*x3
+    cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x6 = sin_psi*sin_phi
-    x7 = x4*x6
-    x8 = c6*cos_phi
-    x9 = sin_psi*x8
-    x10 = cos_phi*x9
-    x11 = m*x5
-    x12 = cos_psi*x10 - x11*x6
-    x13 = cos_psi*x8
-    x14 = m*x7
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x13 - x14*x6))
-    x16 = x12*x15
-    x17 = m*x15
-    x18 = x12*x17
-    x19 = m*(1.0 - sin_psi*x10 - x11*x0 - x12*x18)
-    x20 = (1.0 - c3*x0*x5 + c4*x0*x7*x16)/x19
-    x21 = R*psi_dot
-    x22 = chi_dot*x21
-    x23 = psi_dot*psi_dot
-    x24 = phi_dot*phi_dot
-    x25 = phi_dot*cos_phi
-    x26 = psi_dot*x25
-    x27 = psi_dot*sin_phi
-    x28 = c5*x27
-    x29 = k*chi_dot
-    x30 = cos_phi*(x28 + 2.0*x29)*x21 + g*sin_phi
-    x31 = x25*(c7*(x28 + x29 - c8*x27))
-    x32 = R*(x6*x23 + x6*x24 - 2.0*cos_psi*x26) - x9*x30 + 2.0*x5*x31
-    x33 = R*(x0*x23 + 2.0*sin_psi*x26 + x0*x24) - x30*x13 - 2.0*x7*x31
-    x34 = m*(x32 + x33*x18)/x19
-    x35 = (x33 + x12*x34)*x17
-    x36 = 2.0*x4*x31 + x11*x34 - x14*x35
-    x37 = c9*x26 - x3*x36
-    x38 = cos_psi*x22 + (x35 - sin_psi*x37)
-    x39 = c2*x7
-    x40 = x39*x0
-    x41 = 1.0 - c3*x6*x7
-    x42 = m*(x40 + x41*x16)/x19
-    x43 = x15*(x41 + m*x12*x42)
-    x44 = x39 + x11*x42 - x14*x43
-    x45 = 0.5*c1*sin_psi + x3*x44
-    x46 = x42 - cos_psi*x45
-    x47 = 1.0/(x43 + sin_psi*x45)
-    x48 = x46*x47
-    x49 = (x40 + x12*x20)*x17
-    x50 = c2*x5 + x14*x49 - x11*x20
-    x51 = 0.5*c1*cos_psi + x3*x50
-    x52 = (sin_psi*x22 + (x34 + cos_psi*x37) - x38*x48)/(x20 + cos_psi*x51 - x46*x48)
-    x53 = x47*(x38 - x46*x52)
-    x54 = x52*(x9*x20 + x49*x13) + x53*(x9*x42 + x43*x13) - (x9*x34 + x35*x13 - c6*x30)
+    x5 = cos_phi*cos_psi
+    x6 = c5*x5
+    x7 = sin_psi*sin_phi
+    x8 = m*x3
+    x9 = x7*x8
+    x10 = 1.0/(m*(1.0 - x5*x6 - x9*x7))
+    x11 = cos_phi*sin_psi
+    x12 = c5*x11
+    x13 = cos_psi*sin_phi
+    x14 = x13*x8
+    x15 = x12*x5 - x14*x7
+    x16 = m*x15
+    x17 = x10*x16
+    x18 = m*(1.0 - x12*x11 - x14*x13 - x15*x17)
+    x19 = x4*(cos_psi - sin_psi*x17)/x18
+    x20 = phi_dot*cos_phi
+    x21 = psi_dot*x20
+    x22 = psi_dot*sin_phi
+    x23 = c4*x22
+    x24 = k*chi_dot
+    x25 = c7*(x3*(x23 + x24 - c8*x22))
+    x26 = x20*x25
+    x27 = psi_dot*psi_dot
+    x28 = phi_dot*phi_dot
+    x29 = phi_dot*x5
+    x30 = R*psi_dot*cos_phi*(x23 + 2.0*x24) + g*sin_phi
+    x31 = c5*x30
+    x32 = R*(x7*x27 + x7*x28 - 2.0*psi_dot*x29) - x31*x11 + 2.0*sin_phi*x25*x29
+    x33 = R*(x13*x27 + 2.0*sin_psi*x21 + x13*x28) - x30*x6 - 2.0*x26*x7
+    x34 = m*(x32 + x33*x17)/x18
+    x35 = m*x10*(x33 + x15*x34)
+    x36 = 2.0*x26 + x14*x34 - x9*x35
+    x37 = c6*x21 - x1*x36
+    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
+    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
+    x40 = (sin_psi + cos_psi*x17)/x18
+    x41 = x10*(cos_psi + x40*x16)
+    x42 = x14*x40 - x9*x41
+    x43 = x1*x42
+    x44 = x43 + sin_psi*x41 - cos_psi*x40
+    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
+    x46 = x44*x45
+    x47 = x10*(sin_psi*x4 - x19*x16)
+    x48 = x14*x19 + x9*x47 - x1*x3
+    x49 = 0.5*c1 - x1*x48
+    x50 = (x38 + x39*x46)/(x49 + cos_psi*x19 + sin_psi*x47 - x44*x46)
+    x51 = x45*(x39 + x44*x50)
+    x52 = x50*(x12*x19 - x47*x6) + x51*(x12*x40 + x41*x6) - (x12*x34 + x35*x6 - x31)
     # outputs
     return _stacked(
         (10,),
@@ -507,18 +503,18 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         psi_dot,
         phi_dot,
         chi_dot,
-        -(x20*x52 + x42*x53 - x34),
-        x49*x52 + x43*x53 - x35,
-        -c10*(x36 + x50*x52 - x44*x53),
-        c10*x54,
-        -c10*(x37 + x45*x53 - x51*x52),
+        -(x19*x50 + x40*x51 - x34),
+        -(x35 + x47*x50 - x41*x51),
+        c9*(x48*x50 + x42*x51 - x36),
+        c9*x52,
+        -c9*(x37 + x43*x51 - x49*x50),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    683 operations, 24 of them on parameters alone.
+    745 operations, 24 of them on parameters alone.
 
     Parameters
     ----------
@@ -536,177 +532,187 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         Entry [i][j] is the derivative of rhs[i] with respect to y[j].
     """
     # inputs
-    _, _, psi, phi, _, _, _, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = m*R
-    c2 = 1.0 + k
-    c3 = m*k
-    c4 = 1.0/c3
-    c5 = c3*c4
-    c6 = k*c5
-    c7 = 1.0/(m*c2)
+    c0 = m*R
+    c1 = 1.0/R
+    c2 = m*k
+    c3 = 1.0/c2
+    c4 = c2*c3
+    c5 = m*c4
+    c6 = 1.0 + k
+    c7 = 1.0/(m*c6)
     c8 = m*c7
-    c9 = m*c5
-    c10 = m*c9
-    c11 = c5*R
-    c12 = k*c4
-    c13 = c2*R
-    c14 = k*R
-    c15 = R*c6
-    c16 = c2 - c6
-    c17 = m*c16
-    c18 = c1*c16
-    c19 = c3*c1
-    c20 = c3*R
-    c21 = c7*c1
-    c22 = c7*c20
+    c9 = c4*R
+    c10 = k*c4
+    c11 = m*m
+    c12 = c7*c11
+    c13 = k*R
+    c14 = c6*R
+    c15 = R*c10
+    c16 = c6 - c10
+    c17 = c0*c16
+    c18 = m*c16
+    c19 = c2*R
+    c20 = c2*c0
+    c21 = c7*c0
+    c22 = c7*c19
     # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*psi_dot
-    x1 = c2*x0
-    x2 = k*chi_dot
-    x3 = x1 + x2
-    x4 = x3 - c6*x0
-    x5 = c1*x4
-    cos_phi = cos(phi)
-    x6 = k*sin_phi
-    x7 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x6
-    x8 = c5*sin_phi
-    x9 = 1.0/(m*(x7 - 2.0*x8*x6))
-    x10 = cos_phi*x9
-    x11 = phi_dot*x10
     cos_psi = cos(psi)
-    x12 = sin_phi*x9
-    x13 = m*x12
-    x14 = cos_psi*x13
+    sin_phi = sin(phi)
+    x0 = cos_psi*sin_phi
+    x1 = psi_dot*psi_dot
+    cos_phi = cos(phi)
     sin_psi = sin(psi)
-    x15 = sin_psi*sin_phi
-    x16 = psi_dot*psi_dot
-    x17 = phi_dot*phi_dot
-    x18 = cos_phi*cos_psi
-    x19 = psi_dot*phi_dot
-    x20 = x15*x16 + x15*x17 - 2.0*x18*x19
-    x21 = cos_phi*sin_psi
-    x22 = c8*x21
-    x23 = x1 + 2.0*x2
-    x24 = R*psi_dot
-    x25 = cos_phi*x23*x24 + g*sin_phi
-    x26 = phi_dot*x12
-    x27 = x18*x26
-    x28 = cos_psi*sin_phi
-    x29 = x28*x16 + 2.0*x21*x19 + x28*x17
-    x30 = c8*x18
-    x31 = x21*x26
-    x32 = R*x29 - x25*x30 - 2.0*x5*x31
-    x33 = x22*x18 - x14*x15
-    x34 = sin_psi*x13
-    x35 = 1.0/(m*(1.0 - x18*x30 - x34*x15))
-    x36 = m*x35
-    x37 = x33*x36
-    x38 = m*(1.0 - x22*x21 - x14*x28 - x33*x37)
-    x39 = m*(R*x20 - x22*x25 + 2.0*x5*x27 + x32*x37)/x38
-    x40 = (x32 + x33*x39)*x36
-    x41 = 2.0*x5*x11 + x14*x39 - x34*x40
-    x42 = cos_psi*x12
-    x43 = c5*x42
-    x44 = x43*x15
-    x45 = x33*x35
-    x46 = (1.0 - c9*x28*x42 + c10*x15*x42*x45)/x38
-    x47 = (x44 + x33*x46)*x36
-    x48 = x43 + x34*x47 - x14*x46
-    x49 = sin_psi*chi_dot
-    x50 = c11*cos_phi
-    x51 = x19*x50 - x8*x41
-    x52 = cos_psi*chi_dot
-    x53 = x24*x52 + (x40 - sin_psi*x51)
-    x54 = sin_psi*x12
-    x55 = 1.0 - c9*x15*x54
-    x56 = m*(x44 + x55*x45)/x38
-    x57 = x35*(x55 + m*x33*x56)
-    x58 = c5*x54 + x14*x56 - x34*x57
-    x59 = 0.5*c4*sin_psi + x8*x58
-    x60 = x56 - cos_psi*x59
-    x61 = 1.0/(x57 + sin_psi*x59)
-    x62 = x60*x61
-    x63 = 0.5*c4*cos_psi + x8*x48
-    x64 = x46 + cos_psi*x63 - x60*x62
-    x65 = (x24*x49 + (x39 + cos_psi*x51) - x53*x62)/x64
-    x66 = x61*(x53 - x60*x65)
-    x67 = c0*(x41 + x48*x65 - x58*x66)
-    x68 = x22*x46 + x47*x30
-    x69 = x22*x56 + x57*x30
-    x70 = c0*(x65*x68 + x66*x69 - (x22*x39 + x40*x30 - c8*x25))
-    x71 = x46*x65 + x56*x66 - x39
-    x72 = x47*x65 + x57*x66 - x40
-    x73 = cos_phi*(cos_psi*x71 - sin_psi*x72)
-    x74 = sin_psi*x65 + cos_psi*x66
-    x75 = (sin_psi*x71 + cos_psi*x72 - c12*x74)*x13
-    x76 = R*(x20 + x67*x28 - x70*x21) + x30*x73 + x75*x15
-    x77 = R*(x67*x15 + x70*x18 - x29) + x22*x73 - x75*x28 + x76*x37
-    x78 = m*x77/x38
-    x79 = c0*(x51 + x59*x66 - x63*x65)
-    x80 = (x76 + x33*x78)*x36
-    x81 = x75 + x34*x80 - x14*x78
-    x82 = 0.5*c4*x74 - x8*x81
-    x83 = R*(psi_dot*x52 - sin_psi*x79) - (x78 - cos_psi*x82)
-    x84 = R*(psi_dot*x49 + cos_psi*x79) + (x80 + sin_psi*x82)
-    x85 = (x83 + x84*x62)/x64
-    x86 = x61*(x84 + x60*x85)
-    x87 = x21*x16 + 2.0*x28*x19 + x21*x17 + x67*x18 + x70*x15
-    x88 = cos_phi*psi_dot
-    x89 = c2*cos_phi*x88
-    x90 = x71*x15 + x72*x28 + ((sin_phi*x23 - x89)*x24 - g*cos_phi)
-    x91 = cos_phi*x67
-    x92 = R*phi_dot*(sin_phi*x3 - x89) + c13*sin_phi*x91 + c14*cos_phi*x79
-    x93 = sin_phi*x19 + x91
-    x94 = x71*x18 + 2.0*x92 - x72*x21 - 2.0*c15*sin_phi*x93
-    x95 = x18*x16 + x18*x17 - 2.0*x15*x19 + x70*x28 - x67*x21
-    x96 = R*x95 + x90*x30 + x34*x94
-    x97 = m*(R*x87 + x22*x90 - x14*x94 + x96*x37)/x38
-    x98 = (x96 + x33*x97)*x36
-    x99 = m*x9*x94 + x34*x98 - x14*x97
-    x100 = c11*x93 - x8*x99
-    x101 = x98 + sin_psi*x100
-    x102 = (x97 - cos_psi*x100 - x101*x62)/x64
-    x103 = x61*(x101 - x60*x102)
-    x104 = cos_phi*(x1 + x23)
-    x105 = c17*sin_phi
-    x106 = 2.0*(psi_dot*x15 - phi_dot*x18) - x22*x104 + 2.0*x105*x27
-    x107 = 2.0*(psi_dot*x28 + phi_dot*x21) - x30*x104 - 2.0*x105*x31
-    x108 = c1*(x106 + x107*x37)/x38
-    x109 = (R*x107 + x33*x108)*x36
-    x110 = 2.0*c18*cos_phi*x26 + x14*x108 - x34*x109
-    x111 = phi_dot*x50 - x8*x110
-    x112 = R*x52 + (x109 - sin_psi*x111)
-    x113 = (R*x49 + (x108 + cos_psi*x111) - x112*x62)/x64
-    x114 = x61*(x112 - x60*x113)
-    x115 = x4*x13
-    x116 = psi_dot*x21 + phi_dot*x28 - x21*x115
-    x117 = c1*(psi_dot*x18 - phi_dot*x15 - x18*x115 - x116*x37)
-    x118 = x117/x38
-    x119 = (R*x116 - x33*x118)*x36
-    x120 = x14*x118 + x34*x119 - x5*x10
-    x121 = c11*x88 + 2.0*x8*x120
-    x122 = 2.0*x119 - sin_psi*x121
-    x123 = (2.0*x118 - cos_psi*x121 + x122*x62)/x64
-    x124 = x61*(x122 + x60*x123)
-    x125 = c7*psi_dot
-    x126 = x18*x125 + sin_psi*x26
-    x127 = c19*cos_phi*(x21*x125 - cos_psi*x26 + x126*x37)/x38
-    x128 = (c20*cos_phi*x126 + x33*x127)*x36
-    x129 = c20*x11 + x34*x128 - x14*x127
-    x130 = x8*x129
-    x131 = cos_psi*x24 - 2.0*(x128 - sin_psi*x130)
-    x132 = sin_psi*x24 - 2.0*(x127 + cos_psi*x130) - x131*x62
-    x133 = x132/x64
-    x134 = x61*(x131 - x60*x133)
-    x135 = c0*(c8*x73 + x22*x78 + x80*x30 + x68*x85 - x69*x86)
-    x136 = x68*x102 + x69*x103 - (c8*x90 + x22*x97 + x98*x30)
-    x137 = x68*x113 + x69*x114 - (x22*x108 + x109*x30 - c21*x104)
-    x138 = c0*(2.0*(x22*x118 - x119*x30) + x69*x124 - x68*x123)
-    x139 = 2.0*(c22*x88 + x22*x127 + x128*x30) + x68*x133 + x69*x134
+    x2 = cos_phi*sin_psi
+    x3 = psi_dot*phi_dot
+    x4 = phi_dot*phi_dot
+    x5 = x0*x1 + 2.0*x2*x3 + x0*x4
+    x6 = sin_psi*sin_phi
+    x7 = k*sin_phi
+    x8 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x7
+    x9 = c4*sin_phi
+    x10 = 1.0/(m*(x8 - 2.0*x9*x7))
+    x11 = sin_phi*x10
+    x12 = m*x11
+    x13 = cos_psi*x12
+    x14 = 1.0 - c5*sin_phi*x11
+    x15 = c8*x2
+    x16 = cos_phi*cos_psi
+    x17 = x15*x16 - x13*x6
+    x18 = c8*x16
+    x19 = sin_psi*x12
+    x20 = 1.0/(m*(1.0 - x16*x18 - x19*x6))
+    x21 = m*x20
+    x22 = x17*x21
+    x23 = m*(1.0 - x15*x2 - x13*x0 - x17*x22)
+    x24 = x14*(cos_psi - sin_psi*x22)/x23
+    x25 = m*x17
+    x26 = x20*(sin_psi*x14 - x24*x25)
+    x27 = x13*x24 + x19*x26 - c4*x11
+    x28 = cos_psi*y_dot - sin_psi*x_dot
+    x29 = psi_dot*x28
+    x30 = c9*cos_phi
+    x31 = sin_phi*psi_dot
+    x32 = c6*x31
+    x33 = k*chi_dot
+    x34 = x32 + x33
+    x35 = x34 - c10*x31
+    x36 = c0*x35
+    x37 = cos_phi*x10
+    x38 = phi_dot*x37
+    x39 = x6*x1 + x6*x4 - 2.0*x16*x3
+    x40 = x32 + 2.0*x33
+    x41 = cos_phi*psi_dot
+    x42 = R*x40*x41 + g*sin_phi
+    x43 = phi_dot*x11
+    x44 = x16*x43
+    x45 = x2*x43
+    x46 = R*x5 - x42*x18 - 2.0*x36*x45
+    x47 = m*(R*x39 - x15*x42 + 2.0*x36*x44 + x46*x22)/x23
+    x48 = (x46 + x17*x47)*x21
+    x49 = 2.0*x36*x38 + x13*x47 - x19*x48
+    x50 = x3*x30 - x9*x49
+    x51 = cos_psi*x_dot + sin_psi*y_dot
+    x52 = psi_dot*x51
+    x53 = x52 + (sin_psi*x47 + cos_psi*x48)
+    x54 = (sin_psi + cos_psi*x22)/x23
+    x55 = x20*(cos_psi + x54*x25)
+    x56 = x13*x54 - x19*x55
+    x57 = x9*x56
+    x58 = x57 + sin_psi*x55 - cos_psi*x54
+    x59 = 1.0/(sin_psi*x54 + cos_psi*x55)
+    x60 = x58*x59
+    x61 = x29 + (x50 + cos_psi*x47 - sin_psi*x48) + x53*x60
+    x62 = 0.5*c3 - x9*x27
+    x63 = x62 + cos_psi*x24 + sin_psi*x26 - x58*x60
+    x64 = x61/x63
+    x65 = x59*(x53 + x58*x64)
+    x66 = c1*(x27*x64 + x56*x65 - x49)
+    x67 = c0*x66
+    x68 = x15*x24 - x26*x18
+    x69 = x15*x54 + x55*x18
+    x70 = c1*(x64*x68 + x65*x69 - (x15*x47 + x48*x18 - c8*x42))
+    x71 = c0*x70
+    x72 = c0*x5 + x6*x67 + sin_psi*x64 - x16*x71 - cos_psi*x65
+    x73 = x24*x64 + x54*x65 - x47
+    x74 = x48 + x26*x64 - x55*x65
+    x75 = cos_psi*x73 + sin_psi*x74
+    x76 = cos_phi*x75
+    x77 = c12*x76
+    x78 = sin_psi*x73 - cos_psi*x74
+    x79 = x11*(c11*x78)
+    x80 = x0*x67 + x2*x71 + cos_psi*x64 + sin_psi*x65 - c0*x39
+    x81 = x80 - x16*x77 - x6*x79
+    x82 = (x72 - x2*x77 + x0*x79 + x81*x22)/x23
+    x83 = x20*(x81 + x82*x25)
+    x84 = x78*x12 + x13*x82 - x19*x83
+    x85 = x9*x84
+    x86 = x75 - x29 - (sin_psi*x82 + cos_psi*x83)
+    x87 = x52 - x78 + (x85 + sin_psi*x83 - cos_psi*x82) + x86*x60
+    x88 = x87/x63
+    x89 = x59*(x86 + x58*x88)
+    x90 = c6*cos_phi*x41
+    x91 = x73*x6 + (R*psi_dot*(sin_phi*x40 - x90) - g*cos_phi) - x74*x0
+    x92 = R*(x2*x1 + 2.0*x0*x3 + x2*x4 + x70*x6 - x66*x16) + x15*x91
+    x93 = cos_phi*x66
+    x94 = (
+        R*phi_dot*(sin_phi*x34 - x90) + c13*cos_phi*(c1*(x50 + x57*x65 - x62*x64))
+        - c14*sin_phi*x93
+    )
+    x95 = sin_phi*x3 - x93
+    x96 = x73*x16 + x74*x2 + 2.0*x94 - 2.0*c15*sin_phi*x95
+    x97 = R*(x16*x1 + x16*x4 - 2.0*x6*x3 + x66*x2 + x70*x0)
+    x98 = x97 + x91*x18 + x19*x96
+    x99 = m*(x92 - x13*x96 + x98*x22)/x23
+    x100 = (x98 + x17*x99)*x21
+    x101 = m*x10*x96 + x19*x100 - x13*x99
+    x102 = c9*x95 - x9*x101
+    x103 = sin_psi*x99 + cos_psi*x100
+    x104 = (x102 + sin_psi*x100 - cos_psi*x99 - x103*x60)/x63
+    x105 = x59*(x103 - x58*x104)
+    x106 = psi_dot*(sin_psi - cos_psi*x60)/x63
+    x107 = x59*(cos_psi*psi_dot - x58*x106)
+    x108 = psi_dot*(cos_psi + sin_psi*x60)/x63
+    x109 = x59*(sin_psi*psi_dot + x58*x108)
+    x110 = cos_phi*(x32 + x40)
+    x111 = c18*sin_phi
+    x112 = 2.0*(psi_dot*x6 - phi_dot*x16) - x15*x110 + 2.0*x111*x44
+    x113 = 2.0*(psi_dot*x0 + phi_dot*x2) - x18*x110 - 2.0*x111*x45
+    x114 = c0*(x112 + x113*x22)/x23
+    x115 = (R*x113 + x17*x114)*x21
+    x116 = 2.0*c17*cos_phi*x43 + x13*x114 - x19*x115
+    x117 = phi_dot*x30 - x9*x116
+    x118 = x51 + (sin_psi*x114 + cos_psi*x115)
+    x119 = x28 + (x117 + cos_psi*x114 - sin_psi*x115) + x118*x60
+    x120 = x119/x63
+    x121 = x59*(x118 + x58*x120)
+    x122 = x35*x12
+    x123 = psi_dot*x2 + phi_dot*x0 - x2*x122
+    x124 = c0*(psi_dot*x16 - phi_dot*x6 - x16*x122 - x123*x22)
+    x125 = x124/x23
+    x126 = (R*x123 - x17*x125)*x21
+    x127 = x13*x125 + x19*x126 - x36*x37
+    x128 = c9*x41 + 2.0*x9*x127
+    x129 = sin_psi*x125 - cos_psi*x126
+    x130 = 2.0*(cos_psi*x125 + sin_psi*x126) - x128 + 2.0*x129*x60
+    x131 = x130/x63
+    x132 = x59*(2.0*x129 + x58*x131)
+    x133 = c7*psi_dot
+    x134 = x16*x133 + sin_psi*x43
+    x135 = c20*cos_phi*(x2*x133 - cos_psi*x43 + x134*x22)/x23
+    x136 = (c19*cos_phi*x134 + x17*x135)*x21
+    x137 = c19*x38 + x19*x136 - x13*x135
+    x138 = x9*x137
+    x139 = sin_psi*x135 + cos_psi*x136
+    x140 = (x138 + cos_psi*x135 - sin_psi*x136 + x139*x60)/x63
+    x141 = x59*(x139 + x58*x140)
+    x142 = c1*(x15*x82 + x83*x18 - c8*x76 + x68*x88 + x69*x89)
+    x143 = c8*x91 + x15*x99 + x100*x18 + x68*x104 - x69*x105
+    x144 = x68*x120 + x69*x121 - (x15*x114 + x115*x18 - c21*x110)
+    x145 = c1*(x68*x131 + x69*x132 - 2.0*(x15*x125 - x126*x18))
+    x146 = x68*x140 + x69*x141 - (c22*x41 + x15*x135 + x136*x18)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
@@ -717,51 +723,62 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (
             0.0,
             0.0,
-            -(x78 + x46*x85 - x56*x86),
-            -(x46*x102 + x56*x103 - x97),
+            x82 + x24*x88 + x54*x89,
+            x99 + x24*x104 - x54*x105,
             0.0,
-            0.0,
-            0.0,
-            -(x46*x113 + x56*x114 - x108),
-            -(2.0*x118 + x56*x124 - x46*x123),
-            -(2.0*x127 + x46*x133 + x56*x134),
+            x24*x106 - x54*x107,
+            -(x24*x108 + x54*x109),
+            -(x24*x120 + x54*x121 - x114),
+            x24*x131 + x54*x132 - 2.0*x125,
+            2.0*(x24*x140 + x54*x141 - x135),
         ),
         (
             0.0,
             0.0,
-            x80 + x47*x85 - x57*x86,
-            x47*x102 + x57*x103 - x98,
+            -(x83 + x55*x89 - x26*x88),
+            x26*x104 + x55*x105 - x100,
             0.0,
-            0.0,
-            0.0,
-            x47*x113 + x57*x114 - x109,
-            -(2.0*x119 + x47*x123 - x57*x124),
-            2.0*x128 + x47*x133 + x57*x134,
+            x26*x106 + x55*x107,
+            -(x26*x108 - x55*x109),
+            -(x115 + x26*x120 - x55*x121),
+            -(2.0*x126 + x55*x132 - x26*x131),
+            2.0*(x136 + x26*x140 - x55*x141),
         ),
         (
             0.0,
             0.0,
-            -c0*(x81 + x48*x85 + x58*x86),
-            c0*(x99 + x58*x103 - x48*x102),
+            -c1*(x84 + x27*x88 + x56*x89),
+            c1*(x101 + x56*x105 - x27*x104),
             0.0,
-            0.0,
-            0.0,
-            -c0*(x110 + x48*x113 - x58*x114),
-            c0*(2.0*x120 + x48*x123 + x58*x124),
-            -c0*(2.0*x129 + x48*x133 - x58*x134),
+            -c1*(x27*x106 - x56*x107),
+            c1*(x27*x108 + x56*x109),
+            c1*(x27*x120 + x56*x121 - x116),
+            -c1*(x27*x131 + x56*x132 - 2.0*x127),
+            -2.0*c1*(x137 + x27*x140 + x56*x141),
         ),
-        (0.0, 0.0, x135, c0*x136, 0.0, 0.0, 0.0, c0*x137, x138, c0*x139),
         (
             0.0,
             0.0,
-            c0*(x63*x85 + x59*x86 - x82),
-            c0*(x100 + x63*x102 - x59*x103),
+            -x142,
+            -c1*x143,
+            0.0,
+            -c1*(x68*x106 - x69*x107),
+            c1*(x68*x108 + x69*x109),
+            c1*x144,
+            -x145,
+            -2.0*c1*x146,
+        ),
+        (
             0.0,
             0.0,
+            c1*(x85 + x57*x89 - x62*x88),
+            -c1*(x62*x104 + x57*x105 - x102),
             0.0,
-            -c0*(x111 + x59*x114 - x63*x113),
-            -c0*(x121 + x63*x123 + x59*x124),
-            c0*(2.0*x130 + x63*x133 - x59*x134),
+            -c1*(x62*x106 + x57*x107),
+            c1*(x62*x108 - x57*x109),
+            -c1*(x117 + x57*x121 - x62*x120),
+            -c1*(x128 + x62*x131 - x57*x132),
+            2.0*c1*(x138 + x57*x141 - x62*x140),
         ),
     )
 
@@ -771,177 +788,187 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     from numpy import cos, sin
 
     # inputs
-    _, _, psi, phi, _, _, _, psi_dot, phi_dot, chi_dot = y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params
     # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = m*R
-    c2 = 1.0 + k
-    c3 = m*k
-    c4 = 1.0/c3
-    c5 = c3*c4
-    c6 = k*c5
-    c7 = 1.0/(m*c2)
+    c0 = m*R
+    c1 = 1.0/R
+    c2 = m*k
+    c3 = 1.0/c2
+    c4 = c2*c3
+    c5 = m*c4
+    c6 = 1.0 + k
+    c7 = 1.0/(m*c6)
     c8 = m*c7
-    c9 = m*c5
-    c10 = m*c9
-    c11 = c5*R
-    c12 = k*c4
-    c13 = c2*R
-    c14 = k*R
-    c15 = R*c6
-    c16 = c2 - c6
-    c17 = m*c16
-    c18 = c1*c16
-    c19 = c3*c1
-    c20 = c3*R
-    c21 = c7*c1
-    c22 = c7*c20
+    c9 = c4*R
+    c10 = k*c4
+    c11 = m*m
+    c12 = c7*c11
+    c13 = k*R
+    c14 = c6*R
+    c15 = R*c10
+    c16 = c6 - c10
+    c17 = c0*c16
+    c18 = m*c16
+    c19 = c2*R
+    c20 = c2*c0
+    c21 = c7*c0
+    c22 = c7*c19
     # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*psi_dot
-    x1 = c2*x0
-    x2 = k*chi_dot
-    x3 = x1 + x2
-    x4 = x3 - c6*x0
-    x5 = c1*x4
-    cos_phi = cos(phi)
-    x6 = k*sin_phi
-    x7 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x6
-    x8 = c5*sin_phi
-    x9 = 1.0/(m*(x7 - 2.0*x8*x6))
-    x10 = cos_phi*x9
-    x11 = phi_dot*x10
     cos_psi = cos(psi)
-    x12 = sin_phi*x9
-    x13 = m*x12
-    x14 = cos_psi*x13
+    sin_phi = sin(phi)
+    x0 = cos_psi*sin_phi
+    x1 = psi_dot*psi_dot
+    cos_phi = cos(phi)
     sin_psi = sin(psi)
-    x15 = sin_psi*sin_phi
-    x16 = psi_dot*psi_dot
-    x17 = phi_dot*phi_dot
-    x18 = cos_phi*cos_psi
-    x19 = psi_dot*phi_dot
-    x20 = x15*x16 + x15*x17 - 2.0*x18*x19
-    x21 = cos_phi*sin_psi
-    x22 = c8*x21
-    x23 = x1 + 2.0*x2
-    x24 = R*psi_dot
-    x25 = cos_phi*x23*x24 + g*sin_phi
-    x26 = phi_dot*x12
-    x27 = x18*x26
-    x28 = cos_psi*sin_phi
-    x29 = x28*x16 + 2.0*x21*x19 + x28*x17
-    x30 = c8*x18
-    x31 = x21*x26
-    x32 = R*x29 - x25*x30 - 2.0*x5*x31
-    x33 = x22*x18 - x14*x15
-    x34 = sin_psi*x13
-    x35 = 1.0/(m*(1.0 - x18*x30 - x34*x15))
-    x36 = m*x35
-    x37 = x33*x36
-    x38 = m*(1.0 - x22*x21 - x14*x28 - x33*x37)
-    x39 = m*(R*x20 - x22*x25 + 2.0*x5*x27 + x32*x37)/x38
-    x40 = (x32 + x33*x39)*x36
-    x41 = 2.0*x5*x11 + x14*x39 - x34*x40
-    x42 = cos_psi*x12
-    x43 = c5*x42
-    x44 = x43*x15
-    x45 = x33*x35
-    x46 = (1.0 - c9*x28*x42 + c10*x15*x42*x45)/x38
-    x47 = (x44 + x33*x46)*x36
-    x48 = x43 + x34*x47 - x14*x46
-    x49 = sin_psi*chi_dot
-    x50 = c11*cos_phi
-    x51 = x19*x50 - x8*x41
-    x52 = cos_psi*chi_dot
-    x53 = x24*x52 + (x40 - sin_psi*x51)
-    x54 = sin_psi*x12
-    x55 = 1.0 - c9*x15*x54
-    x56 = m*(x44 + x55*x45)/x38
-    x57 = x35*(x55 + m*x33*x56)
-    x58 = c5*x54 + x14*x56 - x34*x57
-    x59 = 0.5*c4*sin_psi + x8*x58
-    x60 = x56 - cos_psi*x59
-    x61 = 1.0/(x57 + sin_psi*x59)
-    x62 = x60*x61
-    x63 = 0.5*c4*cos_psi + x8*x48
-    x64 = x46 + cos_psi*x63 - x60*x62
-    x65 = (x24*x49 + (x39 + cos_psi*x51) - x53*x62)/x64
-    x66 = x61*(x53 - x60*x65)
-    x67 = c0*(x41 + x48*x65 - x58*x66)
-    x68 = x22*x46 + x47*x30
-    x69 = x22*x56 + x57*x30
-    x70 = c0*(x65*x68 + x66*x69 - (x22*x39 + x40*x30 - c8*x25))
-    x71 = x46*x65 + x56*x66 - x39
-    x72 = x47*x65 + x57*x66 - x40
-    x73 = cos_phi*(cos_psi*x71 - sin_psi*x72)
-    x74 = sin_psi*x65 + cos_psi*x66
-    x75 = (sin_psi*x71 + cos_psi*x72 - c12*x74)*x13
-    x76 = R*(x20 + x67*x28 - x70*x21) + x30*x73 + x75*x15
-    x77 = R*(x67*x15 + x70*x18 - x29) + x22*x73 - x75*x28 + x76*x37
-    x78 = m*x77/x38
-    x79 = c0*(x51 + x59*x66 - x63*x65)
-    x80 = (x76 + x33*x78)*x36
-    x81 = x75 + x34*x80 - x14*x78
-    x82 = 0.5*c4*x74 - x8*x81
-    x83 = R*(psi_dot*x52 - sin_psi*x79) - (x78 - cos_psi*x82)
-    x84 = R*(psi_dot*x49 + cos_psi*x79) + (x80 + sin_psi*x82)
-    x85 = (x83 + x84*x62)/x64
-    x86 = x61*(x84 + x60*x85)
-    x87 = x21*x16 + 2.0*x28*x19 + x21*x17 + x67*x18 + x70*x15
-    x88 = cos_phi*psi_dot
-    x89 = c2*cos_phi*x88
-    x90 = x71*x15 + x72*x28 + ((sin_phi*x23 - x89)*x24 - g*cos_phi)
-    x91 = cos_phi*x67
-    x92 = R*phi_dot*(sin_phi*x3 - x89) + c13*sin_phi*x91 + c14*cos_phi*x79
-    x93 = sin_phi*x19 + x91
-    x94 = x71*x18 + 2.0*x92 - x72*x21 - 2.0*c15*sin_phi*x93
-    x95 = x18*x16 + x18*x17 - 2.0*x15*x19 + x70*x28 - x67*x21
-    x96 = R*x95 + x90*x30 + x34*x94
-    x97 = m*(R*x87 + x22*x90 - x14*x94 + x96*x37)/x38
-    x98 = (x96 + x33*x97)*x36
-    x99 = m*x9*x94 + x34*x98 - x14*x97
-    x100 = c11*x93 - x8*x99
-    x101 = x98 + sin_psi*x100
-    x102 = (x97 - cos_psi*x100 - x101*x62)/x64
-    x103 = x61*(x101 - x60*x102)
-    x104 = cos_phi*(x1 + x23)
-    x105 = c17*sin_phi
-    x106 = 2.0*(psi_dot*x15 - phi_dot*x18) - x22*x104 + 2.0*x105*x27
-    x107 = 2.0*(psi_dot*x28 + phi_dot*x21) - x30*x104 - 2.0*x105*x31
-    x108 = c1*(x106 + x107*x37)/x38
-    x109 = (R*x107 + x33*x108)*x36
-    x110 = 2.0*c18*cos_phi*x26 + x14*x108 - x34*x109
-    x111 = phi_dot*x50 - x8*x110
-    x112 = R*x52 + (x109 - sin_psi*x111)
-    x113 = (R*x49 + (x108 + cos_psi*x111) - x112*x62)/x64
-    x114 = x61*(x112 - x60*x113)
-    x115 = x4*x13
-    x116 = psi_dot*x21 + phi_dot*x28 - x21*x115
-    x117 = c1*(psi_dot*x18 - phi_dot*x15 - x18*x115 - x116*x37)
-    x118 = x117/x38
-    x119 = (R*x116 - x33*x118)*x36
-    x120 = x14*x118 + x34*x119 - x5*x10
-    x121 = c11*x88 + 2.0*x8*x120
-    x122 = 2.0*x119 - sin_psi*x121
-    x123 = (2.0*x118 - cos_psi*x121 + x122*x62)/x64
-    x124 = x61*(x122 + x60*x123)
-    x125 = c7*psi_dot
-    x126 = x18*x125 + sin_psi*x26
-    x127 = c19*cos_phi*(x21*x125 - cos_psi*x26 + x126*x37)/x38
-    x128 = (c20*cos_phi*x126 + x33*x127)*x36
-    x129 = c20*x11 + x34*x128 - x14*x127
-    x130 = x8*x129
-    x131 = cos_psi*x24 - 2.0*(x128 - sin_psi*x130)
-    x132 = sin_psi*x24 - 2.0*(x127 + cos_psi*x130) - x131*x62
-    x133 = x132/x64
-    x134 = x61*(x131 - x60*x133)
-    x135 = c0*(c8*x73 + x22*x78 + x80*x30 + x68*x85 - x69*x86)
-    x136 = x68*x102 + x69*x103 - (c8*x90 + x22*x97 + x98*x30)
-    x137 = x68*x113 + x69*x114 - (x22*x108 + x109*x30 - c21*x104)
-    x138 = c0*(2.0*(x22*x118 - x119*x30) + x69*x124 - x68*x123)
-    x139 = 2.0*(c22*x88 + x22*x127 + x128*x30) + x68*x133 + x69*x134
+    x2 = cos_phi*sin_psi
+    x3 = psi_dot*phi_dot
+    x4 = phi_dot*phi_dot
+    x5 = x0*x1 + 2.0*x2*x3 + x0*x4
+    x6 = sin_psi*sin_phi
+    x7 = k*sin_phi
+    x8 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x7
+    x9 = c4*sin_phi
+    x10 = 1.0/(m*(x8 - 2.0*x9*x7))
+    x11 = sin_phi*x10
+    x12 = m*x11
+    x13 = cos_psi*x12
+    x14 = 1.0 - c5*sin_phi*x11
+    x15 = c8*x2
+    x16 = cos_phi*cos_psi
+    x17 = x15*x16 - x13*x6
+    x18 = c8*x16
+    x19 = sin_psi*x12
+    x20 = 1.0/(m*(1.0 - x16*x18 - x19*x6))
+    x21 = m*x20
+    x22 = x17*x21
+    x23 = m*(1.0 - x15*x2 - x13*x0 - x17*x22)
+    x24 = x14*(cos_psi - sin_psi*x22)/x23
+    x25 = m*x17
+    x26 = x20*(sin_psi*x14 - x24*x25)
+    x27 = x13*x24 + x19*x26 - c4*x11
+    x28 = cos_psi*y_dot - sin_psi*x_dot
+    x29 = psi_dot*x28
+    x30 = c9*cos_phi
+    x31 = sin_phi*psi_dot
+    x32 = c6*x31
+    x33 = k*chi_dot
+    x34 = x32 + x33
+    x35 = x34 - c10*x31
+    x36 = c0*x35
+    x37 = cos_phi*x10
+    x38 = phi_dot*x37
+    x39 = x6*x1 + x6*x4 - 2.0*x16*x3
+    x40 = x32 + 2.0*x33
+    x41 = cos_phi*psi_dot
+    x42 = R*x40*x41 + g*sin_phi
+    x43 = phi_dot*x11
+    x44 = x16*x43
+    x45 = x2*x43
+    x46 = R*x5 - x42*x18 - 2.0*x36*x45
+    x47 = m*(R*x39 - x15*x42 + 2.0*x36*x44 + x46*x22)/x23
+    x48 = (x46 + x17*x47)*x21
+    x49 = 2.0*x36*x38 + x13*x47 - x19*x48
+    x50 = x3*x30 - x9*x49
+    x51 = cos_psi*x_dot + sin_psi*y_dot
+    x52 = psi_dot*x51
+    x53 = x52 + (sin_psi*x47 + cos_psi*x48)
+    x54 = (sin_psi + cos_psi*x22)/x23
+    x55 = x20*(cos_psi + x54*x25)
+    x56 = x13*x54 - x19*x55
+    x57 = x9*x56
+    x58 = x57 + sin_psi*x55 - cos_psi*x54
+    x59 = 1.0/(sin_psi*x54 + cos_psi*x55)
+    x60 = x58*x59
+    x61 = x29 + (x50 + cos_psi*x47 - sin_psi*x48) + x53*x60
+    x62 = 0.5*c3 - x9*x27
+    x63 = x62 + cos_psi*x24 + sin_psi*x26 - x58*x60
+    x64 = x61/x63
+    x65 = x59*(x53 + x58*x64)
+    x66 = c1*(x27*x64 + x56*x65 - x49)
+    x67 = c0*x66
+    x68 = x15*x24 - x26*x18
+    x69 = x15*x54 + x55*x18
+    x70 = c1*(x64*x68 + x65*x69 - (x15*x47 + x48*x18 - c8*x42))
+    x71 = c0*x70
+    x72 = c0*x5 + x6*x67 + sin_psi*x64 - x16*x71 - cos_psi*x65
+    x73 = x24*x64 + x54*x65 - x47
+    x74 = x48 + x26*x64 - x55*x65
+    x75 = cos_psi*x73 + sin_psi*x74
+    x76 = cos_phi*x75
+    x77 = c12*x76
+    x78 = sin_psi*x73 - cos_psi*x74
+    x79 = x11*(c11*x78)
+    x80 = x0*x67 + x2*x71 + cos_psi*x64 + sin_psi*x65 - c0*x39
+    x81 = x80 - x16*x77 - x6*x79
+    x82 = (x72 - x2*x77 + x0*x79 + x81*x22)/x23
+    x83 = x20*(x81 + x82*x25)
+    x84 = x78*x12 + x13*x82 - x19*x83
+    x85 = x9*x84
+    x86 = x75 - x29 - (sin_psi*x82 + cos_psi*x83)
+    x87 = x52 - x78 + (x85 + sin_psi*x83 - cos_psi*x82) + x86*x60
+    x88 = x87/x63
+    x89 = x59*(x86 + x58*x88)
+    x90 = c6*cos_phi*x41
+    x91 = x73*x6 + (R*psi_dot*(sin_phi*x40 - x90) - g*cos_phi) - x74*x0
+    x92 = R*(x2*x1 + 2.0*x0*x3 + x2*x4 + x70*x6 - x66*x16) + x15*x91
+    x93 = cos_phi*x66
+    x94 = (
+        R*phi_dot*(sin_phi*x34 - x90) + c13*cos_phi*(c1*(x50 + x57*x65 - x62*x64))
+        - c14*sin_phi*x93
+    )
+    x95 = sin_phi*x3 - x93
+    x96 = x73*x16 + x74*x2 + 2.0*x94 - 2.0*c15*sin_phi*x95
+    x97 = R*(x16*x1 + x16*x4 - 2.0*x6*x3 + x66*x2 + x70*x0)
+    x98 = x97 + x91*x18 + x19*x96
+    x99 = m*(x92 - x13*x96 + x98*x22)/x23
+    x100 = (x98 + x17*x99)*x21
+    x101 = m*x10*x96 + x19*x100 - x13*x99
+    x102 = c9*x95 - x9*x101
+    x103 = sin_psi*x99 + cos_psi*x100
+    x104 = (x102 + sin_psi*x100 - cos_psi*x99 - x103*x60)/x63
+    x105 = x59*(x103 - x58*x104)
+    x106 = psi_dot*(sin_psi - cos_psi*x60)/x63
+    x107 = x59*(cos_psi*psi_dot - x58*x106)
+    x108 = psi_dot*(cos_psi + sin_psi*x60)/x63
+    x109 = x59*(sin_psi*psi_dot + x58*x108)
+    x110 = cos_phi*(x32 + x40)
+    x111 = c18*sin_phi
+    x112 = 2.0*(psi_dot*x6 - phi_dot*x16) - x15*x110 + 2.0*x111*x44
+    x113 = 2.0*(psi_dot*x0 + phi_dot*x2) - x18*x110 - 2.0*x111*x45
+    x114 = c0*(x112 + x113*x22)/x23
+    x115 = (R*x113 + x17*x114)*x21
+    x116 = 2.0*c17*cos_phi*x43 + x13*x114 - x19*x115
+    x117 = phi_dot*x30 - x9*x116
+    x118 = x51 + (sin_psi*x114 + cos_psi*x115)
+    x119 = x28 + (x117 + cos_psi*x114 - sin_psi*x115) + x118*x60
+    x120 = x119/x63
+    x121 = x59*(x118 + x58*x120)
+    x122 = x35*x12
+    x123 = psi_dot*x2 + phi_dot*x0 - x2*x122
+    x124 = c0*(psi_dot*x16 - phi_dot*x6 - x16*x122 - x123*x22)
+    x125 = x124/x23
+    x126 = (R*x123 - x17*x125)*x21
+    x127 = x13*x125 + x19*x126 - x36*x37
+    x128 = c9*x41 + 2.0*x9*x127
+    x129 = sin_psi*x125 - cos_psi*x126
+    x130 = 2.0*(cos_psi*x125 + sin_psi*x126) - x128 + 2.0*x129*x60
+    x131 = x130/x63
+    x132 = x59*(2.0*x129 + x58*x131)
+    x133 = c7*psi_dot
+    x134 = x16*x133 + sin_psi*x43
+    x135 = c20*cos_phi*(x2*x133 - cos_psi*x43 + x134*x22)/x23
+    x136 = (c19*cos_phi*x134 + x17*x135)*x21
+    x137 = c19*x38 + x19*x136 - x13*x135
+    x138 = x9*x137
+    x139 = sin_psi*x135 + cos_psi*x136
+    x140 = (x138 + cos_psi*x135 - sin_psi*x136 + x139*x60)/x63
+    x141 = x59*(x139 + x58*x140)
+    x142 = c1*(x15*x82 + x83*x18 - c8*x76 + x68*x88 + x69*x89)
+    x143 = c8*x91 + x15*x99 + x100*x18 + x68*x104 - x69*x105
+    x144 = x68*x120 + x69*x121 - (x15*x114 + x115*x18 - c21*x110)
+    x145 = c1*(x68*x131 + x69*x132 - 2.0*(x15*x125 - x126*x18))
+    x146 = x68*x140 + x69*x141 - (c22*x41 + x15*x135 + x136*x18)
     # outputs
     return _stacked(
         (10, 10),
@@ -998,61 +1025,61 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         1.0,
         0.0,
         0.0,
-        -(x78 + x46*x85 - x56*x86),
-        -(x46*x102 + x56*x103 - x97),
+        x82 + x24*x88 + x54*x89,
+        x99 + x24*x104 - x54*x105,
+        0.0,
+        x24*x106 - x54*x107,
+        -(x24*x108 + x54*x109),
+        -(x24*x120 + x54*x121 - x114),
+        x24*x131 + x54*x132 - 2.0*x125,
+        2.0*(x24*x140 + x54*x141 - x135),
         0.0,
         0.0,
+        -(x83 + x55*x89 - x26*x88),
+        x26*x104 + x55*x105 - x100,
         0.0,
-        -(x46*x113 + x56*x114 - x108),
-        -(2.0*x118 + x56*x124 - x46*x123),
-        -(2.0*x127 + x46*x133 + x56*x134),
-        0.0,
-        0.0,
-        x80 + x47*x85 - x57*x86,
-        x47*x102 + x57*x103 - x98,
-        0.0,
-        0.0,
-        0.0,
-        x47*x113 + x57*x114 - x109,
-        -(2.0*x119 + x47*x123 - x57*x124),
-        2.0*x128 + x47*x133 + x57*x134,
+        x26*x106 + x55*x107,
+        -(x26*x108 - x55*x109),
+        -(x115 + x26*x120 - x55*x121),
+        -(2.0*x126 + x55*x132 - x26*x131),
+        2.0*(x136 + x26*x140 - x55*x141),
         0.0,
         0.0,
-        -c0*(x81 + x48*x85 + x58*x86),
-        c0*(x99 + x58*x103 - x48*x102),
+        -c1*(x84 + x27*x88 + x56*x89),
+        c1*(x101 + x56*x105 - x27*x104),
+        0.0,
+        -c1*(x27*x106 - x56*x107),
+        c1*(x27*x108 + x56*x109),
+        c1*(x27*x120 + x56*x121 - x116),
+        -c1*(x27*x131 + x56*x132 - 2.0*x127),
+        -2.0*c1*(x137 + x27*x140 + x56*x141),
         0.0,
         0.0,
+        -x142,
+        -c1*x143,
         0.0,
-        -c0*(x110 + x48*x113 - x58*x114),
-        c0*(2.0*x120 + x48*x123 + x58*x124),
-        -c0*(2.0*x129 + x48*x133 - x58*x134),
-        0.0,
-        0.0,
-        x135,
-        c0*x136,
-        0.0,
-        0.0,
-        0.0,
-        c0*x137,
-        x138,
-        c0*x139,
+        -c1*(x68*x106 - x69*x107),
+        c1*(x68*x108 + x69*x109),
+        c1*x144,
+        -x145,
+        -2.0*c1*x146,
         0.0,
         0.0,
-        c0*(x63*x85 + x59*x86 - x82),
-        c0*(x100 + x63*x102 - x59*x103),
+        c1*(x85 + x57*x89 - x62*x88),
+        -c1*(x62*x104 + x57*x105 - x102),
         0.0,
-        0.0,
-        0.0,
-        -c0*(x111 + x59*x114 - x63*x113),
-        -c0*(x121 + x63*x123 + x59*x124),
-        c0*(2.0*x130 + x63*x133 - x59*x134),
+        -c1*(x62*x106 + x57*x107),
+        c1*(x62*x108 - x57*x109),
+        -c1*(x117 + x57*x121 - x62*x120),
+        -c1*(x128 + x62*x131 - x57*x132),
+        2.0*c1*(x138 + x57*x141 - x62*x140),
     )
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    535 operations, 22 of them on parameters alone.
+    538 operations, 20 of them on parameters alone.
 
     Parameters
     ----------
@@ -1070,31 +1097,28 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
     """
     # inputs
-    _, _, psi, phi, _, _, _, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*k
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*m
-    c5 = c2*c4
-    c6 = 1.0 + k
-    c7 = 1.0/(m*c6)
-    c8 = m*c7
-    c9 = m*R
-    c10 = k*c2
-    c11 = c2*R
-    c12 = 1.0/R
-    c13 = c10*c9
-    c14 = k*c1*R
-    c15 = R*c10
-    c16 = m*c9
-    c17 = c1*c9
-    c18 = c7*c4
-    c19 = c7*c9
+    c4 = 1.0 + k
+    c5 = 1.0/(m*c4)
+    c6 = m*c5
+    c7 = k*c1*R
+    c8 = 1.0/R
+    c9 = c2*R
+    c10 = m*R
+    c11 = k*c2
+    c12 = R*c11
+    c13 = c11*c10
+    c14 = m*c10
+    c15 = c1*c10
+    c16 = m*c6
+    c17 = c5*c10
     # intermediate terms
-    cos_psi = cos(psi)
     sin_phi = sin(phi)
     x0 = sin_phi*sin_phi
     cos_phi = cos(phi)
@@ -1104,122 +1128,119 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x4 = c2*sin_phi
     x5 = 1.0/(m*(x3 - 2.0*x4*x2))
     x6 = sin_phi*x5
-    x7 = cos_psi*x6
-    x8 = cos_psi*sin_phi
+    x7 = 1.0 - c3*sin_phi*x6
+    cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x9 = sin_psi*sin_phi
-    x10 = cos_phi*sin_psi
-    x11 = c8*x10
-    x12 = cos_phi*cos_psi
-    x13 = m*x7
-    x14 = x11*x12 - x13*x9
-    x15 = c8*x12
-    x16 = sin_psi*x6
-    x17 = m*x16
-    x18 = 1.0/(m*(1.0 - x12*x15 - x17*x9))
+    x8 = cos_phi*sin_psi
+    x9 = c6*x8
+    x10 = cos_phi*cos_psi
+    x11 = m*x6
+    x12 = cos_psi*x11
+    x13 = sin_psi*sin_phi
+    x14 = x9*x10 - x12*x13
+    x15 = c6*x10
+    x16 = sin_psi*x11
+    x17 = 1.0/(m*(1.0 - x10*x15 - x16*x13))
+    x18 = m*x17
     x19 = x14*x18
-    x20 = m*x18
-    x21 = x14*x20
-    x22 = m*(1.0 - x11*x10 - x13*x8 - x14*x21)
-    x23 = (1.0 - c3*x7*x8 + c5*x9*x7*x19)/x22
-    x24 = psi_dot*psi_dot
-    x25 = phi_dot*phi_dot
-    x26 = psi_dot*phi_dot
-    x27 = x9*x24 + x9*x25 - 2.0*x12*x26
-    x28 = R*x27
-    x29 = psi_dot*chi_dot
-    x30 = sin_psi*x29
-    x31 = sin_phi*psi_dot
-    x32 = c6*x31
-    x33 = k*chi_dot
-    x34 = cos_phi*psi_dot
-    x35 = (x32 + 2.0*x33)*x34
-    x36 = R*x35 + g*sin_phi
-    x37 = x32 + x33
-    x38 = c9*(x37 - c10*x31)
-    x39 = x38*(phi_dot*x6)
-    x40 = x8*x24 + 2.0*x10*x26 + x8*x25
-    x41 = R*x40
-    x42 = x41 - x36*x15 - 2.0*x10*x39
-    x43 = m*(x28 - x11*x36 + 2.0*x12*x39 + x42*x21)/x22
-    x44 = phi_dot*x34
-    x45 = cos_phi*phi_dot
-    x46 = (x42 + x14*x43)*x20
-    x47 = 2.0*x5*x45*x38 + x13*x43 - x17*x46
-    x48 = c11*x44 - x4*x47
-    x49 = cos_psi*x29
-    x50 = R*x49 + (x46 - sin_psi*x48)
-    x51 = c2*x7
-    x52 = x51*x9
-    x53 = 1.0 - c3*x9*x16
-    x54 = m*(x52 + x53*x19)/x22
-    x55 = m*x14
-    x56 = x18*(x53 + x54*x55)
-    x57 = c2*x16 + x13*x54 - x17*x56
-    x58 = 0.5*c1*sin_psi + x4*x57
-    x59 = x54 - cos_psi*x58
-    x60 = 1.0/(x56 + sin_psi*x58)
-    x61 = x59*x60
-    x62 = (x52 + x14*x23)*x20
-    x63 = x51 + x17*x62 - x13*x23
-    x64 = 0.5*c1*cos_psi + x4*x63
-    x65 = x23 + cos_psi*x64 - x59*x61
-    x66 = (R*x30 + (x43 + cos_psi*x48) - x50*x61)/x65
-    x67 = x60*(x50 - x59*x66)
-    x68 = c12*(x47 + x63*x66 - x57*x67)
-    x69 = R*x68
-    x70 = x11*x23 + x62*x15
-    x71 = x11*x54 + x56*x15
-    x72 = c12*(x66*x70 + x67*x71 - (x11*x43 + x46*x15 - c8*x36))
-    x73 = R*x72
-    x74 = x28 + (x23*x66 + x54*x67 - x43) + x8*x69 - x10*x73
-    x75 = c12*(x48 + x58*x67 - x64*x66)
-    x76 = x75 + sin_phi*x68 - x44
-    x77 = sin_phi*x76
-    x78 = x41 + (x62*x66 + x56*x67 - x46) - x9*x69 - x12*x73
-    x79 = x76*x6
-    x80 = x78 - 2.0*c13*x9*x79
-    x81 = (x74 + 2.0*c13*x7*x77 + x80*x21)/x22
-    x82 = x18*(x80 + x81*x55)
-    x83 = 2.0*c15*x79 + x13*x81 - x17*x82
-    x84 = c14*x76 + x4*x83
-    x85 = x82 + sin_psi*x84
-    x86 = (x81 - cos_psi*x84 - x85*x61)/x65
-    x87 = x60*(x85 - x59*x86)
-    x88 = x35 - c6*x72
-    x89 = m*(x3*x68 + 2.0*(x75*x2 - x37*x45) - 2.0*c10*x77)
-    x90 = x68*x9 + x72*x12 - x40 + x88*x15 - x16*x89
-    x91 = x27 + x68*x8 - x72*x10 - x11*x88 - x7*x89 - x90*x21
-    x92 = m*x91/x22
-    x93 = (x90 - x14*x92)*x20
-    x94 = x13*x92 + x17*x93 - x5*x89
-    x95 = c2*x76 + x4*x94
-    x96 = sin_psi*x75 - x49 + (x93 - sin_psi*x95)
-    x97 = cos_psi*x75 + x30 + (x92 - cos_psi*x95) + x96*x61
-    x98 = x97/x65
-    x99 = x60*(x96 + x59*x98)
-    x100 = (2.0*chi_dot + x31)*x34 - x72
-    x101 = c7*x100
-    x102 = x68*(2.0*x0 + x1) + 2.0*(sin_phi*x75 - (chi_dot + x31)*x45)
-    x103 = x102 - 2.0*c2*x77
-    x104 = x12*x101 - x103*x16
-    x105 = c16*(x10*x101 + x103*x7 + x104*x21)/x22
-    x106 = (c9*x104 + x14*x105)*x20
-    x107 = c9*x5*x103 + x13*x105 - x17*x106
-    x108 = c17*x76 - x4*x107
-    x109 = x106 - sin_psi*x108
-    x110 = (x105 + cos_psi*x108 - x109*x61)/x65
-    x111 = x60*(x109 - x59*x110)
-    x112 = c18*cos_phi*sin_phi*(sin_psi + cos_psi*x21)/x22
-    x113 = (sin_phi*x15 + x14*x112)*x20
-    x114 = x13*x112 - x17*x113
-    x115 = x4*x114
-    x116 = x113 + sin_psi*x115
-    x117 = (x112 - cos_psi*x115 - x116*x61)/x65
-    x118 = x60*(x116 - x59*x117)
-    x119 = c12*(c8*x88 + x93*x15 - x11*x92 + x70*x98 - x71*x99)
-    x120 = x70*x110 + x71*x111 - (c19*x100 + x11*x105 + x106*x15)
-    x121 = x70*x117 + x71*x118 - (c8*sin_phi + x11*x112 + x113*x15)
+    x20 = cos_psi*sin_phi
+    x21 = m*(1.0 - x9*x8 - x12*x20 - x14*x19)
+    x22 = x7*(cos_psi - sin_psi*x19)/x21
+    x23 = cos_phi*psi_dot
+    x24 = phi_dot*x23
+    x25 = m*x14
+    x26 = x17*(sin_psi*x7 - x22*x25)
+    x27 = x12*x22 + x16*x26 - c2*x6
+    x28 = cos_phi*phi_dot
+    x29 = sin_phi*psi_dot
+    x30 = c4*x29
+    x31 = k*chi_dot
+    x32 = x30 + x31
+    x33 = c10*(x32 - c11*x29)
+    x34 = psi_dot*psi_dot
+    x35 = phi_dot*phi_dot
+    x36 = psi_dot*phi_dot
+    x37 = x13*x34 + x13*x35 - 2.0*x10*x36
+    x38 = R*x37
+    x39 = (x30 + 2.0*x31)*x23
+    x40 = R*x39 + g*sin_phi
+    x41 = x33*(phi_dot*x6)
+    x42 = x20*x34 + 2.0*x8*x36 + x20*x35
+    x43 = R*x42
+    x44 = x43 - x40*x15 - 2.0*x8*x41
+    x45 = m*(x38 - x9*x40 + 2.0*x10*x41 + x44*x19)/x21
+    x46 = (x44 + x14*x45)*x18
+    x47 = 2.0*x5*x28*x33 + x12*x45 - x16*x46
+    x48 = c9*x24 - x4*x47
+    x49 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + (x48 + cos_psi*x45 - sin_psi*x46)
+    x50 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x45 + cos_psi*x46)
+    x51 = sin_psi + cos_psi*x19
+    x52 = x51/x21
+    x53 = x17*(cos_psi + x52*x25)
+    x54 = x12*x52 - x16*x53
+    x55 = x4*x54
+    x56 = x55 + sin_psi*x53 - cos_psi*x52
+    x57 = 1.0/(sin_psi*x52 + cos_psi*x53)
+    x58 = x56*x57
+    x59 = 0.5*c1 - x4*x27
+    x60 = x59 + cos_psi*x22 + sin_psi*x26 - x56*x58
+    x61 = (x49 + x50*x58)/x60
+    x62 = x57*(x50 + x56*x61)
+    x63 = c8*(x27*x61 + x54*x62 - x47)
+    x64 = c8*(x48 + x55*x62 - x59*x61)
+    x65 = x24 + sin_phi*x63 - x64
+    x66 = x65*x6
+    x67 = R*x63
+    x68 = x9*x22 - x26*x15
+    x69 = x9*x52 + x53*x15
+    x70 = c8*(x61*x68 + x62*x69 - (x9*x45 + x46*x15 - c6*x40))
+    x71 = R*x70
+    x72 = x43 + x13*x67 - (x46 + x26*x61 - x53*x62) - x10*x71
+    x73 = c13*x66
+    x74 = x72 + 2.0*x13*x73
+    x75 = x38 + (x22*x61 + x52*x62 - x45) - x20*x67 - x8*x71
+    x76 = (x75 - 2.0*x20*x73 + x74*x19)/x21
+    x77 = x17*(x74 + x76*x25)
+    x78 = 2.0*c12*x66 + x16*x77 - x12*x76
+    x79 = c7*x65 + x4*x78
+    x80 = sin_psi*x76 + cos_psi*x77
+    x81 = (x79 + cos_psi*x76 - sin_psi*x77 + x80*x58)/x60
+    x82 = x57*(x80 + x56*x81)
+    x83 = x39 - c4*x70
+    x84 = x3*x63 + 2.0*(x32*x28 - x64*x2) - 2.0*c11*sin_phi*x65
+    x85 = x42 + x63*x13 - x70*x10 - x83*x15 - x16*x84
+    x86 = x63*x20 + x70*x8 - x37 + x9*x83 - x12*x84 - x85*x19
+    x87 = m*x86/x21
+    x88 = (x85 - x14*x87)*x18
+    x89 = x12*x87 + x16*x88 - m*x5*x84
+    x90 = c2*x65 + x4*x89
+    x91 = sin_psi*x87 - cos_psi*x88
+    x92 = x64 - (cos_psi*x87 + sin_psi*x88 - x90) - x91*x58
+    x93 = x92/x60
+    x94 = x57*(x91 - x56*x93)
+    x95 = (2.0*chi_dot + x29)*x23 - x70
+    x96 = c5*x95
+    x97 = x63*(2.0*x0 + x1) + 2.0*((chi_dot + x29)*x28 - sin_phi*x64)
+    x98 = x97 - 2.0*x4*x65
+    x99 = x98*x6
+    x100 = x10*x96 + sin_psi*x99
+    x101 = c14*(x8*x96 - cos_psi*x99 + x100*x19)/x21
+    x102 = (c10*x100 + x14*x101)*x18
+    x103 = c10*x5*x98 + x16*x102 - x12*x101
+    x104 = c15*x65 - x4*x103
+    x105 = sin_psi*x101 + cos_psi*x102
+    x106 = (x104 + sin_psi*x102 - cos_psi*x101 - x105*x58)/x60
+    x107 = x57*(x105 - x56*x106)
+    x108 = c16*cos_phi*sin_phi*x51/x21
+    x109 = (sin_phi*x15 + x14*x108)*x18
+    x110 = x12*x108 - x16*x109
+    x111 = x4*x110
+    x112 = sin_psi*x108 + cos_psi*x109
+    x113 = (x111 + sin_psi*x109 - cos_psi*x108 - x112*x58)/x60
+    x114 = x57*(x112 - x56*x113)
+    x115 = c8*(c6*x83 + x9*x87 - x88*x15 + x68*x93 - x69*x94)
+    x116 = c17*x95 + x9*x101 + x102*x15 + x68*x106 - x69*x107
+    x117 = c6*sin_phi + x9*x108 + x109*x15 + x68*x113 - x69*x114
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0),
@@ -1228,34 +1249,34 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0),
         (
-            -(x23*x86 + x54*x87 - x81),
-            x92 + x54*x99 - x23*x98,
-            x23*x110 + x54*x111 - x105,
-            x23*x117 + x54*x118 - x112,
+            -(x22*x81 + x52*x82 - x76),
+            -(x87 + x22*x93 - x52*x94),
+            -(x101 + x22*x106 - x52*x107),
+            -(x108 + x22*x113 - x52*x114),
         ),
         (
-            x62*x86 + x56*x87 - x82,
-            x93 + x62*x98 - x56*x99,
-            -(x62*x110 + x56*x111 - x106),
-            -(x62*x117 + x56*x118 - x113),
+            -(x77 + x26*x81 - x53*x82),
+            -(x88 + x26*x93 + x53*x94),
+            -(x26*x106 + x53*x107 - x102),
+            -(x26*x113 + x53*x114 - x109),
         ),
         (
-            -c12*(x83 + x63*x86 - x57*x87),
-            -c12*(x94 + x63*x98 + x57*x99),
-            c12*(x107 + x63*x110 - x57*x111),
-            c12*(x114 + x63*x117 - x57*x118),
+            c8*(x78 + x27*x81 + x54*x82),
+            c8*(x89 + x27*x93 - x54*x94),
+            -c8*(x103 + x54*x107 - x27*x106),
+            c8*(x110 + x27*x113 - x54*x114),
         ),
         (
-            c12*(x70*x86 + x71*x87 - (x11*x81 + x82*x15)),
-            x119,
-            -c12*x120,
-            -c12*x121,
+            c8*(x68*x81 + x69*x82 - (x9*x76 + x77*x15)),
+            x115,
+            c8*x116,
+            c8*x117,
         ),
         (
-            c12*(x84 + x64*x86 - x58*x87),
-            c12*(x95 + x64*x98 + x58*x99),
-            c12*(x108 + x58*x111 - x64*x110),
-            -c12*(x115 + x64*x117 - x58*x118),
+            -c8*(x79 + x55*x82 - x59*x81),
+            c8*(x59*x93 + x55*x94 - x90),
+            c8*(x59*x106 + x55*x107 - x104),
+            c8*(x59*x113 + x55*x114 - x111),
         ),
     )
 
@@ -1265,31 +1286,28 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     from numpy import cos, sin
 
     # inputs
-    _, _, psi, phi, _, _, _, psi_dot, phi_dot, chi_dot = y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params
     # terms of the parameters alone
     c0 = m*k
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*m
-    c5 = c2*c4
-    c6 = 1.0 + k
-    c7 = 1.0/(m*c6)
-    c8 = m*c7
-    c9 = m*R
-    c10 = k*c2
-    c11 = c2*R
-    c12 = 1.0/R
-    c13 = c10*c9
-    c14 = k*c1*R
-    c15 = R*c10
-    c16 = m*c9
-    c17 = c1*c9
-    c18 = c7*c4
-    c19 = c7*c9
+    c4 = 1.0 + k
+    c5 = 1.0/(m*c4)
+    c6 = m*c5
+    c7 = k*c1*R
+    c8 = 1.0/R
+    c9 = c2*R
+    c10 = m*R
+    c11 = k*c2
+    c12 = R*c11
+    c13 = c11*c10
+    c14 = m*c10
+    c15 = c1*c10
+    c16 = m*c6
+    c17 = c5*c10
     # intermediate terms
-    cos_psi = cos(psi)
     sin_phi = sin(phi)
     x0 = sin_phi*sin_phi
     cos_phi = cos(phi)
@@ -1299,122 +1317,119 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x4 = c2*sin_phi
     x5 = 1.0/(m*(x3 - 2.0*x4*x2))
     x6 = sin_phi*x5
-    x7 = cos_psi*x6
-    x8 = cos_psi*sin_phi
+    x7 = 1.0 - c3*sin_phi*x6
+    cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x9 = sin_psi*sin_phi
-    x10 = cos_phi*sin_psi
-    x11 = c8*x10
-    x12 = cos_phi*cos_psi
-    x13 = m*x7
-    x14 = x11*x12 - x13*x9
-    x15 = c8*x12
-    x16 = sin_psi*x6
-    x17 = m*x16
-    x18 = 1.0/(m*(1.0 - x12*x15 - x17*x9))
+    x8 = cos_phi*sin_psi
+    x9 = c6*x8
+    x10 = cos_phi*cos_psi
+    x11 = m*x6
+    x12 = cos_psi*x11
+    x13 = sin_psi*sin_phi
+    x14 = x9*x10 - x12*x13
+    x15 = c6*x10
+    x16 = sin_psi*x11
+    x17 = 1.0/(m*(1.0 - x10*x15 - x16*x13))
+    x18 = m*x17
     x19 = x14*x18
-    x20 = m*x18
-    x21 = x14*x20
-    x22 = m*(1.0 - x11*x10 - x13*x8 - x14*x21)
-    x23 = (1.0 - c3*x7*x8 + c5*x9*x7*x19)/x22
-    x24 = psi_dot*psi_dot
-    x25 = phi_dot*phi_dot
-    x26 = psi_dot*phi_dot
-    x27 = x9*x24 + x9*x25 - 2.0*x12*x26
-    x28 = R*x27
-    x29 = psi_dot*chi_dot
-    x30 = sin_psi*x29
-    x31 = sin_phi*psi_dot
-    x32 = c6*x31
-    x33 = k*chi_dot
-    x34 = cos_phi*psi_dot
-    x35 = (x32 + 2.0*x33)*x34
-    x36 = R*x35 + g*sin_phi
-    x37 = x32 + x33
-    x38 = c9*(x37 - c10*x31)
-    x39 = x38*(phi_dot*x6)
-    x40 = x8*x24 + 2.0*x10*x26 + x8*x25
-    x41 = R*x40
-    x42 = x41 - x36*x15 - 2.0*x10*x39
-    x43 = m*(x28 - x11*x36 + 2.0*x12*x39 + x42*x21)/x22
-    x44 = phi_dot*x34
-    x45 = cos_phi*phi_dot
-    x46 = (x42 + x14*x43)*x20
-    x47 = 2.0*x5*x45*x38 + x13*x43 - x17*x46
-    x48 = c11*x44 - x4*x47
-    x49 = cos_psi*x29
-    x50 = R*x49 + (x46 - sin_psi*x48)
-    x51 = c2*x7
-    x52 = x51*x9
-    x53 = 1.0 - c3*x9*x16
-    x54 = m*(x52 + x53*x19)/x22
-    x55 = m*x14
-    x56 = x18*(x53 + x54*x55)
-    x57 = c2*x16 + x13*x54 - x17*x56
-    x58 = 0.5*c1*sin_psi + x4*x57
-    x59 = x54 - cos_psi*x58
-    x60 = 1.0/(x56 + sin_psi*x58)
-    x61 = x59*x60
-    x62 = (x52 + x14*x23)*x20
-    x63 = x51 + x17*x62 - x13*x23
-    x64 = 0.5*c1*cos_psi + x4*x63
-    x65 = x23 + cos_psi*x64 - x59*x61
-    x66 = (R*x30 + (x43 + cos_psi*x48) - x50*x61)/x65
-    x67 = x60*(x50 - x59*x66)
-    x68 = c12*(x47 + x63*x66 - x57*x67)
-    x69 = R*x68
-    x70 = x11*x23 + x62*x15
-    x71 = x11*x54 + x56*x15
-    x72 = c12*(x66*x70 + x67*x71 - (x11*x43 + x46*x15 - c8*x36))
-    x73 = R*x72
-    x74 = x28 + (x23*x66 + x54*x67 - x43) + x8*x69 - x10*x73
-    x75 = c12*(x48 + x58*x67 - x64*x66)
-    x76 = x75 + sin_phi*x68 - x44
-    x77 = sin_phi*x76
-    x78 = x41 + (x62*x66 + x56*x67 - x46) - x9*x69 - x12*x73
-    x79 = x76*x6
-    x80 = x78 - 2.0*c13*x9*x79
-    x81 = (x74 + 2.0*c13*x7*x77 + x80*x21)/x22
-    x82 = x18*(x80 + x81*x55)
-    x83 = 2.0*c15*x79 + x13*x81 - x17*x82
-    x84 = c14*x76 + x4*x83
-    x85 = x82 + sin_psi*x84
-    x86 = (x81 - cos_psi*x84 - x85*x61)/x65
-    x87 = x60*(x85 - x59*x86)
-    x88 = x35 - c6*x72
-    x89 = m*(x3*x68 + 2.0*(x75*x2 - x37*x45) - 2.0*c10*x77)
-    x90 = x68*x9 + x72*x12 - x40 + x88*x15 - x16*x89
-    x91 = x27 + x68*x8 - x72*x10 - x11*x88 - x7*x89 - x90*x21
-    x92 = m*x91/x22
-    x93 = (x90 - x14*x92)*x20
-    x94 = x13*x92 + x17*x93 - x5*x89
-    x95 = c2*x76 + x4*x94
-    x96 = sin_psi*x75 - x49 + (x93 - sin_psi*x95)
-    x97 = cos_psi*x75 + x30 + (x92 - cos_psi*x95) + x96*x61
-    x98 = x97/x65
-    x99 = x60*(x96 + x59*x98)
-    x100 = (2.0*chi_dot + x31)*x34 - x72
-    x101 = c7*x100
-    x102 = x68*(2.0*x0 + x1) + 2.0*(sin_phi*x75 - (chi_dot + x31)*x45)
-    x103 = x102 - 2.0*c2*x77
-    x104 = x12*x101 - x103*x16
-    x105 = c16*(x10*x101 + x103*x7 + x104*x21)/x22
-    x106 = (c9*x104 + x14*x105)*x20
-    x107 = c9*x5*x103 + x13*x105 - x17*x106
-    x108 = c17*x76 - x4*x107
-    x109 = x106 - sin_psi*x108
-    x110 = (x105 + cos_psi*x108 - x109*x61)/x65
-    x111 = x60*(x109 - x59*x110)
-    x112 = c18*cos_phi*sin_phi*(sin_psi + cos_psi*x21)/x22
-    x113 = (sin_phi*x15 + x14*x112)*x20
-    x114 = x13*x112 - x17*x113
-    x115 = x4*x114
-    x116 = x113 + sin_psi*x115
-    x117 = (x112 - cos_psi*x115 - x116*x61)/x65
-    x118 = x60*(x116 - x59*x117)
-    x119 = c12*(c8*x88 + x93*x15 - x11*x92 + x70*x98 - x71*x99)
-    x120 = x70*x110 + x71*x111 - (c19*x100 + x11*x105 + x106*x15)
-    x121 = x70*x117 + x71*x118 - (c8*sin_phi + x11*x112 + x113*x15)
+    x20 = cos_psi*sin_phi
+    x21 = m*(1.0 - x9*x8 - x12*x20 - x14*x19)
+    x22 = x7*(cos_psi - sin_psi*x19)/x21
+    x23 = cos_phi*psi_dot
+    x24 = phi_dot*x23
+    x25 = m*x14
+    x26 = x17*(sin_psi*x7 - x22*x25)
+    x27 = x12*x22 + x16*x26 - c2*x6
+    x28 = cos_phi*phi_dot
+    x29 = sin_phi*psi_dot
+    x30 = c4*x29
+    x31 = k*chi_dot
+    x32 = x30 + x31
+    x33 = c10*(x32 - c11*x29)
+    x34 = psi_dot*psi_dot
+    x35 = phi_dot*phi_dot
+    x36 = psi_dot*phi_dot
+    x37 = x13*x34 + x13*x35 - 2.0*x10*x36
+    x38 = R*x37
+    x39 = (x30 + 2.0*x31)*x23
+    x40 = R*x39 + g*sin_phi
+    x41 = x33*(phi_dot*x6)
+    x42 = x20*x34 + 2.0*x8*x36 + x20*x35
+    x43 = R*x42
+    x44 = x43 - x40*x15 - 2.0*x8*x41
+    x45 = m*(x38 - x9*x40 + 2.0*x10*x41 + x44*x19)/x21
+    x46 = (x44 + x14*x45)*x18
+    x47 = 2.0*x5*x28*x33 + x12*x45 - x16*x46
+    x48 = c9*x24 - x4*x47
+    x49 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + (x48 + cos_psi*x45 - sin_psi*x46)
+    x50 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x45 + cos_psi*x46)
+    x51 = sin_psi + cos_psi*x19
+    x52 = x51/x21
+    x53 = x17*(cos_psi + x52*x25)
+    x54 = x12*x52 - x16*x53
+    x55 = x4*x54
+    x56 = x55 + sin_psi*x53 - cos_psi*x52
+    x57 = 1.0/(sin_psi*x52 + cos_psi*x53)
+    x58 = x56*x57
+    x59 = 0.5*c1 - x4*x27
+    x60 = x59 + cos_psi*x22 + sin_psi*x26 - x56*x58
+    x61 = (x49 + x50*x58)/x60
+    x62 = x57*(x50 + x56*x61)
+    x63 = c8*(x27*x61 + x54*x62 - x47)
+    x64 = c8*(x48 + x55*x62 - x59*x61)
+    x65 = x24 + sin_phi*x63 - x64
+    x66 = x65*x6
+    x67 = R*x63
+    x68 = x9*x22 - x26*x15
+    x69 = x9*x52 + x53*x15
+    x70 = c8*(x61*x68 + x62*x69 - (x9*x45 + x46*x15 - c6*x40))
+    x71 = R*x70
+    x72 = x43 + x13*x67 - (x46 + x26*x61 - x53*x62) - x10*x71
+    x73 = c13*x66
+    x74 = x72 + 2.0*x13*x73
+    x75 = x38 + (x22*x61 + x52*x62 - x45) - x20*x67 - x8*x71
+    x76 = (x75 - 2.0*x20*x73 + x74*x19)/x21
+    x77 = x17*(x74 + x76*x25)
+    x78 = 2.0*c12*x66 + x16*x77 - x12*x76
+    x79 = c7*x65 + x4*x78
+    x80 = sin_psi*x76 + cos_psi*x77
+    x81 = (x79 + cos_psi*x76 - sin_psi*x77 + x80*x58)/x60
+    x82 = x57*(x80 + x56*x81)
+    x83 = x39 - c4*x70
+    x84 = x3*x63 + 2.0*(x32*x28 - x64*x2) - 2.0*c11*sin_phi*x65
+    x85 = x42 + x63*x13 - x70*x10 - x83*x15 - x16*x84
+    x86 = x63*x20 + x70*x8 - x37 + x9*x83 - x12*x84 - x85*x19
+    x87 = m*x86/x21
+    x88 = (x85 - x14*x87)*x18
+    x89 = x12*x87 + x16*x88 - m*x5*x84
+    x90 = c2*x65 + x4*x89
+    x91 = sin_psi*x87 - cos_psi*x88
+    x92 = x64 - (cos_psi*x87 + sin_psi*x88 - x90) - x91*x58
+    x93 = x92/x60
+    x94 = x57*(x91 - x56*x93)
+    x95 = (2.0*chi_dot + x29)*x23 - x70
+    x96 = c5*x95
+    x97 = x63*(2.0*x0 + x1) + 2.0*((chi_dot + x29)*x28 - sin_phi*x64)
+    x98 = x97 - 2.0*x4*x65
+    x99 = x98*x6
+    x100 = x10*x96 + sin_psi*x99
+    x101 = c14*(x8*x96 - cos_psi*x99 + x100*x19)/x21
+    x102 = (c10*x100 + x14*x101)*x18
+    x103 = c10*x5*x98 + x16*x102 - x12*x101
+    x104 = c15*x65 - x4*x103
+    x105 = sin_psi*x101 + cos_psi*x102
+    x106 = (x104 + sin_psi*x102 - cos_psi*x101 - x105*x58)/x60
+    x107 = x57*(x105 - x56*x106)
+    x108 = c16*cos_phi*sin_phi*x51/x21
+    x109 = (sin_phi*x15 + x14*x108)*x18
+    x110 = x12*x108 - x16*x109
+    x111 = x4*x110
+    x112 = sin_psi*x108 + cos_psi*x109
+    x113 = (x111 + sin_psi*x109 - cos_psi*x108 - x112*x58)/x60
+    x114 = x57*(x112 - x56*x113)
+    x115 = c8*(c6*x83 + x9*x87 - x88*x15 + x68*x93 - x69*x94)
+    x116 = c17*x95 + x9*x101 + x102*x15 + x68*x106 - x69*x107
+    x117 = c6*sin_phi + x9*x108 + x109*x15 + x68*x113 - x69*x114
     # outputs
     return _stacked(
         (10, 4),
@@ -1439,26 +1454,26 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -(x23*x86 + x54*x87 - x81),
-        x92 + x54*x99 - x23*x98,
-        x23*x110 + x54*x111 - x105,
-        x23*x117 + x54*x118 - x112,
-        x62*x86 + x56*x87 - x82,
-        x93 + x62*x98 - x56*x99,
-        -(x62*x110 + x56*x111 - x106),
-        -(x62*x117 + x56*x118 - x113),
-        -c12*(x83 + x63*x86 - x57*x87),
-        -c12*(x94 + x63*x98 + x57*x99),
-        c12*(x107 + x63*x110 - x57*x111),
-        c12*(x114 + x63*x117 - x57*x118),
-        c12*(x70*x86 + x71*x87 - (x11*x81 + x82*x15)),
-        x119,
-        -c12*x120,
-        -c12*x121,
-        c12*(x84 + x64*x86 - x58*x87),
-        c12*(x95 + x64*x98 + x58*x99),
-        c12*(x108 + x58*x111 - x64*x110),
-        -c12*(x115 + x64*x117 - x58*x118),
+        -(x22*x81 + x52*x82 - x76),
+        -(x87 + x22*x93 - x52*x94),
+        -(x101 + x22*x106 - x52*x107),
+        -(x108 + x22*x113 - x52*x114),
+        -(x77 + x26*x81 - x53*x82),
+        -(x88 + x26*x93 + x53*x94),
+        -(x26*x106 + x53*x107 - x102),
+        -(x26*x113 + x53*x114 - x109),
+        c8*(x78 + x27*x81 + x54*x82),
+        c8*(x89 + x27*x93 - x54*x94),
+        -c8*(x103 + x54*x107 - x27*x106),
+        c8*(x110 + x27*x113 - x54*x114),
+        c8*(x68*x81 + x69*x82 - (x9*x76 + x77*x15)),
+        x115,
+        c8*x116,
+        c8*x117,
+        -c8*(x79 + x55*x82 - x59*x81),
+        c8*(x59*x93 + x55*x94 - x90),
+        c8*(x59*x106 + x55*x107 - x104),
+        c8*(x59*x113 + x55*x114 - x111),
     )
 
 
@@ -1547,7 +1562,7 @@ def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
     """Residuals of the constraints, which are 0 along a motion.
 
-    7 operations, 0 of them on parameters alone.
+    10 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
@@ -1568,9 +1583,13 @@ def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
     _, _, psi, _, _, x_dot, y_dot, _, _, chi_dot = y.tolist() if hasattr(y, "tolist") else y
     _, R, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # intermediate terms
-    x0 = R*chi_dot
+    cos_psi = cos(psi)
+    sin_psi = sin(psi)
     # outputs
-    return (x_dot - cos(psi)*x0, y_dot - sin(psi)*x0)
+    return (
+        x_dot*cos_psi + y_dot*sin_psi - R*chi_dot,
+        cos_psi*y_dot - x_dot*sin_psi,
+    )
 
 
 def constraints_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -1581,15 +1600,21 @@ def constraints_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     _, _, psi, _, _, x_dot, y_dot, _, _, chi_dot = y
     _, R, _, _ = params
     # intermediate terms
-    x0 = R*chi_dot
+    cos_psi = cos(psi)
+    sin_psi = sin(psi)
     # outputs
-    return _stacked((2,), y[0], x_dot - cos(psi)*x0, y_dot - sin(psi)*x0)
+    return _stacked(
+        (2,),
+        y[0],
+        x_dot*cos_psi + y_dot*sin_psi - R*chi_dot,
+        cos_psi*y_dot - x_dot*sin_psi,
+    )
 
 
 def constraints_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `constraints` with respect to the state.
 
-    10 operations, 0 of them on parameters alone.
+    11 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -1607,26 +1632,36 @@ def constraints_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         Entry [i][j] is the derivative of residual i with respect to y[j].
     """
     # inputs
-    _, _, psi, _, _, _, _, _, _, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, _, _, x_dot, y_dot, _, _, _ = y.tolist() if hasattr(y, "tolist") else y
     _, R, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # intermediate terms
-    sin_psi = sin(psi)
-    x0 = R*chi_dot
     cos_psi = cos(psi)
+    sin_psi = sin(psi)
     # outputs
     return (
-        (0.0, 0.0, sin_psi*x0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -R*cos_psi),
         (
             0.0,
             0.0,
-            -cos_psi*x0,
+            y_dot*cos_psi - x_dot*sin_psi,
+            0.0,
+            0.0,
+            cos_psi,
+            sin_psi,
+            0.0,
+            0.0,
+            -R,
+        ),
+        (
+            0.0,
+            0.0,
+            -(cos_psi*x_dot + y_dot*sin_psi),
+            0.0,
+            0.0,
+            -sin_psi,
+            cos_psi,
             0.0,
             0.0,
             0.0,
-            1.0,
-            0.0,
-            0.0,
-            -R*sin_psi,
         ),
     )
 
@@ -1636,43 +1671,42 @@ def constraints_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     from numpy import cos, sin
 
     # inputs
-    _, _, psi, _, _, _, _, _, _, chi_dot = y
+    _, _, psi, _, _, x_dot, y_dot, _, _, _ = y
     _, R, _, _ = params
     # intermediate terms
-    sin_psi = sin(psi)
-    x0 = R*chi_dot
     cos_psi = cos(psi)
+    sin_psi = sin(psi)
     # outputs
     return _stacked(
         (2, 10),
         y[0],
         0.0,
         0.0,
-        sin_psi*x0,
+        y_dot*cos_psi - x_dot*sin_psi,
         0.0,
         0.0,
-        1.0,
+        cos_psi,
+        sin_psi,
+        0.0,
+        0.0,
+        -R,
+        0.0,
+        0.0,
+        -(cos_psi*x_dot + y_dot*sin_psi),
+        0.0,
+        0.0,
+        -sin_psi,
+        cos_psi,
         0.0,
         0.0,
         0.0,
-        -R*cos_psi,
-        0.0,
-        0.0,
-        -cos_psi*x0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        -R*sin_psi,
     )
 
 
 def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Multipliers ground_x, ground_y of the constraints: their reactions.
+    """Multipliers ground_along, ground_across of the constraints: their reactions.
 
-    186 operations, 12 of them on parameters alone.
+    187 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -1690,77 +1724,71 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
         One for each constraint.
     """
     # inputs
-    _, _, psi, phi, _, _, _, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = 1.0 + k
-    c1 = m*(1.0/(m*c0))
-    c2 = m*k
-    c3 = 1.0/c2
-    c4 = c2*c3
-    c5 = m*R
-    c6 = k*c4
-    c7 = c4*R
-    c8 = m*c4
-    c9 = m*c8
+    c0 = m*k
+    c1 = 1.0/c0
+    c2 = c0*c1
+    c3 = c2*R
+    c4 = m*R
+    c5 = k + 1.0
+    c6 = k*c2
+    c7 = m*(1.0/(m*c5))
+    c8 = m*c2
     # intermediate terms
-    sin_psi = sin(psi)
-    x0 = R*psi_dot
-    x1 = chi_dot*x0
-    sin_phi = sin(phi)
-    x2 = sin_psi*sin_phi
-    x3 = psi_dot*psi_dot
-    x4 = phi_dot*phi_dot
     cos_psi = cos(psi)
+    sin_psi = sin(psi)
     cos_phi = cos(phi)
-    x5 = cos_phi*phi_dot
-    x6 = psi_dot*x5
-    x7 = c1*cos_phi
-    x8 = sin_psi*x7
-    x9 = sin_phi*psi_dot
-    x10 = c0*x9
-    x11 = k*chi_dot
-    x12 = cos_phi*(x10 + 2.0*x11)*x0 + g*sin_phi
-    x13 = k*sin_phi
-    x14 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x13
-    x15 = c4*sin_phi
-    x16 = 1.0/(m*(x14 - 2.0*x15*x13))
-    x17 = cos_psi*sin_phi
-    x18 = x16*x17
-    x19 = x5*(c5*(x10 + x11 - c6*x9))
-    x20 = R*(x2*x3 + x2*x4 - 2.0*cos_psi*x6) - x8*x12 + 2.0*x18*x19
-    x21 = cos_psi*x7
-    x22 = x16*x2
-    x23 = R*(x17*x3 + 2.0*sin_psi*x6 + x17*x4) - x12*x21 - 2.0*x22*x19
-    x24 = cos_phi*x8
-    x25 = m*x18
-    x26 = cos_psi*x24 - x25*x2
-    x27 = m*x22
-    x28 = 1.0/(m*(1.0 - cos_phi*cos_psi*x21 - x27*x2))
-    x29 = m*x28
-    x30 = x26*x29
-    x31 = m*(1.0 - sin_psi*x24 - x25*x17 - x26*x30)
-    x32 = m*(x20 + x23*x30)/x31
-    x33 = (x23 + x26*x32)*x29
-    x34 = c7*x6 - x15*(2.0*x16*x19 + x25*x32 - x27*x33)
-    x35 = cos_psi*x1 + (x33 - sin_psi*x34)
-    x36 = c4*x22
-    x37 = x36*x17
-    x38 = 1.0 - c8*x2*x22
-    x39 = x26*x28
-    x40 = m*(x37 + x38*x39)/x31
-    x41 = x28*(x38 + m*x26*x40)
-    x42 = 0.5*c3*sin_psi + x15*(x36 + x25*x40 - x27*x41)
-    x43 = x40 - cos_psi*x42
-    x44 = 1.0/(x41 + sin_psi*x42)
-    x45 = x43*x44
-    x46 = (1.0 - c8*x17*x18 + c9*x17*x22*x39)/x31
-    x47 = x15*(c4*x18 + x27*((x37 + x26*x46)*x29) - x25*x46)
-    x48 = (
-        (sin_psi*x1 + (x32 + cos_psi*x34) - x35*x45)/(x46 + cos_psi*(0.5*c3*cos_psi + x47) - x43*x45)
-    )
+    x0 = cos_phi*phi_dot
+    x1 = psi_dot*x0
+    sin_phi = sin(phi)
+    x2 = c2*sin_phi
+    x3 = k*sin_phi
+    x4 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x3
+    x5 = 1.0/(m*(x4 - 2.0*x2*x3))
+    x6 = sin_phi*psi_dot
+    x7 = c5*x6
+    x8 = k*chi_dot
+    x9 = x0*(c4*(x7 + x8 - c6*x6))
+    x10 = sin_phi*x5
+    x11 = m*x10
+    x12 = cos_psi*x11
+    x13 = sin_phi*sin_psi
+    x14 = psi_dot*psi_dot
+    x15 = phi_dot*phi_dot
+    x16 = c7*cos_phi
+    x17 = sin_psi*x16
+    x18 = R*cos_phi*psi_dot*(x7 + 2.0*x8) + g*sin_phi
+    x19 = x10*x9
+    x20 = R*(x13*x14 + x13*x15 - 2.0*cos_psi*x1) - x17*x18 + 2.0*cos_psi*x19
+    x21 = sin_phi*cos_psi
+    x22 = cos_psi*x16
+    x23 = R*(x21*x14 + 2.0*sin_psi*x1 + x21*x15) - x18*x22 - 2.0*sin_psi*x19
+    x24 = cos_phi*cos_psi
+    x25 = sin_psi*x11
+    x26 = 1.0/(m*(1.0 - x24*x22 - x25*x13))
+    x27 = x17*x24 - x12*x13
+    x28 = m*x27
+    x29 = x26*x28
+    x30 = m*(1.0 - cos_phi*sin_psi*x17 - x12*x21 - x27*x29)
+    x31 = m*(x20 + x23*x29)/x30
+    x32 = m*x26*(x23 + x27*x31)
+    x33 = c3*x1 - x2*(2.0*x5*x9 + x12*x31 - x25*x32) + cos_psi*x31 - sin_psi*x32
+    x34 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x31 + cos_psi*x32)
+    x35 = (sin_psi + cos_psi*x29)/x30
+    x36 = x26*(cos_psi + x35*x28)
+    x37 = x2*(x12*x35 - x25*x36) + sin_psi*x36 - cos_psi*x35
+    x38 = 1.0/(sin_psi*x35 + cos_psi*x36)
+    x39 = x37*x38
+    x40 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + x33 + x34*x39
+    x41 = 1.0 - c8*sin_phi*x10
+    x42 = x41*(cos_psi - sin_psi*x29)/x30
+    x43 = x26*(sin_psi*x41 - x42*x28)
+    x44 = 0.5*c1 - x2*(x12*x42 + x25*x43 - c2*x10) + cos_psi*x42 + sin_psi*x43
+    x45 = x40/(x44 - x37*x39)
     # outputs
-    return (-x48, x44*(x35 - x43*x48))
+    return (-x45, x38*(x34 + x37*x45))
 
 
 def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -1768,83 +1796,77 @@ def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     from numpy import cos, sin
 
     # inputs
-    _, _, psi, phi, _, _, _, psi_dot, phi_dot, chi_dot = y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params
     # terms of the parameters alone
-    c0 = 1.0 + k
-    c1 = m*(1.0/(m*c0))
-    c2 = m*k
-    c3 = 1.0/c2
-    c4 = c2*c3
-    c5 = m*R
-    c6 = k*c4
-    c7 = c4*R
-    c8 = m*c4
-    c9 = m*c8
+    c0 = m*k
+    c1 = 1.0/c0
+    c2 = c0*c1
+    c3 = c2*R
+    c4 = m*R
+    c5 = k + 1.0
+    c6 = k*c2
+    c7 = m*(1.0/(m*c5))
+    c8 = m*c2
     # intermediate terms
-    sin_psi = sin(psi)
-    x0 = R*psi_dot
-    x1 = chi_dot*x0
-    sin_phi = sin(phi)
-    x2 = sin_psi*sin_phi
-    x3 = psi_dot*psi_dot
-    x4 = phi_dot*phi_dot
     cos_psi = cos(psi)
+    sin_psi = sin(psi)
     cos_phi = cos(phi)
-    x5 = cos_phi*phi_dot
-    x6 = psi_dot*x5
-    x7 = c1*cos_phi
-    x8 = sin_psi*x7
-    x9 = sin_phi*psi_dot
-    x10 = c0*x9
-    x11 = k*chi_dot
-    x12 = cos_phi*(x10 + 2.0*x11)*x0 + g*sin_phi
-    x13 = k*sin_phi
-    x14 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x13
-    x15 = c4*sin_phi
-    x16 = 1.0/(m*(x14 - 2.0*x15*x13))
-    x17 = cos_psi*sin_phi
-    x18 = x16*x17
-    x19 = x5*(c5*(x10 + x11 - c6*x9))
-    x20 = R*(x2*x3 + x2*x4 - 2.0*cos_psi*x6) - x8*x12 + 2.0*x18*x19
-    x21 = cos_psi*x7
-    x22 = x16*x2
-    x23 = R*(x17*x3 + 2.0*sin_psi*x6 + x17*x4) - x12*x21 - 2.0*x22*x19
-    x24 = cos_phi*x8
-    x25 = m*x18
-    x26 = cos_psi*x24 - x25*x2
-    x27 = m*x22
-    x28 = 1.0/(m*(1.0 - cos_phi*cos_psi*x21 - x27*x2))
-    x29 = m*x28
-    x30 = x26*x29
-    x31 = m*(1.0 - sin_psi*x24 - x25*x17 - x26*x30)
-    x32 = m*(x20 + x23*x30)/x31
-    x33 = (x23 + x26*x32)*x29
-    x34 = c7*x6 - x15*(2.0*x16*x19 + x25*x32 - x27*x33)
-    x35 = cos_psi*x1 + (x33 - sin_psi*x34)
-    x36 = c4*x22
-    x37 = x36*x17
-    x38 = 1.0 - c8*x2*x22
-    x39 = x26*x28
-    x40 = m*(x37 + x38*x39)/x31
-    x41 = x28*(x38 + m*x26*x40)
-    x42 = 0.5*c3*sin_psi + x15*(x36 + x25*x40 - x27*x41)
-    x43 = x40 - cos_psi*x42
-    x44 = 1.0/(x41 + sin_psi*x42)
-    x45 = x43*x44
-    x46 = (1.0 - c8*x17*x18 + c9*x17*x22*x39)/x31
-    x47 = x15*(c4*x18 + x27*((x37 + x26*x46)*x29) - x25*x46)
-    x48 = (
-        (sin_psi*x1 + (x32 + cos_psi*x34) - x35*x45)/(x46 + cos_psi*(0.5*c3*cos_psi + x47) - x43*x45)
-    )
+    x0 = cos_phi*phi_dot
+    x1 = psi_dot*x0
+    sin_phi = sin(phi)
+    x2 = c2*sin_phi
+    x3 = k*sin_phi
+    x4 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x3
+    x5 = 1.0/(m*(x4 - 2.0*x2*x3))
+    x6 = sin_phi*psi_dot
+    x7 = c5*x6
+    x8 = k*chi_dot
+    x9 = x0*(c4*(x7 + x8 - c6*x6))
+    x10 = sin_phi*x5
+    x11 = m*x10
+    x12 = cos_psi*x11
+    x13 = sin_phi*sin_psi
+    x14 = psi_dot*psi_dot
+    x15 = phi_dot*phi_dot
+    x16 = c7*cos_phi
+    x17 = sin_psi*x16
+    x18 = R*cos_phi*psi_dot*(x7 + 2.0*x8) + g*sin_phi
+    x19 = x10*x9
+    x20 = R*(x13*x14 + x13*x15 - 2.0*cos_psi*x1) - x17*x18 + 2.0*cos_psi*x19
+    x21 = sin_phi*cos_psi
+    x22 = cos_psi*x16
+    x23 = R*(x21*x14 + 2.0*sin_psi*x1 + x21*x15) - x18*x22 - 2.0*sin_psi*x19
+    x24 = cos_phi*cos_psi
+    x25 = sin_psi*x11
+    x26 = 1.0/(m*(1.0 - x24*x22 - x25*x13))
+    x27 = x17*x24 - x12*x13
+    x28 = m*x27
+    x29 = x26*x28
+    x30 = m*(1.0 - cos_phi*sin_psi*x17 - x12*x21 - x27*x29)
+    x31 = m*(x20 + x23*x29)/x30
+    x32 = m*x26*(x23 + x27*x31)
+    x33 = c3*x1 - x2*(2.0*x5*x9 + x12*x31 - x25*x32) + cos_psi*x31 - sin_psi*x32
+    x34 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x31 + cos_psi*x32)
+    x35 = (sin_psi + cos_psi*x29)/x30
+    x36 = x26*(cos_psi + x35*x28)
+    x37 = x2*(x12*x35 - x25*x36) + sin_psi*x36 - cos_psi*x35
+    x38 = 1.0/(sin_psi*x35 + cos_psi*x36)
+    x39 = x37*x38
+    x40 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + x33 + x34*x39
+    x41 = 1.0 - c8*sin_phi*x10
+    x42 = x41*(cos_psi - sin_psi*x29)/x30
+    x43 = x26*(sin_psi*x41 - x42*x28)
+    x44 = 0.5*c1 - x2*(x12*x42 + x25*x43 - c2*x10) + cos_psi*x42 + sin_psi*x43
+    x45 = x40/(x44 - x37*x39)
     # outputs
-    return _stacked((2,), y[0], -x48, x44*(x35 - x43*x48))
+    return _stacked((2,), y[0], -x45, x38*(x34 + x37*x45))
 
 
 def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     """Changes of y that remove small residuals of the constraints, by one step of Newton's method.
 
-    146 operations, 10 of them on parameters alone.
+    140 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -1869,52 +1891,48 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
-    cos_psi = cos(psi)
     sin_phi = sin(phi)
     cos_phi = cos(phi)
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = cos_psi*sin_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = y_dot - sin_psi*x20
-    x22 = c2*x4
-    x23 = x22*x6
-    x24 = 1.0 - c3*x6*x13
-    x25 = m*(x23 + x24*x16)/x18
-    x26 = x15*(x24 + x25*x17)
-    x27 = c2*x13 + x10*x25 - x14*x26
-    x28 = 0.5*c1*sin_psi + x2*x27
-    x29 = x25 - cos_psi*x28
-    x30 = 1.0/(x26 + sin_psi*x28)
-    x31 = x29*x30
-    x32 = m*x15*(x23 + x11*x19)
-    x33 = x22 + x14*x32 - x10*x19
-    x34 = 0.5*c1*cos_psi + x2*x33
-    x35 = (x_dot - cos_psi*x20 + x21*x31)/(x19 + cos_psi*x34 - x29*x31)
-    x36 = x30*(x21 + x29*x35)
-    x37 = c6*(x35*(x8*x19 + x32*x12) - x36*(x8*x25 + x26*x12))
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - cos_psi*sin_phi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*y_dot - sin_psi*x_dot
+    x21 = (sin_psi + cos_psi*x16)/x18
+    x22 = x10*(cos_psi + x21*x15)
+    x23 = x13*x21 - x8*x22
+    x24 = x2*x23
+    x25 = x24 + sin_psi*x22 - cos_psi*x21
+    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
+    x27 = x25*x26
+    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
+    x33 = x26*(x20 - x25*x32)
+    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
     # outputs
     return (
         0.0,
@@ -1922,11 +1940,11 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
         0.0,
         0.0,
         0.0,
-        -(x19*x35 - x25*x36),
-        x32*x35 - x26*x36,
-        -c6*(x33*x35 + x27*x36),
-        x37,
-        c6*(x34*x35 + x28*x36),
+        -(x19*x32 - x21*x33),
+        -(x29*x32 + x22*x33),
+        c5*(x30*x32 - x23*x33),
+        x34,
+        c5*(x31*x32 + x24*x33),
     )
 
 
@@ -1942,52 +1960,48 @@ def correction_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
-    cos_psi = cos(psi)
     sin_phi = sin(phi)
     cos_phi = cos(phi)
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = cos_psi*sin_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = y_dot - sin_psi*x20
-    x22 = c2*x4
-    x23 = x22*x6
-    x24 = 1.0 - c3*x6*x13
-    x25 = m*(x23 + x24*x16)/x18
-    x26 = x15*(x24 + x25*x17)
-    x27 = c2*x13 + x10*x25 - x14*x26
-    x28 = 0.5*c1*sin_psi + x2*x27
-    x29 = x25 - cos_psi*x28
-    x30 = 1.0/(x26 + sin_psi*x28)
-    x31 = x29*x30
-    x32 = m*x15*(x23 + x11*x19)
-    x33 = x22 + x14*x32 - x10*x19
-    x34 = 0.5*c1*cos_psi + x2*x33
-    x35 = (x_dot - cos_psi*x20 + x21*x31)/(x19 + cos_psi*x34 - x29*x31)
-    x36 = x30*(x21 + x29*x35)
-    x37 = c6*(x35*(x8*x19 + x32*x12) - x36*(x8*x25 + x26*x12))
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - cos_psi*sin_phi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*y_dot - sin_psi*x_dot
+    x21 = (sin_psi + cos_psi*x16)/x18
+    x22 = x10*(cos_psi + x21*x15)
+    x23 = x13*x21 - x8*x22
+    x24 = x2*x23
+    x25 = x24 + sin_psi*x22 - cos_psi*x21
+    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
+    x27 = x25*x26
+    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
+    x33 = x26*(x20 - x25*x32)
+    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
     # outputs
     return _stacked(
         (10,),
@@ -1997,18 +2011,18 @@ def correction_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -(x19*x35 - x25*x36),
-        x32*x35 - x26*x36,
-        -c6*(x33*x35 + x27*x36),
-        x37,
-        c6*(x34*x35 + x28*x36),
+        -(x19*x32 - x21*x33),
+        -(x29*x32 + x22*x33),
+        c5*(x30*x32 - x23*x33),
+        x34,
+        c5*(x31*x32 + x24*x33),
     )
 
 
 def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """`correction` of the rational state.
 
-    142 operations, 10 of them on parameters alone.
+    136 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -2033,48 +2047,44 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = sin_phi*cos_psi
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = y_dot - sin_psi*x20
-    x22 = c2*x4
-    x23 = x22*x6
-    x24 = 1.0 - c3*x6*x13
-    x25 = m*(x23 + x24*x16)/x18
-    x26 = x15*(x24 + x25*x17)
-    x27 = c2*x13 + x10*x25 - x14*x26
-    x28 = 0.5*c1*sin_psi + x2*x27
-    x29 = x25 - cos_psi*x28
-    x30 = 1.0/(x26 + sin_psi*x28)
-    x31 = x29*x30
-    x32 = m*x15*(x23 + x11*x19)
-    x33 = x22 + x14*x32 - x10*x19
-    x34 = 0.5*c1*cos_psi + x2*x33
-    x35 = (x_dot - cos_psi*x20 + x21*x31)/(x19 + cos_psi*x34 - x29*x31)
-    x36 = x30*(x21 + x29*x35)
-    x37 = c6*(x35*(x8*x19 + x32*x12) - x36*(x8*x25 + x26*x12))
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*y_dot - sin_psi*x_dot
+    x21 = (sin_psi + cos_psi*x16)/x18
+    x22 = x10*(cos_psi + x21*x15)
+    x23 = x13*x21 - x8*x22
+    x24 = x2*x23
+    x25 = x24 + sin_psi*x22 - cos_psi*x21
+    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
+    x27 = x25*x26
+    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
+    x33 = x26*(x20 - x25*x32)
+    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
     # outputs
     return (
         0.0,
@@ -2082,11 +2092,11 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         0.0,
         0.0,
         0.0,
-        -(x19*x35 - x25*x36),
-        x32*x35 - x26*x36,
-        -c6*(x33*x35 + x27*x36),
-        x37,
-        c6*(x34*x35 + x28*x36),
+        -(x19*x32 - x21*x33),
+        -(x29*x32 + x22*x33),
+        c5*(x30*x32 - x23*x33),
+        x34,
+        c5*(x31*x32 + x24*x33),
     )
 
 
@@ -2100,48 +2110,44 @@ def correction_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = sin_phi*cos_psi
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = y_dot - sin_psi*x20
-    x22 = c2*x4
-    x23 = x22*x6
-    x24 = 1.0 - c3*x6*x13
-    x25 = m*(x23 + x24*x16)/x18
-    x26 = x15*(x24 + x25*x17)
-    x27 = c2*x13 + x10*x25 - x14*x26
-    x28 = 0.5*c1*sin_psi + x2*x27
-    x29 = x25 - cos_psi*x28
-    x30 = 1.0/(x26 + sin_psi*x28)
-    x31 = x29*x30
-    x32 = m*x15*(x23 + x11*x19)
-    x33 = x22 + x14*x32 - x10*x19
-    x34 = 0.5*c1*cos_psi + x2*x33
-    x35 = (x_dot - cos_psi*x20 + x21*x31)/(x19 + cos_psi*x34 - x29*x31)
-    x36 = x30*(x21 + x29*x35)
-    x37 = c6*(x35*(x8*x19 + x32*x12) - x36*(x8*x25 + x26*x12))
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*y_dot - sin_psi*x_dot
+    x21 = (sin_psi + cos_psi*x16)/x18
+    x22 = x10*(cos_psi + x21*x15)
+    x23 = x13*x21 - x8*x22
+    x24 = x2*x23
+    x25 = x24 + sin_psi*x22 - cos_psi*x21
+    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
+    x27 = x25*x26
+    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
+    x33 = x26*(x20 - x25*x32)
+    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
     # outputs
     return _stacked(
         (10,),
@@ -2151,18 +2157,18 @@ def correction_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        -(x19*x35 - x25*x36),
-        x32*x35 - x26*x36,
-        -c6*(x33*x35 + x27*x36),
-        x37,
-        c6*(x34*x35 + x28*x36),
+        -(x19*x32 - x21*x33),
+        -(x29*x32 + x22*x33),
+        c5*(x30*x32 - x23*x33),
+        x34,
+        c5*(x31*x32 + x24*x33),
     )
 
 
 def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
     """`correction` of the motion, and changes that make its perturbation tangent to the constraints.
 
-    177 operations, 10 of them on parameters alone.
+    174 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -2189,74 +2195,67 @@ def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = sin_phi*cos_psi
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = cos_psi*x20
-    x22 = sin_psi*x20
-    x23 = y_dot - x22
-    x24 = c2*x4
-    x25 = x24*x6
-    x26 = 1.0 - c3*x6*x13
-    x27 = m*(x25 + x26*x16)/x18
-    x28 = x15*(x26 + x27*x17)
-    x29 = c2*x13 + x10*x27 - x14*x28
-    x30 = 0.5*c1*sin_psi + x2*x29
-    x31 = x27 - cos_psi*x30
-    x32 = 1.0/(x28 + sin_psi*x30)
-    x33 = x31*x32
-    x34 = m*x15*(x25 + x11*x19)
-    x35 = x24 + x14*x34 - x10*x19
-    x36 = 0.5*c1*cos_psi + x2*x35
-    x37 = x19 + cos_psi*x36 - x31*x33
-    x38 = (x_dot - x21 + x23*x33)/x37
-    x39 = x32*(x23 + x31*x38)
-    x40 = x8*x19 + x34*x12
-    x41 = x8*x27 + x28*x12
-    x42 = R*delta_chi_dot
-    x43 = x21*delta_psi + sin_psi*x42 - delta_y_dot
-    x44 = delta_x_dot + x22*delta_psi - cos_psi*x42 - x43*x33
-    x45 = x44/x37
-    x46 = x32*(x43 - x31*x45)
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*x_dot + sin_psi*y_dot
+    x21 = cos_psi*y_dot - sin_psi*x_dot
+    x22 = (sin_psi + cos_psi*x16)/x18
+    x23 = x10*(cos_psi + x22*x15)
+    x24 = x13*x22 - x8*x23
+    x25 = x2*x24
+    x26 = x25 + sin_psi*x23 - cos_psi*x22
+    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
+    x28 = x26*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
+    x33 = (x20 - R*chi_dot - x21*x28)/x32
+    x34 = x27*(x21 - x26*x33)
+    x35 = x11*x19 - x29*x6
+    x36 = x11*x22 + x23*x6
+    x37 = x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
+    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
+    x39 = (x37 + x38*x28)/x32
+    x40 = x27*(x38 + x26*x39)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            -(x19*x38 - x27*x39),
-            x34*x38 - x28*x39,
-            -c6*(x35*x38 + x29*x39),
-            c6*(x38*x40 - x39*x41),
-            c6*(x36*x38 + x30*x39),
+            -(x19*x33 - x22*x34),
+            -(x29*x33 + x23*x34),
+            c5*(x30*x33 - x24*x34),
+            c5*(x33*x35 - x34*x36),
+            c5*(x31*x33 + x25*x34),
         ),
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            -(x19*x45 + x27*x46),
-            x34*x45 + x28*x46,
-            -c6*(x35*x45 - x29*x46),
-            c6*(x40*x45 + x41*x46),
-            c6*(x36*x45 - x30*x46),
+            -(x19*x39 + x22*x40),
+            -(x29*x39 - x23*x40),
+            c5*(x30*x39 + x24*x40),
+            c5*(x35*x39 + x36*x40),
+            c5*(x31*x39 - x25*x40),
         ),
     )
 
@@ -2271,57 +2270,50 @@ def correction_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Arra
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = sin_phi*cos_psi
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = cos_psi*x20
-    x22 = sin_psi*x20
-    x23 = y_dot - x22
-    x24 = c2*x4
-    x25 = x24*x6
-    x26 = 1.0 - c3*x6*x13
-    x27 = m*(x25 + x26*x16)/x18
-    x28 = x15*(x26 + x27*x17)
-    x29 = c2*x13 + x10*x27 - x14*x28
-    x30 = 0.5*c1*sin_psi + x2*x29
-    x31 = x27 - cos_psi*x30
-    x32 = 1.0/(x28 + sin_psi*x30)
-    x33 = x31*x32
-    x34 = m*x15*(x25 + x11*x19)
-    x35 = x24 + x14*x34 - x10*x19
-    x36 = 0.5*c1*cos_psi + x2*x35
-    x37 = x19 + cos_psi*x36 - x31*x33
-    x38 = (x_dot - x21 + x23*x33)/x37
-    x39 = x32*(x23 + x31*x38)
-    x40 = x8*x19 + x34*x12
-    x41 = x8*x27 + x28*x12
-    x42 = R*delta_chi_dot
-    x43 = x21*delta_psi + sin_psi*x42 - delta_y_dot
-    x44 = delta_x_dot + x22*delta_psi - cos_psi*x42 - x43*x33
-    x45 = x44/x37
-    x46 = x32*(x43 - x31*x45)
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*x_dot + sin_psi*y_dot
+    x21 = cos_psi*y_dot - sin_psi*x_dot
+    x22 = (sin_psi + cos_psi*x16)/x18
+    x23 = x10*(cos_psi + x22*x15)
+    x24 = x13*x22 - x8*x23
+    x25 = x2*x24
+    x26 = x25 + sin_psi*x23 - cos_psi*x22
+    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
+    x28 = x26*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
+    x33 = (x20 - R*chi_dot - x21*x28)/x32
+    x34 = x27*(x21 - x26*x33)
+    x35 = x11*x19 - x29*x6
+    x36 = x11*x22 + x23*x6
+    x37 = x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
+    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
+    x39 = (x37 + x38*x28)/x32
+    x40 = x27*(x38 + x26*x39)
     # outputs
     return _stacked(
         (4, 5),
@@ -2331,28 +2323,28 @@ def correction_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Arra
         0.0,
         0.0,
         0.0,
-        -(x19*x38 - x27*x39),
-        x34*x38 - x28*x39,
-        -c6*(x35*x38 + x29*x39),
-        c6*(x38*x40 - x39*x41),
-        c6*(x36*x38 + x30*x39),
+        -(x19*x33 - x22*x34),
+        -(x29*x33 + x23*x34),
+        c5*(x30*x33 - x24*x34),
+        c5*(x33*x35 - x34*x36),
+        c5*(x31*x33 + x25*x34),
         0.0,
         0.0,
         0.0,
         0.0,
         0.0,
-        -(x19*x45 + x27*x46),
-        x34*x45 + x28*x46,
-        -c6*(x35*x45 - x29*x46),
-        c6*(x40*x45 + x41*x46),
-        c6*(x36*x45 - x30*x46),
+        -(x19*x39 + x22*x40),
+        -(x29*x39 - x23*x40),
+        c5*(x30*x39 + x24*x40),
+        c5*(x35*x39 + x36*x40),
+        c5*(x31*x39 - x25*x40),
     )
 
 
 def correction_sensitivity(t: float, y: Numbers, params: Numbers) -> Matrix:
     """`correction_variational` with perturbed parameters, whose perturbations precede them.
 
-    182 operations, 10 of them on parameters alone.
+    176 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -2380,75 +2372,70 @@ def correction_sensitivity(t: float, y: Numbers, params: Numbers) -> Matrix:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = sin_phi*cos_psi
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = cos_psi*x20
-    x22 = sin_psi*x20
-    x23 = y_dot - x22
-    x24 = c2*x4
-    x25 = x24*x6
-    x26 = 1.0 - c3*x6*x13
-    x27 = m*(x25 + x26*x16)/x18
-    x28 = x15*(x26 + x27*x17)
-    x29 = c2*x13 + x10*x27 - x14*x28
-    x30 = 0.5*c1*sin_psi + x2*x29
-    x31 = x27 - cos_psi*x30
-    x32 = 1.0/(x28 + sin_psi*x30)
-    x33 = x31*x32
-    x34 = m*x15*(x25 + x11*x19)
-    x35 = x24 + x14*x34 - x10*x19
-    x36 = 0.5*c1*cos_psi + x2*x35
-    x37 = x19 + cos_psi*x36 - x31*x33
-    x38 = (x_dot - x21 + x23*x33)/x37
-    x39 = x32*(x23 + x31*x38)
-    x40 = x8*x19 + x34*x12
-    x41 = x8*x27 + x28*x12
-    x42 = R*delta_chi_dot
-    x43 = delta_R*chi_dot
-    x44 = delta_x_dot + x22*delta_psi - cos_psi*x42 - cos_psi*x43
-    x45 = x21*delta_psi + sin_psi*x42 + sin_psi*x43 - delta_y_dot
-    x46 = (x44 - x45*x33)/x37
-    x47 = x32*(x45 - x31*x46)
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*x_dot + sin_psi*y_dot
+    x21 = cos_psi*y_dot - sin_psi*x_dot
+    x22 = (sin_psi + cos_psi*x16)/x18
+    x23 = x10*(cos_psi + x22*x15)
+    x24 = x13*x22 - x8*x23
+    x25 = x2*x24
+    x26 = x25 + sin_psi*x23 - cos_psi*x22
+    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
+    x28 = x26*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
+    x33 = (x20 - R*chi_dot - x21*x28)/x32
+    x34 = x27*(x21 - x26*x33)
+    x35 = x11*x19 - x29*x6
+    x36 = x11*x22 + x23*x6
+    x37 = (
+        x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
+        - delta_R*chi_dot
+    )
+    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
+    x39 = (x37 + x38*x28)/x32
+    x40 = x27*(x38 + x26*x39)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            -(x19*x38 - x27*x39),
-            x34*x38 - x28*x39,
-            -c6*(x35*x38 + x29*x39),
-            c6*(x38*x40 - x39*x41),
-            c6*(x36*x38 + x30*x39),
+            -(x19*x33 - x22*x34),
+            -(x29*x33 + x23*x34),
+            c5*(x30*x33 - x24*x34),
+            c5*(x33*x35 - x34*x36),
+            c5*(x31*x33 + x25*x34),
         ),
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            -(x19*x46 + x27*x47),
-            x34*x46 + x28*x47,
-            -c6*(x35*x46 - x29*x47),
-            c6*(x40*x46 + x41*x47),
-            c6*(x36*x46 - x30*x47),
+            -(x19*x39 + x22*x40),
+            -(x29*x39 - x23*x40),
+            c5*(x30*x39 + x24*x40),
+            c5*(x35*x39 + x36*x40),
+            c5*(x31*x39 - x25*x40),
         ),
     )
 
@@ -2463,58 +2450,53 @@ def correction_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Arra
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = m*(1.0/(m*(1.0 + k)))
-    c6 = 1.0/R
+    c4 = m*(1.0/(m*(1.0 + k)))
+    c5 = 1.0/R
     # intermediate terms
     x0 = k*sin_phi
     x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
     x2 = c2*sin_phi
     x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = cos_psi*x3
-    x5 = sin_phi*cos_psi
-    x6 = sin_psi*sin_phi
-    x7 = c5*cos_phi
+    x4 = 1.0 - c3*sin_phi*x3
+    x5 = c4*cos_phi
+    x6 = cos_psi*x5
+    x7 = m*x3
     x8 = sin_psi*x7
-    x9 = cos_phi*x8
-    x10 = m*x4
-    x11 = cos_psi*x9 - x10*x6
-    x12 = cos_psi*x7
-    x13 = sin_psi*x3
-    x14 = m*x13
-    x15 = 1.0/(m*(1.0 - cos_phi*cos_psi*x12 - x14*x6))
-    x16 = x11*x15
-    x17 = m*x11
-    x18 = m*(1.0 - sin_psi*x9 - x10*x5 - x16*x17)
-    x19 = (1.0 - c3*x4*x5 + c4*x6*x4*x16)/x18
-    x20 = R*chi_dot
-    x21 = cos_psi*x20
-    x22 = sin_psi*x20
-    x23 = y_dot - x22
-    x24 = c2*x4
-    x25 = x24*x6
-    x26 = 1.0 - c3*x6*x13
-    x27 = m*(x25 + x26*x16)/x18
-    x28 = x15*(x26 + x27*x17)
-    x29 = c2*x13 + x10*x27 - x14*x28
-    x30 = 0.5*c1*sin_psi + x2*x29
-    x31 = x27 - cos_psi*x30
-    x32 = 1.0/(x28 + sin_psi*x30)
-    x33 = x31*x32
-    x34 = m*x15*(x25 + x11*x19)
-    x35 = x24 + x14*x34 - x10*x19
-    x36 = 0.5*c1*cos_psi + x2*x35
-    x37 = x19 + cos_psi*x36 - x31*x33
-    x38 = (x_dot - x21 + x23*x33)/x37
-    x39 = x32*(x23 + x31*x38)
-    x40 = x8*x19 + x34*x12
-    x41 = x8*x27 + x28*x12
-    x42 = R*delta_chi_dot
-    x43 = delta_R*chi_dot
-    x44 = delta_x_dot + x22*delta_psi - cos_psi*x42 - cos_psi*x43
-    x45 = x21*delta_psi + sin_psi*x42 + sin_psi*x43 - delta_y_dot
-    x46 = (x44 - x45*x33)/x37
-    x47 = x32*(x45 - x31*x46)
+    x9 = sin_psi*sin_phi
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
+    x11 = sin_psi*x5
+    x12 = cos_phi*x11
+    x13 = cos_psi*x7
+    x14 = cos_psi*x12 - x13*x9
+    x15 = m*x14
+    x16 = x10*x15
+    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x20 = cos_psi*x_dot + sin_psi*y_dot
+    x21 = cos_psi*y_dot - sin_psi*x_dot
+    x22 = (sin_psi + cos_psi*x16)/x18
+    x23 = x10*(cos_psi + x22*x15)
+    x24 = x13*x22 - x8*x23
+    x25 = x2*x24
+    x26 = x25 + sin_psi*x23 - cos_psi*x22
+    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
+    x28 = x26*x27
+    x29 = x10*(sin_psi*x4 - x19*x15)
+    x30 = x13*x19 + x8*x29 - c2*x3
+    x31 = 0.5*c1 - x2*x30
+    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
+    x33 = (x20 - R*chi_dot - x21*x28)/x32
+    x34 = x27*(x21 - x26*x33)
+    x35 = x11*x19 - x29*x6
+    x36 = x11*x22 + x23*x6
+    x37 = (
+        x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
+        - delta_R*chi_dot
+    )
+    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
+    x39 = (x37 + x38*x28)/x32
+    x40 = x27*(x38 + x26*x39)
     # outputs
     return _stacked(
         (4, 5),
@@ -2524,21 +2506,21 @@ def correction_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Arra
         0.0,
         0.0,
         0.0,
-        -(x19*x38 - x27*x39),
-        x34*x38 - x28*x39,
-        -c6*(x35*x38 + x29*x39),
-        c6*(x38*x40 - x39*x41),
-        c6*(x36*x38 + x30*x39),
+        -(x19*x33 - x22*x34),
+        -(x29*x33 + x23*x34),
+        c5*(x30*x33 - x24*x34),
+        c5*(x33*x35 - x34*x36),
+        c5*(x31*x33 + x25*x34),
         0.0,
         0.0,
         0.0,
         0.0,
         0.0,
-        -(x19*x46 + x27*x47),
-        x34*x46 + x28*x47,
-        -c6*(x35*x46 - x29*x47),
-        c6*(x40*x46 + x41*x47),
-        c6*(x36*x46 - x30*x47),
+        -(x19*x39 + x22*x40),
+        -(x29*x39 - x23*x40),
+        c5*(x30*x39 + x24*x40),
+        c5*(x35*x39 + x36*x40),
+        c5*(x31*x39 - x25*x40),
     )
 
 
@@ -2951,7 +2933,7 @@ def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
-    224 operations, 13 of them on parameters alone.
+    224 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -2976,84 +2958,80 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = 1.0 + k
-    c6 = m*(1.0/(m*c5))
+    c4 = 1.0 + k
+    c5 = m*(1.0/(m*c4))
+    c6 = c2*R
     c7 = m*R
     c8 = k*c2
-    c9 = c2*R
-    c10 = 1.0/R
+    c9 = 1.0/R
     # intermediate terms
-    x0 = psi_dot*cos_psi
-    x1 = psi_dot*sin_psi
-    x2 = phi_dot*cos_phi
-    x3 = cos_psi*sin_phi
-    x4 = sin_phi*sin_phi
-    x5 = c2*sin_phi
-    x6 = x4 + k*cos_phi*cos_phi + 2.0*k*x4 - 2.0*k*sin_phi*x5
-    x7 = 1.0/(m*x6)
-    x8 = x7*x3
-    x9 = sin_psi*sin_phi
-    x10 = x7*x9
-    x11 = sin_psi*cos_phi
-    x12 = c6*x11
-    x13 = cos_psi*cos_phi
-    x14 = m*x8
-    x15 = x12*x13 - x14*x9
-    x16 = c6*x13
-    x17 = m*x10
-    x18 = 1.0/(m*(1.0 - x13*x16 - x17*x9))
-    x19 = x15*x18
-    x20 = m*x18
-    x21 = x15*x20
-    x22 = m*(1.0 - x12*x11 - x14*x3 - x15*x21)
-    x23 = (1.0 - c3*x3*x8 + c4*x3*x10*x19)/x22
-    x24 = R*chi_dot
-    x25 = psi_dot*psi_dot
-    x26 = phi_dot*phi_dot
-    x27 = psi_dot*sin_phi
-    x28 = c5*x27
-    x29 = k*chi_dot
-    x30 = R*psi_dot*cos_phi*(x28 + 2.0*x29) + g*sin_phi
-    x31 = c6*x30
-    x32 = R*(x9*x25 + x9*x26 - 2.0*psi_dot*phi_dot*x13) - x31*x11
-    x33 = c7*(x2*(x28 + x29 - c8*x27))
-    x34 = R*(x3*x25 + 2.0*x1*x2 + x3*x26) - x30*x16 - 2.0*x10*x33
-    x35 = m*(x32 + 2.0*x8*x33 + x34*x21)/x22
-    x36 = (x34 + x15*x35)*x20
-    x37 = 2.0*x7*x33 + x14*x35 - x17*x36
-    x38 = c9*psi_dot*x2 - x5*x37
-    x39 = x0*x24 + (x36 - sin_psi*x38)
-    x40 = c2*x10
-    x41 = x40*x3
-    x42 = 1.0 - c3*x9*x10
-    x43 = m*(x41 + x42*x19)/x22
-    x44 = x18*(x42 + m*x15*x43)
-    x45 = x40 + x14*x43 - x17*x44
-    x46 = 0.5*c1*sin_psi + x5*x45
-    x47 = x43 - cos_psi*x46
-    x48 = 1.0/(x44 + sin_psi*x46)
-    x49 = x47*x48
-    x50 = (x41 + x15*x23)*x20
-    x51 = c2*x8 + x17*x50 - x14*x23
-    x52 = 0.5*c1*cos_psi + x5*x51
-    x53 = (x1*x24 + (x35 + cos_psi*x38) - x39*x49)/(x23 + cos_psi*x52 - x47*x49)
-    x54 = x48*(x39 - x47*x53)
-    x55 = x53*(x12*x23 + x50*x16) + x54*(x12*x43 + x44*x16) - (x12*x35 + x36*x16 - x31)
+    x0 = psi_dot*sin_psi
+    x1 = phi_dot*cos_phi
+    x2 = phi_dot*sin_phi
+    x3 = sin_phi*sin_phi
+    x4 = c2*sin_phi
+    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
+    x6 = 1.0/(m*x5)
+    x7 = 1.0 - c3*x3*x6
+    x8 = cos_psi*cos_phi
+    x9 = c5*x8
+    x10 = sin_psi*sin_phi
+    x11 = m*x6
+    x12 = x10*x11
+    x13 = 1.0/(m*(1.0 - x8*x9 - x12*x10))
+    x14 = sin_psi*cos_phi
+    x15 = c5*x14
+    x16 = cos_psi*sin_phi
+    x17 = x16*x11
+    x18 = x15*x8 - x17*x10
+    x19 = m*x18
+    x20 = x13*x19
+    x21 = m*(1.0 - x15*x14 - x17*x16 - x18*x20)
+    x22 = x7*(cos_psi - sin_psi*x20)/x21
+    x23 = psi_dot*sin_phi
+    x24 = c4*x23
+    x25 = k*chi_dot
+    x26 = c7*(x6*(x24 + x25 - c8*x23))
+    x27 = x1*x26
+    x28 = psi_dot*psi_dot
+    x29 = phi_dot*phi_dot
+    x30 = R*psi_dot*cos_phi*(x24 + 2.0*x25) + g*sin_phi
+    x31 = c5*x30
+    x32 = R*(x10*x28 + x10*x29 - 2.0*psi_dot*phi_dot*x8) - x31*x14
+    x33 = R*(x16*x28 + 2.0*x0*x1 + x16*x29) - x30*x9 - 2.0*x27*x10
+    x34 = m*(x32 + 2.0*x2*x8*x26 + x33*x20)/x21
+    x35 = m*x13*(x33 + x18*x34)
+    x36 = 2.0*x27 + x17*x34 - x12*x35
+    x37 = c6*psi_dot*x1 - x4*x36
+    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
+    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
+    x40 = (sin_psi + cos_psi*x20)/x21
+    x41 = x13*(cos_psi + x40*x19)
+    x42 = x17*x40 - x12*x41
+    x43 = x4*x42
+    x44 = x43 + sin_psi*x41 - cos_psi*x40
+    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
+    x46 = x44*x45
+    x47 = x13*(sin_psi*x7 - x22*x19)
+    x48 = x17*x22 + x12*x47 - x4*x6
+    x49 = 0.5*c1 - x4*x48
+    x50 = (x38 + x39*x46)/(x49 + cos_psi*x22 + sin_psi*x47 - x44*x46)
+    x51 = x45*(x39 + x44*x50)
+    x52 = x50*(x15*x22 - x47*x9) + x51*(x15*x40 + x41*x9) - (x15*x34 + x35*x9 - x31)
     # outputs
     return (
         x_dot,
         y_dot,
-        x0,
-        -x1,
-        x2,
-        -phi_dot*sin_phi,
+        psi_dot*cos_psi,
+        -x0,
+        x1,
+        -x2,
         chi_dot,
-        -(x23*x53 + x43*x54 - x35),
-        x50*x53 + x44*x54 - x36,
-        -c10*(x37 + x51*x53 - x45*x54),
-        c10*x55,
-        -c10*(x38 + x46*x54 - x52*x53),
+        -(x22*x50 + x40*x51 - x34),
+        -(x35 + x47*x50 - x41*x51),
+        c9*(x48*x50 + x42*x51 - x36),
+        c9*x52,
+        -c9*(x37 + x43*x51 - x49*x50),
     )
 
 
@@ -3067,93 +3045,89 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = 1.0 + k
-    c6 = m*(1.0/(m*c5))
+    c4 = 1.0 + k
+    c5 = m*(1.0/(m*c4))
+    c6 = c2*R
     c7 = m*R
     c8 = k*c2
-    c9 = c2*R
-    c10 = 1.0/R
+    c9 = 1.0/R
     # intermediate terms
-    x0 = psi_dot*cos_psi
-    x1 = psi_dot*sin_psi
-    x2 = phi_dot*cos_phi
-    x3 = cos_psi*sin_phi
-    x4 = sin_phi*sin_phi
-    x5 = c2*sin_phi
-    x6 = x4 + k*cos_phi*cos_phi + 2.0*k*x4 - 2.0*k*sin_phi*x5
-    x7 = 1.0/(m*x6)
-    x8 = x7*x3
-    x9 = sin_psi*sin_phi
-    x10 = x7*x9
-    x11 = sin_psi*cos_phi
-    x12 = c6*x11
-    x13 = cos_psi*cos_phi
-    x14 = m*x8
-    x15 = x12*x13 - x14*x9
-    x16 = c6*x13
-    x17 = m*x10
-    x18 = 1.0/(m*(1.0 - x13*x16 - x17*x9))
-    x19 = x15*x18
-    x20 = m*x18
-    x21 = x15*x20
-    x22 = m*(1.0 - x12*x11 - x14*x3 - x15*x21)
-    x23 = (1.0 - c3*x3*x8 + c4*x3*x10*x19)/x22
-    x24 = R*chi_dot
-    x25 = psi_dot*psi_dot
-    x26 = phi_dot*phi_dot
-    x27 = psi_dot*sin_phi
-    x28 = c5*x27
-    x29 = k*chi_dot
-    x30 = R*psi_dot*cos_phi*(x28 + 2.0*x29) + g*sin_phi
-    x31 = c6*x30
-    x32 = R*(x9*x25 + x9*x26 - 2.0*psi_dot*phi_dot*x13) - x31*x11
-    x33 = c7*(x2*(x28 + x29 - c8*x27))
-    x34 = R*(x3*x25 + 2.0*x1*x2 + x3*x26) - x30*x16 - 2.0*x10*x33
-    x35 = m*(x32 + 2.0*x8*x33 + x34*x21)/x22
-    x36 = (x34 + x15*x35)*x20
-    x37 = 2.0*x7*x33 + x14*x35 - x17*x36
-    x38 = c9*psi_dot*x2 - x5*x37
-    x39 = x0*x24 + (x36 - sin_psi*x38)
-    x40 = c2*x10
-    x41 = x40*x3
-    x42 = 1.0 - c3*x9*x10
-    x43 = m*(x41 + x42*x19)/x22
-    x44 = x18*(x42 + m*x15*x43)
-    x45 = x40 + x14*x43 - x17*x44
-    x46 = 0.5*c1*sin_psi + x5*x45
-    x47 = x43 - cos_psi*x46
-    x48 = 1.0/(x44 + sin_psi*x46)
-    x49 = x47*x48
-    x50 = (x41 + x15*x23)*x20
-    x51 = c2*x8 + x17*x50 - x14*x23
-    x52 = 0.5*c1*cos_psi + x5*x51
-    x53 = (x1*x24 + (x35 + cos_psi*x38) - x39*x49)/(x23 + cos_psi*x52 - x47*x49)
-    x54 = x48*(x39 - x47*x53)
-    x55 = x53*(x12*x23 + x50*x16) + x54*(x12*x43 + x44*x16) - (x12*x35 + x36*x16 - x31)
+    x0 = psi_dot*sin_psi
+    x1 = phi_dot*cos_phi
+    x2 = phi_dot*sin_phi
+    x3 = sin_phi*sin_phi
+    x4 = c2*sin_phi
+    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
+    x6 = 1.0/(m*x5)
+    x7 = 1.0 - c3*x3*x6
+    x8 = cos_psi*cos_phi
+    x9 = c5*x8
+    x10 = sin_psi*sin_phi
+    x11 = m*x6
+    x12 = x10*x11
+    x13 = 1.0/(m*(1.0 - x8*x9 - x12*x10))
+    x14 = sin_psi*cos_phi
+    x15 = c5*x14
+    x16 = cos_psi*sin_phi
+    x17 = x16*x11
+    x18 = x15*x8 - x17*x10
+    x19 = m*x18
+    x20 = x13*x19
+    x21 = m*(1.0 - x15*x14 - x17*x16 - x18*x20)
+    x22 = x7*(cos_psi - sin_psi*x20)/x21
+    x23 = psi_dot*sin_phi
+    x24 = c4*x23
+    x25 = k*chi_dot
+    x26 = c7*(x6*(x24 + x25 - c8*x23))
+    x27 = x1*x26
+    x28 = psi_dot*psi_dot
+    x29 = phi_dot*phi_dot
+    x30 = R*psi_dot*cos_phi*(x24 + 2.0*x25) + g*sin_phi
+    x31 = c5*x30
+    x32 = R*(x10*x28 + x10*x29 - 2.0*psi_dot*phi_dot*x8) - x31*x14
+    x33 = R*(x16*x28 + 2.0*x0*x1 + x16*x29) - x30*x9 - 2.0*x27*x10
+    x34 = m*(x32 + 2.0*x2*x8*x26 + x33*x20)/x21
+    x35 = m*x13*(x33 + x18*x34)
+    x36 = 2.0*x27 + x17*x34 - x12*x35
+    x37 = c6*psi_dot*x1 - x4*x36
+    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
+    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
+    x40 = (sin_psi + cos_psi*x20)/x21
+    x41 = x13*(cos_psi + x40*x19)
+    x42 = x17*x40 - x12*x41
+    x43 = x4*x42
+    x44 = x43 + sin_psi*x41 - cos_psi*x40
+    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
+    x46 = x44*x45
+    x47 = x13*(sin_psi*x7 - x22*x19)
+    x48 = x17*x22 + x12*x47 - x4*x6
+    x49 = 0.5*c1 - x4*x48
+    x50 = (x38 + x39*x46)/(x49 + cos_psi*x22 + sin_psi*x47 - x44*x46)
+    x51 = x45*(x39 + x44*x50)
+    x52 = x50*(x15*x22 - x47*x9) + x51*(x15*x40 + x41*x9) - (x15*x34 + x35*x9 - x31)
     # outputs
     return _stacked(
         (12,),
         y[0],
         x_dot,
         y_dot,
-        x0,
-        -x1,
-        x2,
-        -phi_dot*sin_phi,
+        psi_dot*cos_psi,
+        -x0,
+        x1,
+        -x2,
         chi_dot,
-        -(x23*x53 + x43*x54 - x35),
-        x50*x53 + x44*x54 - x36,
-        -c10*(x37 + x51*x53 - x45*x54),
-        c10*x55,
-        -c10*(x38 + x46*x54 - x52*x53),
+        -(x22*x50 + x40*x51 - x34),
+        -(x35 + x47*x50 - x41*x51),
+        c9*(x48*x50 + x42*x51 - x36),
+        c9*x52,
+        -c9*(x37 + x43*x51 - x49*x50),
     )
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    451 operations, 17 of them on parameters alone.
+    458 operations, 17 of them on parameters alone.
 
     Parameters
     ----------
@@ -3180,132 +3154,136 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = 1.0 + k
-    c6 = m*(1.0/(m*c5))
-    c7 = m*R
-    c8 = k*c2
-    c9 = c2*R
+    c4 = 1.0 + k
+    c5 = 1.0/(m*c4)
+    c6 = m*c5
+    c7 = c2*R
+    c8 = m*R
+    c9 = k*c2
     c10 = 1.0/R
-    c11 = k*R
-    c12 = c5*R
-    c13 = k*c1
-    c14 = c0*R
+    c11 = m*m
+    c12 = c5*c11
+    c13 = k*R
+    c14 = c4*R
+    c15 = R*c9
     # intermediate terms
     x0 = psi_dot*cos_psi
     x1 = psi_dot*sin_psi
     x2 = phi_dot*cos_phi
-    x3 = phi_dot*sin_phi
-    x4 = cos_psi*sin_phi
-    x5 = sin_phi*sin_phi
-    x6 = c2*sin_phi
-    x7 = x5 + k*cos_phi*cos_phi + 2.0*k*x5 - 2.0*k*sin_phi*x6
-    x8 = 1.0/(m*x7)
-    x9 = x8*x4
-    x10 = sin_psi*sin_phi
-    x11 = x8*x10
-    x12 = sin_psi*cos_phi
-    x13 = c6*x12
-    x14 = cos_psi*cos_phi
-    x15 = m*x9
-    x16 = x13*x14 - x15*x10
-    x17 = c6*x14
-    x18 = m*x11
-    x19 = 1.0/(m*(1.0 - x14*x17 - x18*x10))
-    x20 = x16*x19
-    x21 = m*x19
-    x22 = x16*x21
-    x23 = m*(1.0 - x13*x12 - x15*x4 - x16*x22)
-    x24 = (1.0 - c3*x4*x9 + c4*x4*x11*x20)/x23
-    x25 = x1*chi_dot
-    x26 = psi_dot*psi_dot
-    x27 = phi_dot*phi_dot
-    x28 = psi_dot*phi_dot
-    x29 = x10*x26 + x10*x27 - 2.0*x14*x28
-    x30 = psi_dot*sin_phi
-    x31 = c5*x30
-    x32 = k*chi_dot
-    x33 = x31 + 2.0*x32
-    x34 = psi_dot*cos_phi
-    x35 = R*x33*x34 + g*sin_phi
-    x36 = x31 + x32
-    x37 = c7*(x36 - c8*x30)
-    x38 = x4*x26 + 2.0*x12*x28 + x4*x27
-    x39 = x2*x37
-    x40 = R*x38 - x35*x17 - 2.0*x11*x39
-    x41 = m*(R*x29 - x13*x35 + 2.0*x3*x8*x14*x37 + x40*x22)
-    x42 = x41/x23
-    x43 = (x40 + x16*x42)*x21
-    x44 = 2.0*x8*x39 + x15*x42 - x18*x43
-    x45 = c9*psi_dot*x2 - x6*x44
-    x46 = x0*chi_dot
-    x47 = R*x46 + (x43 - sin_psi*x45)
-    x48 = c2*x11
-    x49 = x48*x4
-    x50 = 1.0 - c3*x10*x11
-    x51 = m*(x49 + x50*x20)/x23
-    x52 = x19*(x50 + m*x16*x51)
-    x53 = x48 + x15*x51 - x18*x52
-    x54 = 0.5*c1*sin_psi + x6*x53
-    x55 = x51 - cos_psi*x54
-    x56 = 1.0/(x52 + sin_psi*x54)
+    x3 = sin_phi*sin_phi
+    x4 = c2*sin_phi
+    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
+    x6 = 1.0/(m*x5)
+    x7 = sin_phi*x6
+    x8 = 1.0 - c3*sin_phi*x7
+    x9 = cos_psi*cos_phi
+    x10 = c6*x9
+    x11 = sin_psi*sin_phi
+    x12 = m*x6
+    x13 = x11*x12
+    x14 = 1.0/(m*(1.0 - x9*x10 - x13*x11))
+    x15 = sin_psi*cos_phi
+    x16 = c6*x15
+    x17 = cos_psi*sin_phi
+    x18 = x17*x12
+    x19 = x16*x9 - x18*x11
+    x20 = m*x19
+    x21 = x14*x20
+    x22 = m*(1.0 - x16*x15 - x18*x17 - x19*x21)
+    x23 = x8*(cos_psi - sin_psi*x21)/x22
+    x24 = y_dot*cos_psi - x_dot*sin_psi
+    x25 = psi_dot*x24
+    x26 = psi_dot*phi_dot
+    x27 = psi_dot*sin_phi
+    x28 = c4*x27
+    x29 = k*chi_dot
+    x30 = x28 + x29
+    x31 = c8*(x30 - c9*x27)
+    x32 = psi_dot*psi_dot
+    x33 = phi_dot*phi_dot
+    x34 = x11*x32 + x11*x33 - 2.0*x9*x26
+    x35 = x28 + 2.0*x29
+    x36 = psi_dot*cos_phi
+    x37 = R*x35*x36 + g*sin_phi
+    x38 = c6*x37
+    x39 = phi_dot*x9
+    x40 = x7*x31
+    x41 = x17*x32 + 2.0*x15*x26 + x17*x33
+    x42 = phi_dot*x15
+    x43 = R*x41 - x37*x10 - 2.0*x42*x40
+    x44 = m*(R*x34 - x38*x15 + 2.0*x39*x40 + x43*x21)/x22
+    x45 = m*x14*(x43 + x19*x44)
+    x46 = 2.0*x2*x6*x31 + x18*x44 - x13*x45
+    x47 = c7*cos_phi*x26 - x4*x46
+    x48 = x_dot*cos_psi + y_dot*sin_psi
+    x49 = psi_dot*x48
+    x50 = x49 + (sin_psi*x44 + cos_psi*x45)
+    x51 = (sin_psi + cos_psi*x21)/x22
+    x52 = x14*(cos_psi + x51*x20)
+    x53 = x18*x51 - x13*x52
+    x54 = x4*x53
+    x55 = x54 + sin_psi*x52 - cos_psi*x51
+    x56 = 1.0/(sin_psi*x51 + cos_psi*x52)
     x57 = x55*x56
-    x58 = (x49 + x16*x24)*x21
-    x59 = c2*x9 + x18*x58 - x15*x24
-    x60 = 0.5*c1*cos_psi + x6*x59
-    x61 = x24 + cos_psi*x60 - x55*x57
-    x62 = (R*x25 + (x42 + cos_psi*x45) - x47*x57)/x61
-    x63 = x56*(x47 - x55*x62)
-    x64 = x24*x62 + x51*x63 - x42
-    x65 = x58*x62 + x52*x63 - x43
-    x66 = c10*(x44 + x59*x62 - x53*x63)
-    x67 = x13*x24 + x58*x17
-    x68 = x13*x51 + x52*x17
-    x69 = c10*(x62*x67 + x63*x68 - (x13*x42 + x43*x17 - c6*x35))
-    x70 = c10*(x45 + x54*x63 - x60*x62)
-    x71 = (
-        delta_phi_dot*(psi_dot*x14 - phi_dot*x10)
-        - delta_psi_dot*(psi_dot*x10 - phi_dot*x14)
+    x58 = x25 + (x47 + cos_psi*x44 - sin_psi*x45) + x50*x57
+    x59 = x14*(sin_psi*x8 - x23*x20)
+    x60 = x18*x23 + x13*x59 - c2*x7
+    x61 = 0.5*c1 - x4*x60
+    x62 = x61 + cos_psi*x23 + sin_psi*x59 - x55*x57
+    x63 = x58/x62
+    x64 = x56*(x50 + x55*x63)
+    x65 = x23*x63 + x51*x64 - x44
+    x66 = x45 + x59*x63 - x52*x64
+    x67 = c10*(x60*x63 + x53*x64 - x46)
+    x68 = x16*x23 - x59*x10
+    x69 = x16*x51 + x52*x10
+    x70 = c10*(x63*x68 + x64*x69 - (x16*x44 + x45*x10 - x38))
+    x71 = c10*(x47 + x54*x64 - x61*x63)
+    x72 = c8*x67
+    x73 = c8*x70
+    x74 = c8*x41 + x11*x72 + sin_psi*x63 - x9*x73 - cos_psi*x64
+    x75 = x15*x32 + 2.0*x17*x26 + x15*x33 + x70*x11 - x67*x9
+    x76 = c8*delta_phi
+    x77 = c8*delta_psi_dot
+    x78 = c8*delta_phi_dot
+    x79 = (psi_dot*x11 - x39)*x77 - (psi_dot*x9 - phi_dot*x11)*x78
+    x80 = cos_psi*x65 + sin_psi*x66
+    x81 = c4*cos_phi*x36
+    x82 = x66*x17 + (R*psi_dot*(x81 - sin_phi*x35) + g*cos_phi) - x65*x11
+    x83 = R*cos_phi
+    x84 = c13*delta_chi_dot
+    x85 = (
+        cos_phi*delta_psi*x80 + delta_phi*x82 + delta_psi_dot*(x28 + x35)*x83 + 2.0*x36*x84
     )
-    x72 = x12*x26 + 2.0*x4*x28 + x12*x27 + x66*x14 + x69*x10
-    x73 = delta_psi*(x66*x10 + x69*x14 - x38) + 2.0*x71 - delta_phi*x72
-    x74 = R*cos_phi
-    x75 = c11*delta_chi_dot
-    x76 = c5*cos_phi*x34
-    x77 = x64*x10 + x65*x4 - (R*psi_dot*(x76 - sin_phi*x33) + g*cos_phi)
-    x78 = (
-        cos_phi*delta_psi*(cos_psi*x64 - sin_psi*x65) + delta_psi_dot*(x31 + x33)*x74
-        + 2.0*x34*x75 - delta_phi*x77
+    x86 = c12*x85
+    x87 = sin_psi*x65 - cos_psi*x66
+    x88 = x2*delta_psi_dot
+    x89 = c14*sin_phi
+    x90 = cos_phi*x67
+    x91 = c13*cos_phi*x71 - R*phi_dot*(x81 - sin_phi*x30) - x90*x89
+    x92 = (
+        sin_phi*delta_psi*x87 + 2.0*(x88*x89 + x30*delta_phi_dot*x83 + x2*x84)
+        - delta_phi*(x65*x9 + x66*x15 + 2.0*x91)
     )
-    x79 = x2*delta_psi_dot
-    x80 = c12*sin_phi
-    x81 = cos_phi*x66
-    x82 = x81*x80 + c11*cos_phi*x70 - R*phi_dot*(x76 - sin_phi*x36)
-    x83 = (
-        sin_phi*delta_psi*(sin_psi*x64 + cos_psi*x65)
-        + 2.0*(x79*x80 + x36*delta_phi_dot*x74 + x2*x75)
-        - delta_phi*(x64*x14 + 2.0*x82 - x65*x12)
-    )
-    x84 = c14*x79 + c14*delta_phi_dot*x34 - c14*delta_phi*(sin_phi*x28 + x81)
-    x85 = delta_psi*(sin_psi*x62 + cos_psi*x63) + 2.0*x84
-    x86 = m*(x83 - c13*sin_phi*x85)
-    x87 = x14*x26 + x14*x27 - 2.0*x10*x28 + x69*x4 - x66*x12
-    x88 = (
-        delta_psi_dot*(psi_dot*x4 + phi_dot*x12) + delta_phi_dot*(psi_dot*x12 + phi_dot*x4)
-    )
-    x89 = delta_phi*x87 + 2.0*x88 - delta_psi*(x29 + x66*x4 - x69*x12)
-    x90 = R*x89 - x78*x17 - x11*x86
-    x91 = m*(R*x73 + x13*x78 - x9*x86 - x90*x22)/x23
-    x92 = chi_dot*delta_psi_dot
-    x93 = delta_psi*(x46 - sin_psi*x70) + sin_psi*x92 + x1*delta_chi_dot
-    x94 = (x90 - x16*x91)*x21
-    x95 = x15*x91 + x18*x94 - x8*x86
-    x96 = 0.5*c1*x85 + x6*x95
-    x97 = cos_psi*x92 + x0*delta_chi_dot - delta_psi*(x25 + cos_psi*x70)
-    x98 = R*x97 + (x94 - sin_psi*x96)
-    x99 = (R*x93 - (x91 - cos_psi*x96) - x98*x57)/x61
-    x100 = x56*(x98 - x55*x99)
-    x101 = c10*(c6*x78 + x13*x91 - x94*x17 + x67*x99 + x68*x100)
+    x93 = x88 + delta_phi_dot*x36 - delta_phi*(sin_phi*x26 - x90)
+    x94 = x92 - 2.0*c15*sin_phi*x93
+    x95 = c11*(x6*x94)
+    x96 = delta_psi*x74 + x75*x76 + 2.0*x79 - x15*x86 + x17*x95
+    x97 = x17*x72 + x15*x73 + cos_psi*x63 + sin_psi*x64 - c8*x34
+    x98 = x9*x32 + x9*x33 - 2.0*x11*x26 + x67*x15 + x70*x17
+    x99 = (psi_dot*x17 + x42)*x77 + (psi_dot*x15 + phi_dot*x17)*x78
+    x100 = delta_psi*x97 + x98*x76 + 2.0*x99 - x9*x86 - x11*x95
+    x101 = (x96 + x100*x21)/x22
+    x102 = delta_psi*(x49 - x87) + x1*delta_x_dot - x0*delta_y_dot - x24*delta_psi_dot
+    x103 = x14*(x100 + x101*x20)
+    x104 = x94*x12 + x18*x101 - x13*x103
+    x105 = c7*x93 - x4*x104
+    x106 = x0*delta_x_dot + x1*delta_y_dot + x48*delta_psi_dot - delta_psi*(x80 - x25)
+    x107 = x106 + (sin_psi*x101 + cos_psi*x103)
+    x108 = x102 - (x105 + cos_psi*x101 - sin_psi*x103) - x107*x57
+    x109 = x108/x62
+    x110 = x56*(x107 - x55*x109)
+    x111 = x16*x101 + x103*x10 - c6*x85 + x68*x109 - x69*x110
     # outputs
     return (
         x_dot,
@@ -3313,23 +3291,23 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         x0,
         -x1,
         x2,
-        -x3,
+        -phi_dot*sin_phi,
         chi_dot,
-        -x64,
-        x65,
+        -x65,
         -x66,
-        x69,
-        -x70,
+        x67,
+        x70,
+        -x71,
         delta_x_dot,
         delta_y_dot,
         delta_psi_dot,
         delta_phi_dot,
         delta_chi_dot,
-        -(x91 + x24*x99 + x51*x100),
-        x58*x99 + x52*x100 - x94,
-        c10*(x95 + x53*x100 - x59*x99),
-        x101,
-        -c10*(x96 + x54*x100 - x60*x99),
+        x101 + x23*x109 - x51*x110,
+        x59*x109 + x52*x110 - x103,
+        -c10*(x104 + x60*x109 - x53*x110),
+        -c10*x111,
+        -c10*(x105 + x61*x109 + x54*x110),
     )
 
 
@@ -3343,132 +3321,136 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*c3
-    c5 = 1.0 + k
-    c6 = m*(1.0/(m*c5))
-    c7 = m*R
-    c8 = k*c2
-    c9 = c2*R
+    c4 = 1.0 + k
+    c5 = 1.0/(m*c4)
+    c6 = m*c5
+    c7 = c2*R
+    c8 = m*R
+    c9 = k*c2
     c10 = 1.0/R
-    c11 = k*R
-    c12 = c5*R
-    c13 = k*c1
-    c14 = c0*R
+    c11 = m*m
+    c12 = c5*c11
+    c13 = k*R
+    c14 = c4*R
+    c15 = R*c9
     # intermediate terms
     x0 = psi_dot*cos_psi
     x1 = psi_dot*sin_psi
     x2 = phi_dot*cos_phi
-    x3 = phi_dot*sin_phi
-    x4 = cos_psi*sin_phi
-    x5 = sin_phi*sin_phi
-    x6 = c2*sin_phi
-    x7 = x5 + k*cos_phi*cos_phi + 2.0*k*x5 - 2.0*k*sin_phi*x6
-    x8 = 1.0/(m*x7)
-    x9 = x8*x4
-    x10 = sin_psi*sin_phi
-    x11 = x8*x10
-    x12 = sin_psi*cos_phi
-    x13 = c6*x12
-    x14 = cos_psi*cos_phi
-    x15 = m*x9
-    x16 = x13*x14 - x15*x10
-    x17 = c6*x14
-    x18 = m*x11
-    x19 = 1.0/(m*(1.0 - x14*x17 - x18*x10))
-    x20 = x16*x19
-    x21 = m*x19
-    x22 = x16*x21
-    x23 = m*(1.0 - x13*x12 - x15*x4 - x16*x22)
-    x24 = (1.0 - c3*x4*x9 + c4*x4*x11*x20)/x23
-    x25 = x1*chi_dot
-    x26 = psi_dot*psi_dot
-    x27 = phi_dot*phi_dot
-    x28 = psi_dot*phi_dot
-    x29 = x10*x26 + x10*x27 - 2.0*x14*x28
-    x30 = psi_dot*sin_phi
-    x31 = c5*x30
-    x32 = k*chi_dot
-    x33 = x31 + 2.0*x32
-    x34 = psi_dot*cos_phi
-    x35 = R*x33*x34 + g*sin_phi
-    x36 = x31 + x32
-    x37 = c7*(x36 - c8*x30)
-    x38 = x4*x26 + 2.0*x12*x28 + x4*x27
-    x39 = x2*x37
-    x40 = R*x38 - x35*x17 - 2.0*x11*x39
-    x41 = m*(R*x29 - x13*x35 + 2.0*x3*x8*x14*x37 + x40*x22)
-    x42 = x41/x23
-    x43 = (x40 + x16*x42)*x21
-    x44 = 2.0*x8*x39 + x15*x42 - x18*x43
-    x45 = c9*psi_dot*x2 - x6*x44
-    x46 = x0*chi_dot
-    x47 = R*x46 + (x43 - sin_psi*x45)
-    x48 = c2*x11
-    x49 = x48*x4
-    x50 = 1.0 - c3*x10*x11
-    x51 = m*(x49 + x50*x20)/x23
-    x52 = x19*(x50 + m*x16*x51)
-    x53 = x48 + x15*x51 - x18*x52
-    x54 = 0.5*c1*sin_psi + x6*x53
-    x55 = x51 - cos_psi*x54
-    x56 = 1.0/(x52 + sin_psi*x54)
+    x3 = sin_phi*sin_phi
+    x4 = c2*sin_phi
+    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
+    x6 = 1.0/(m*x5)
+    x7 = sin_phi*x6
+    x8 = 1.0 - c3*sin_phi*x7
+    x9 = cos_psi*cos_phi
+    x10 = c6*x9
+    x11 = sin_psi*sin_phi
+    x12 = m*x6
+    x13 = x11*x12
+    x14 = 1.0/(m*(1.0 - x9*x10 - x13*x11))
+    x15 = sin_psi*cos_phi
+    x16 = c6*x15
+    x17 = cos_psi*sin_phi
+    x18 = x17*x12
+    x19 = x16*x9 - x18*x11
+    x20 = m*x19
+    x21 = x14*x20
+    x22 = m*(1.0 - x16*x15 - x18*x17 - x19*x21)
+    x23 = x8*(cos_psi - sin_psi*x21)/x22
+    x24 = y_dot*cos_psi - x_dot*sin_psi
+    x25 = psi_dot*x24
+    x26 = psi_dot*phi_dot
+    x27 = psi_dot*sin_phi
+    x28 = c4*x27
+    x29 = k*chi_dot
+    x30 = x28 + x29
+    x31 = c8*(x30 - c9*x27)
+    x32 = psi_dot*psi_dot
+    x33 = phi_dot*phi_dot
+    x34 = x11*x32 + x11*x33 - 2.0*x9*x26
+    x35 = x28 + 2.0*x29
+    x36 = psi_dot*cos_phi
+    x37 = R*x35*x36 + g*sin_phi
+    x38 = c6*x37
+    x39 = phi_dot*x9
+    x40 = x7*x31
+    x41 = x17*x32 + 2.0*x15*x26 + x17*x33
+    x42 = phi_dot*x15
+    x43 = R*x41 - x37*x10 - 2.0*x42*x40
+    x44 = m*(R*x34 - x38*x15 + 2.0*x39*x40 + x43*x21)/x22
+    x45 = m*x14*(x43 + x19*x44)
+    x46 = 2.0*x2*x6*x31 + x18*x44 - x13*x45
+    x47 = c7*cos_phi*x26 - x4*x46
+    x48 = x_dot*cos_psi + y_dot*sin_psi
+    x49 = psi_dot*x48
+    x50 = x49 + (sin_psi*x44 + cos_psi*x45)
+    x51 = (sin_psi + cos_psi*x21)/x22
+    x52 = x14*(cos_psi + x51*x20)
+    x53 = x18*x51 - x13*x52
+    x54 = x4*x53
+    x55 = x54 + sin_psi*x52 - cos_psi*x51
+    x56 = 1.0/(sin_psi*x51 + cos_psi*x52)
     x57 = x55*x56
-    x58 = (x49 + x16*x24)*x21
-    x59 = c2*x9 + x18*x58 - x15*x24
-    x60 = 0.5*c1*cos_psi + x6*x59
-    x61 = x24 + cos_psi*x60 - x55*x57
-    x62 = (R*x25 + (x42 + cos_psi*x45) - x47*x57)/x61
-    x63 = x56*(x47 - x55*x62)
-    x64 = x24*x62 + x51*x63 - x42
-    x65 = x58*x62 + x52*x63 - x43
-    x66 = c10*(x44 + x59*x62 - x53*x63)
-    x67 = x13*x24 + x58*x17
-    x68 = x13*x51 + x52*x17
-    x69 = c10*(x62*x67 + x63*x68 - (x13*x42 + x43*x17 - c6*x35))
-    x70 = c10*(x45 + x54*x63 - x60*x62)
-    x71 = (
-        delta_phi_dot*(psi_dot*x14 - phi_dot*x10)
-        - delta_psi_dot*(psi_dot*x10 - phi_dot*x14)
+    x58 = x25 + (x47 + cos_psi*x44 - sin_psi*x45) + x50*x57
+    x59 = x14*(sin_psi*x8 - x23*x20)
+    x60 = x18*x23 + x13*x59 - c2*x7
+    x61 = 0.5*c1 - x4*x60
+    x62 = x61 + cos_psi*x23 + sin_psi*x59 - x55*x57
+    x63 = x58/x62
+    x64 = x56*(x50 + x55*x63)
+    x65 = x23*x63 + x51*x64 - x44
+    x66 = x45 + x59*x63 - x52*x64
+    x67 = c10*(x60*x63 + x53*x64 - x46)
+    x68 = x16*x23 - x59*x10
+    x69 = x16*x51 + x52*x10
+    x70 = c10*(x63*x68 + x64*x69 - (x16*x44 + x45*x10 - x38))
+    x71 = c10*(x47 + x54*x64 - x61*x63)
+    x72 = c8*x67
+    x73 = c8*x70
+    x74 = c8*x41 + x11*x72 + sin_psi*x63 - x9*x73 - cos_psi*x64
+    x75 = x15*x32 + 2.0*x17*x26 + x15*x33 + x70*x11 - x67*x9
+    x76 = c8*delta_phi
+    x77 = c8*delta_psi_dot
+    x78 = c8*delta_phi_dot
+    x79 = (psi_dot*x11 - x39)*x77 - (psi_dot*x9 - phi_dot*x11)*x78
+    x80 = cos_psi*x65 + sin_psi*x66
+    x81 = c4*cos_phi*x36
+    x82 = x66*x17 + (R*psi_dot*(x81 - sin_phi*x35) + g*cos_phi) - x65*x11
+    x83 = R*cos_phi
+    x84 = c13*delta_chi_dot
+    x85 = (
+        cos_phi*delta_psi*x80 + delta_phi*x82 + delta_psi_dot*(x28 + x35)*x83 + 2.0*x36*x84
     )
-    x72 = x12*x26 + 2.0*x4*x28 + x12*x27 + x66*x14 + x69*x10
-    x73 = delta_psi*(x66*x10 + x69*x14 - x38) + 2.0*x71 - delta_phi*x72
-    x74 = R*cos_phi
-    x75 = c11*delta_chi_dot
-    x76 = c5*cos_phi*x34
-    x77 = x64*x10 + x65*x4 - (R*psi_dot*(x76 - sin_phi*x33) + g*cos_phi)
-    x78 = (
-        cos_phi*delta_psi*(cos_psi*x64 - sin_psi*x65) + delta_psi_dot*(x31 + x33)*x74
-        + 2.0*x34*x75 - delta_phi*x77
+    x86 = c12*x85
+    x87 = sin_psi*x65 - cos_psi*x66
+    x88 = x2*delta_psi_dot
+    x89 = c14*sin_phi
+    x90 = cos_phi*x67
+    x91 = c13*cos_phi*x71 - R*phi_dot*(x81 - sin_phi*x30) - x90*x89
+    x92 = (
+        sin_phi*delta_psi*x87 + 2.0*(x88*x89 + x30*delta_phi_dot*x83 + x2*x84)
+        - delta_phi*(x65*x9 + x66*x15 + 2.0*x91)
     )
-    x79 = x2*delta_psi_dot
-    x80 = c12*sin_phi
-    x81 = cos_phi*x66
-    x82 = x81*x80 + c11*cos_phi*x70 - R*phi_dot*(x76 - sin_phi*x36)
-    x83 = (
-        sin_phi*delta_psi*(sin_psi*x64 + cos_psi*x65)
-        + 2.0*(x79*x80 + x36*delta_phi_dot*x74 + x2*x75)
-        - delta_phi*(x64*x14 + 2.0*x82 - x65*x12)
-    )
-    x84 = c14*x79 + c14*delta_phi_dot*x34 - c14*delta_phi*(sin_phi*x28 + x81)
-    x85 = delta_psi*(sin_psi*x62 + cos_psi*x63) + 2.0*x84
-    x86 = m*(x83 - c13*sin_phi*x85)
-    x87 = x14*x26 + x14*x27 - 2.0*x10*x28 + x69*x4 - x66*x12
-    x88 = (
-        delta_psi_dot*(psi_dot*x4 + phi_dot*x12) + delta_phi_dot*(psi_dot*x12 + phi_dot*x4)
-    )
-    x89 = delta_phi*x87 + 2.0*x88 - delta_psi*(x29 + x66*x4 - x69*x12)
-    x90 = R*x89 - x78*x17 - x11*x86
-    x91 = m*(R*x73 + x13*x78 - x9*x86 - x90*x22)/x23
-    x92 = chi_dot*delta_psi_dot
-    x93 = delta_psi*(x46 - sin_psi*x70) + sin_psi*x92 + x1*delta_chi_dot
-    x94 = (x90 - x16*x91)*x21
-    x95 = x15*x91 + x18*x94 - x8*x86
-    x96 = 0.5*c1*x85 + x6*x95
-    x97 = cos_psi*x92 + x0*delta_chi_dot - delta_psi*(x25 + cos_psi*x70)
-    x98 = R*x97 + (x94 - sin_psi*x96)
-    x99 = (R*x93 - (x91 - cos_psi*x96) - x98*x57)/x61
-    x100 = x56*(x98 - x55*x99)
-    x101 = c10*(c6*x78 + x13*x91 - x94*x17 + x67*x99 + x68*x100)
+    x93 = x88 + delta_phi_dot*x36 - delta_phi*(sin_phi*x26 - x90)
+    x94 = x92 - 2.0*c15*sin_phi*x93
+    x95 = c11*(x6*x94)
+    x96 = delta_psi*x74 + x75*x76 + 2.0*x79 - x15*x86 + x17*x95
+    x97 = x17*x72 + x15*x73 + cos_psi*x63 + sin_psi*x64 - c8*x34
+    x98 = x9*x32 + x9*x33 - 2.0*x11*x26 + x67*x15 + x70*x17
+    x99 = (psi_dot*x17 + x42)*x77 + (psi_dot*x15 + phi_dot*x17)*x78
+    x100 = delta_psi*x97 + x98*x76 + 2.0*x99 - x9*x86 - x11*x95
+    x101 = (x96 + x100*x21)/x22
+    x102 = delta_psi*(x49 - x87) + x1*delta_x_dot - x0*delta_y_dot - x24*delta_psi_dot
+    x103 = x14*(x100 + x101*x20)
+    x104 = x94*x12 + x18*x101 - x13*x103
+    x105 = c7*x93 - x4*x104
+    x106 = x0*delta_x_dot + x1*delta_y_dot + x48*delta_psi_dot - delta_psi*(x80 - x25)
+    x107 = x106 + (sin_psi*x101 + cos_psi*x103)
+    x108 = x102 - (x105 + cos_psi*x101 - sin_psi*x103) - x107*x57
+    x109 = x108/x62
+    x110 = x56*(x107 - x55*x109)
+    x111 = x16*x101 + x103*x10 - c6*x85 + x68*x109 - x69*x110
     # outputs
     return _stacked(
         (22,),
@@ -3478,30 +3460,30 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         x0,
         -x1,
         x2,
-        -x3,
+        -phi_dot*sin_phi,
         chi_dot,
-        -x64,
-        x65,
+        -x65,
         -x66,
-        x69,
-        -x70,
+        x67,
+        x70,
+        -x71,
         delta_x_dot,
         delta_y_dot,
         delta_psi_dot,
         delta_phi_dot,
         delta_chi_dot,
-        -(x91 + x24*x99 + x51*x100),
-        x58*x99 + x52*x100 - x94,
-        c10*(x95 + x53*x100 - x59*x99),
-        x101,
-        -c10*(x96 + x54*x100 - x60*x99),
+        x101 + x23*x109 - x51*x110,
+        x59*x109 + x52*x110 - x103,
+        -c10*(x104 + x60*x109 - x53*x110),
+        -c10*x111,
+        -c10*(x105 + x61*x109 + x54*x110),
     )
 
 
 def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     """`rhs_variational` with perturbed parameters, whose perturbations precede them.
 
-    527 operations, 24 of them on parameters alone.
+    533 operations, 23 of them on parameters alone.
 
     Parameters
     ----------
@@ -3529,184 +3511,192 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*m
-    c5 = c2*c4
-    c6 = 1.0 + k
-    c7 = 1.0/(m*c6)
-    c8 = m*c7
-    c9 = m*R
-    c10 = k*c2
-    c11 = c2*R
-    c12 = 1.0/R
-    c13 = m*delta_R
-    c14 = c7*c4
-    c15 = k*R
+    c4 = 1.0 + k
+    c5 = 1.0/(m*c4)
+    c6 = m*c5
+    c7 = c2*R
+    c8 = m*R
+    c9 = k*c2
+    c10 = 1.0/R
+    c11 = c0*R
+    c12 = k*R
+    c13 = delta_m*c12
+    c14 = c0*delta_R
+    c15 = c8*delta_k
     c16 = R*delta_k
-    c17 = c6*R
+    c17 = c4*R
     c18 = k*c1
-    c19 = c0*R
-    c20 = delta_m*c15
-    c21 = c0*delta_R
-    c22 = c9*delta_k
+    c19 = m*delta_R
+    c20 = m*m
+    c21 = c5*c20
     # intermediate terms
-    x0 = phi_dot*cos_phi
-    x1 = phi_dot*sin_phi
-    x2 = cos_psi*sin_phi
+    x0 = psi_dot*cos_psi
+    x1 = psi_dot*sin_psi
+    x2 = phi_dot*cos_phi
     x3 = sin_phi*sin_phi
     x4 = cos_phi*cos_phi
     x5 = k*sin_phi
     x6 = x3 + k*x4 + 2.0*sin_phi*x5
     x7 = c2*sin_phi
     x8 = 1.0/(m*(x6 - 2.0*x7*x5))
-    x9 = x8*x2
-    x10 = sin_psi*sin_phi
-    x11 = x8*x10
-    x12 = sin_psi*cos_phi
-    x13 = c8*x12
-    x14 = cos_psi*cos_phi
-    x15 = m*x9
-    x16 = x13*x14 - x15*x10
-    x17 = c8*x14
-    x18 = m*x11
-    x19 = 1.0/(m*(1.0 - x14*x17 - x18*x10))
-    x20 = x16*x19
-    x21 = m*x16
-    x22 = m*(1.0 - x13*x12 - x15*x2 - x21*x20)
-    x23 = (1.0 - c3*x2*x9 + c5*x2*x11*x20)/x22
-    x24 = R*psi_dot
-    x25 = sin_psi*chi_dot
-    x26 = psi_dot*psi_dot
-    x27 = phi_dot*phi_dot
-    x28 = psi_dot*phi_dot
-    x29 = x10*x26 + x10*x27 - 2.0*x14*x28
-    x30 = R*x29
-    x31 = psi_dot*sin_phi
-    x32 = c6*x31
-    x33 = k*chi_dot
-    x34 = x32 + 2.0*x33
-    x35 = psi_dot*cos_phi
-    x36 = x34*x35
-    x37 = R*x36 + g*sin_phi
-    x38 = c8*x37
-    x39 = x32 + x33
-    x40 = c9*(x39 - c10*x31)
-    x41 = x2*x26 + 2.0*x12*x28 + x2*x27
-    x42 = R*x41
-    x43 = x0*x40
-    x44 = x42 - x37*x17 - 2.0*x11*x43
-    x45 = x19*x21
-    x46 = m*(x30 - x38*x12 + 2.0*x1*x8*x14*x40 + x44*x45)/x22
-    x47 = psi_dot*x0
-    x48 = m*x19
-    x49 = (x44 + x16*x46)*x48
-    x50 = 2.0*x8*x43 + x15*x46 - x18*x49
-    x51 = c11*x47 - x7*x50
-    x52 = cos_psi*chi_dot
-    x53 = x24*x52 + (x49 - sin_psi*x51)
-    x54 = c2*x11
-    x55 = x54*x2
-    x56 = 1.0 - c3*x10*x11
-    x57 = m*(x55 + x56*x20)/x22
-    x58 = x19*(x56 + x57*x21)
-    x59 = x54 + x15*x57 - x18*x58
-    x60 = 0.5*c1*sin_psi + x7*x59
-    x61 = x57 - cos_psi*x60
-    x62 = 1.0/(x58 + sin_psi*x60)
+    x9 = sin_phi*x8
+    x10 = 1.0 - c3*sin_phi*x9
+    x11 = cos_psi*cos_phi
+    x12 = c6*x11
+    x13 = sin_psi*sin_phi
+    x14 = m*x8
+    x15 = x13*x14
+    x16 = 1.0/(m*(1.0 - x11*x12 - x15*x13))
+    x17 = sin_psi*cos_phi
+    x18 = c6*x17
+    x19 = cos_psi*sin_phi
+    x20 = x19*x14
+    x21 = x18*x11 - x20*x13
+    x22 = m*x21
+    x23 = x16*x22
+    x24 = m*(1.0 - x18*x17 - x20*x19 - x21*x23)
+    x25 = x10*(cos_psi - sin_psi*x23)/x24
+    x26 = y_dot*cos_psi - x_dot*sin_psi
+    x27 = psi_dot*x26
+    x28 = psi_dot*x2
+    x29 = psi_dot*sin_phi
+    x30 = c4*x29
+    x31 = k*chi_dot
+    x32 = x30 + x31
+    x33 = c8*(x32 - c9*x29)
+    x34 = psi_dot*psi_dot
+    x35 = phi_dot*phi_dot
+    x36 = psi_dot*phi_dot
+    x37 = x13*x34 + x13*x35 - 2.0*x11*x36
+    x38 = R*x37
+    x39 = x30 + 2.0*x31
+    x40 = psi_dot*cos_phi
+    x41 = x39*x40
+    x42 = R*x41 + g*sin_phi
+    x43 = c6*x42
+    x44 = phi_dot*x11
+    x45 = x9*x33
+    x46 = x19*x34 + 2.0*x17*x36 + x19*x35
+    x47 = R*x46
+    x48 = phi_dot*x17
+    x49 = x47 - x42*x12 - 2.0*x48*x45
+    x50 = m*(x38 - x43*x17 + 2.0*x44*x45 + x49*x23)/x24
+    x51 = m*x16*(x49 + x21*x50)
+    x52 = 2.0*x2*x8*x33 + x20*x50 - x15*x51
+    x53 = c7*x28 - x7*x52
+    x54 = x_dot*cos_psi + y_dot*sin_psi
+    x55 = psi_dot*x54
+    x56 = x55 + (sin_psi*x50 + cos_psi*x51)
+    x57 = (sin_psi + cos_psi*x23)/x24
+    x58 = x16*(cos_psi + x57*x22)
+    x59 = x20*x57 - x15*x58
+    x60 = x7*x59
+    x61 = x60 + sin_psi*x58 - cos_psi*x57
+    x62 = 1.0/(sin_psi*x57 + cos_psi*x58)
     x63 = x61*x62
-    x64 = (x55 + x16*x23)*x48
-    x65 = c2*x9 + x18*x64 - x15*x23
-    x66 = 0.5*c1*cos_psi + x7*x65
-    x67 = x23 + cos_psi*x66 - x61*x63
-    x68 = (x24*x25 + (x46 + cos_psi*x51) - x53*x63)/x67
-    x69 = x62*(x53 - x61*x68)
-    x70 = x23*x68 + x57*x69 - x46
-    x71 = x64*x68 + x58*x69 - x49
-    x72 = c12*(x50 + x65*x68 - x59*x69)
-    x73 = x13*x23 + x64*x17
-    x74 = x13*x57 + x58*x17
-    x75 = c12*(x68*x73 + x69*x74 - (x13*x46 + x49*x17 - x38))
-    x76 = c12*(x51 + x60*x69 - x66*x68)
-    x77 = psi_dot*x52 - sin_psi*x76
-    x78 = R*delta_psi
-    x79 = R*delta_psi_dot
-    x80 = delta_chi_dot*x24
-    x81 = cos_psi*x76 + psi_dot*x25
-    x82 = x12*x26 + 2.0*x2*x28 + x12*x27 + x72*x14 + x75*x10
-    x83 = c9*delta_phi
-    x84 = R*x72
-    x85 = R*x75
-    x86 = x29 + x72*x2 - x75*x12
-    x87 = c9*delta_psi_dot
-    x88 = c9*delta_phi_dot
-    x89 = (psi_dot*x10 - phi_dot*x14)*x87 - (psi_dot*x14 - phi_dot*x10)*x88
-    x90 = x72*x10 + x75*x14 - x41
-    x91 = c9*delta_psi
-    x92 = x82*x83 + delta_m*(x30 + x70 + x2*x84 - x12*x85) + c13*x86 + 2.0*x89 - x90*x91
-    x93 = c15*delta_chi_dot
-    x94 = c6*cos_phi*x35
-    x95 = x70*x10 + x71*x2 - ((x94 - sin_phi*x34)*x24 + g*cos_phi)
-    x96 = (
-        cos_phi*delta_psi*(cos_psi*x70 - sin_psi*x71) + cos_phi*(x32 + x34)*x79
-        + 2.0*x35*x93 + delta_R*(x36 - c6*x75) + delta_g*sin_phi - delta_phi*x95
-        - c16*(x75 - (2.0*chi_dot + x31)*x35)
+    x64 = x27 + (x53 + cos_psi*x50 - sin_psi*x51) + x56*x63
+    x65 = x16*(sin_psi*x10 - x25*x22)
+    x66 = x20*x25 + x15*x65 - c2*x9
+    x67 = 0.5*c1 - x7*x66
+    x68 = x67 + cos_psi*x25 + sin_psi*x65 - x61*x63
+    x69 = x64/x68
+    x70 = x62*(x56 + x61*x69)
+    x71 = x25*x69 + x57*x70 - x50
+    x72 = x51 + x65*x69 - x58*x70
+    x73 = c10*(x66*x69 + x59*x70 - x52)
+    x74 = x18*x25 - x65*x12
+    x75 = x18*x57 + x58*x12
+    x76 = c10*(x69*x74 + x70*x75 - (x18*x50 + x51*x12 - x43))
+    x77 = c10*(x53 + x60*x70 - x67*x69)
+    x78 = sin_psi*x71 - cos_psi*x72
+    x79 = (
+        x0*delta_y_dot + x26*delta_psi_dot + delta_R*x77 - delta_psi*(x55 - x78)
+        - x1*delta_x_dot
     )
-    x97 = c14*x96
-    x98 = x0*delta_psi_dot
-    x99 = c17*sin_phi
-    x100 = cos_phi*x72
-    x101 = x100*x99 + c15*cos_phi*x76 - R*phi_dot*(x94 - sin_phi*x39)
-    x102 = x72*(2.0*x3 + x4) + 2.0*(sin_phi*x76 - x0*(chi_dot + x31))
-    x103 = (
-        sin_phi*delta_psi*(sin_psi*x70 + cos_psi*x71)
-        + 2.0*(x98*x99 + R*cos_phi*x39*delta_phi_dot + x0*x93)
-        - delta_phi*(x70*x14 + 2.0*x101 - x71*x12)
-        - delta_R*(x6*x72 + 2.0*(x76*x5 - x0*x39)) - c16*x102
+    x80 = x2*delta_psi_dot
+    x81 = x28 + sin_phi*x73 - x77
+    x82 = cos_phi*x73
+    x83 = (
+        c11*x80 + c11*delta_phi_dot*x40 + c13*x81 + c14*x81 + c15*x81
+        - c11*delta_phi*(sin_phi*x36 - x82)
     )
-    x104 = x76 + sin_phi*x72 - x47
+    x84 = x73*(2.0*x3 + x4) + 2.0*(x2*(chi_dot + x29) - sin_phi*x77)
+    x85 = c17*sin_phi
+    x86 = R*cos_phi
+    x87 = c12*delta_chi_dot
+    x88 = c4*cos_phi*x40
+    x89 = c12*cos_phi*x77 - R*phi_dot*(x88 - sin_phi*x32) - x82*x85
+    x90 = (
+        sin_phi*delta_psi*x78 + delta_R*(x6*x73 + 2.0*(x2*x32 - x77*x5)) + c16*x84
+        + 2.0*(x80*x85 + x32*delta_phi_dot*x86 + x2*x87)
+        - delta_phi*(x71*x11 + x72*x17 + 2.0*x89)
+    )
+    x91 = x90 - 2.0*c18*sin_phi*x83
+    x92 = x73*x13
+    x93 = x76*x11
+    x94 = c8*x46 + c8*x92 + sin_psi*x69 - c8*x93 - cos_psi*x70
+    x95 = x17*x34 + 2.0*x19*x36 + x17*x35 + x76*x13 - x73*x11
+    x96 = c8*delta_phi
+    x97 = x73*x19
+    x98 = x76*x17
+    x99 = c8*delta_psi_dot
+    x100 = c8*delta_phi_dot
+    x101 = (psi_dot*x13 - x44)*x99 - (psi_dot*x11 - phi_dot*x13)*x100
+    x102 = (
+        delta_psi*x94 + x95*x96 + delta_m*(x38 + x71 - R*x97 - R*x98) + 2.0*x101
+        - c19*(x97 + x98 - x37)
+    )
+    x103 = cos_psi*x71 + sin_psi*x72
+    x104 = x72*x19 + (R*psi_dot*(x88 - sin_phi*x39) + g*cos_phi) - x71*x13
     x105 = (
-        c19*delta_phi*(sin_phi*x28 + x100) + c20*x104 + c21*x104 + c22*x104 - c19*x98
-        - c19*delta_phi_dot*x35
+        cos_phi*delta_psi*x103 + delta_phi*x104 + delta_psi_dot*(x30 + x39)*x86
+        + 2.0*x40*x87 + delta_R*(x41 - c4*x76) + delta_g*sin_phi
+        - c16*(x76 - (2.0*chi_dot + x29)*x40)
     )
-    x106 = 2.0*x105 - delta_psi*(sin_psi*x68 + cos_psi*x69)
-    x107 = x103 + c18*sin_phi*x106
-    x108 = c4*x107
-    x109 = x14*x26 + x14*x27 - 2.0*x10*x28 + x75*x2 - x72*x12
-    x110 = (psi_dot*x2 + phi_dot*x12)*x87 + (psi_dot*x12 + phi_dot*x2)*x88
-    x111 = x109*x83 + delta_m*(x42 + x71 - x10*x84 - x14*x85) + 2.0*x110 - x86*x91 - c13*x90
-    x112 = x111 - x14*x97 - x11*x108
-    x113 = (x92 - x12*x97 + x9*x108 + x112*x45)/x22
-    x114 = x19*(x112 + x113*x21)
-    x115 = m*x8*x107 + x15*x113 - x18*x114
-    x116 = 0.5*c1*x106 + x7*x115
-    x117 = x77*x78 + x25*x79 + sin_psi*x80 + delta_R*x81 + (x113 - cos_psi*x116)
-    x118 = x52*x79 + cos_psi*x80 + delta_R*x77 - x81*x78 + (x114 + sin_psi*x116)
-    x119 = (x117 - x118*x63)/x67
-    x120 = x62*(x118 - x61*x119)
-    x121 = x73*x119 + x74*x120 - (x13*x113 + x114*x17 - c8*x96)
+    x106 = c21*x105
+    x107 = c20*(x8*x91)
+    x108 = c8*x97 + c8*x98 + cos_psi*x69 + sin_psi*x70 - c8*x37
+    x109 = x11*x34 + x11*x35 - 2.0*x13*x36 + x73*x17 + x76*x19
+    x110 = (psi_dot*x19 + x48)*x99 + (psi_dot*x17 + phi_dot*x19)*x100
+    x111 = (
+        delta_psi*x108 + x109*x96 + delta_m*(x47 + R*x92 - x72 - R*x93)
+        + c19*(x46 + x92 - x93) + 2.0*x110
+    )
+    x112 = x111 - x11*x106 - x13*x107
+    x113 = (x102 - x17*x106 + x19*x107 + x112*x23)/x24
+    x114 = x16*(x112 + x113*x22)
+    x115 = x91*x14 + x20*x113 - x15*x114
+    x116 = c1*x83 - x7*x115
+    x117 = x0*delta_x_dot + x1*delta_y_dot + x54*delta_psi_dot - delta_psi*(x103 - x27)
+    x118 = x117 + (sin_psi*x113 + cos_psi*x114)
+    x119 = x79 + (x116 + cos_psi*x113 - sin_psi*x114) + x118*x63
+    x120 = x119/x68
+    x121 = x62*(x118 + x61*x120)
+    x122 = x74*x120 + x75*x121 - (x18*x113 + x114*x12 - c6*x105)
     # outputs
     return (
         x_dot,
         y_dot,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
         x0,
         -x1,
+        x2,
+        -phi_dot*sin_phi,
         chi_dot,
-        -x70,
-        x71,
+        -x71,
         -x72,
-        x75,
-        -x76,
+        x73,
+        x76,
+        -x77,
         delta_x_dot,
         delta_y_dot,
         delta_psi_dot,
         delta_phi_dot,
         delta_chi_dot,
-        -(x23*x119 + x57*x120 - x113),
-        x64*x119 + x58*x120 - x114,
-        -c12*(x115 + x65*x119 - x59*x120),
-        c12*x121,
-        c12*(x116 + x66*x119 - x60*x120),
+        -(x25*x120 + x57*x121 - x113),
+        -(x114 + x65*x120 - x58*x121),
+        c10*(x66*x120 + x59*x121 - x115),
+        c10*x122,
+        -c10*(x116 + x60*x121 - x67*x120),
     )
 
 
@@ -3720,186 +3710,194 @@ def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = 1.0/c0
     c2 = c0*c1
     c3 = m*c2
-    c4 = m*m
-    c5 = c2*c4
-    c6 = 1.0 + k
-    c7 = 1.0/(m*c6)
-    c8 = m*c7
-    c9 = m*R
-    c10 = k*c2
-    c11 = c2*R
-    c12 = 1.0/R
-    c13 = m*delta_R
-    c14 = c7*c4
-    c15 = k*R
+    c4 = 1.0 + k
+    c5 = 1.0/(m*c4)
+    c6 = m*c5
+    c7 = c2*R
+    c8 = m*R
+    c9 = k*c2
+    c10 = 1.0/R
+    c11 = c0*R
+    c12 = k*R
+    c13 = delta_m*c12
+    c14 = c0*delta_R
+    c15 = c8*delta_k
     c16 = R*delta_k
-    c17 = c6*R
+    c17 = c4*R
     c18 = k*c1
-    c19 = c0*R
-    c20 = delta_m*c15
-    c21 = c0*delta_R
-    c22 = c9*delta_k
+    c19 = m*delta_R
+    c20 = m*m
+    c21 = c5*c20
     # intermediate terms
-    x0 = phi_dot*cos_phi
-    x1 = phi_dot*sin_phi
-    x2 = cos_psi*sin_phi
+    x0 = psi_dot*cos_psi
+    x1 = psi_dot*sin_psi
+    x2 = phi_dot*cos_phi
     x3 = sin_phi*sin_phi
     x4 = cos_phi*cos_phi
     x5 = k*sin_phi
     x6 = x3 + k*x4 + 2.0*sin_phi*x5
     x7 = c2*sin_phi
     x8 = 1.0/(m*(x6 - 2.0*x7*x5))
-    x9 = x8*x2
-    x10 = sin_psi*sin_phi
-    x11 = x8*x10
-    x12 = sin_psi*cos_phi
-    x13 = c8*x12
-    x14 = cos_psi*cos_phi
-    x15 = m*x9
-    x16 = x13*x14 - x15*x10
-    x17 = c8*x14
-    x18 = m*x11
-    x19 = 1.0/(m*(1.0 - x14*x17 - x18*x10))
-    x20 = x16*x19
-    x21 = m*x16
-    x22 = m*(1.0 - x13*x12 - x15*x2 - x21*x20)
-    x23 = (1.0 - c3*x2*x9 + c5*x2*x11*x20)/x22
-    x24 = R*psi_dot
-    x25 = sin_psi*chi_dot
-    x26 = psi_dot*psi_dot
-    x27 = phi_dot*phi_dot
-    x28 = psi_dot*phi_dot
-    x29 = x10*x26 + x10*x27 - 2.0*x14*x28
-    x30 = R*x29
-    x31 = psi_dot*sin_phi
-    x32 = c6*x31
-    x33 = k*chi_dot
-    x34 = x32 + 2.0*x33
-    x35 = psi_dot*cos_phi
-    x36 = x34*x35
-    x37 = R*x36 + g*sin_phi
-    x38 = c8*x37
-    x39 = x32 + x33
-    x40 = c9*(x39 - c10*x31)
-    x41 = x2*x26 + 2.0*x12*x28 + x2*x27
-    x42 = R*x41
-    x43 = x0*x40
-    x44 = x42 - x37*x17 - 2.0*x11*x43
-    x45 = x19*x21
-    x46 = m*(x30 - x38*x12 + 2.0*x1*x8*x14*x40 + x44*x45)/x22
-    x47 = psi_dot*x0
-    x48 = m*x19
-    x49 = (x44 + x16*x46)*x48
-    x50 = 2.0*x8*x43 + x15*x46 - x18*x49
-    x51 = c11*x47 - x7*x50
-    x52 = cos_psi*chi_dot
-    x53 = x24*x52 + (x49 - sin_psi*x51)
-    x54 = c2*x11
-    x55 = x54*x2
-    x56 = 1.0 - c3*x10*x11
-    x57 = m*(x55 + x56*x20)/x22
-    x58 = x19*(x56 + x57*x21)
-    x59 = x54 + x15*x57 - x18*x58
-    x60 = 0.5*c1*sin_psi + x7*x59
-    x61 = x57 - cos_psi*x60
-    x62 = 1.0/(x58 + sin_psi*x60)
+    x9 = sin_phi*x8
+    x10 = 1.0 - c3*sin_phi*x9
+    x11 = cos_psi*cos_phi
+    x12 = c6*x11
+    x13 = sin_psi*sin_phi
+    x14 = m*x8
+    x15 = x13*x14
+    x16 = 1.0/(m*(1.0 - x11*x12 - x15*x13))
+    x17 = sin_psi*cos_phi
+    x18 = c6*x17
+    x19 = cos_psi*sin_phi
+    x20 = x19*x14
+    x21 = x18*x11 - x20*x13
+    x22 = m*x21
+    x23 = x16*x22
+    x24 = m*(1.0 - x18*x17 - x20*x19 - x21*x23)
+    x25 = x10*(cos_psi - sin_psi*x23)/x24
+    x26 = y_dot*cos_psi - x_dot*sin_psi
+    x27 = psi_dot*x26
+    x28 = psi_dot*x2
+    x29 = psi_dot*sin_phi
+    x30 = c4*x29
+    x31 = k*chi_dot
+    x32 = x30 + x31
+    x33 = c8*(x32 - c9*x29)
+    x34 = psi_dot*psi_dot
+    x35 = phi_dot*phi_dot
+    x36 = psi_dot*phi_dot
+    x37 = x13*x34 + x13*x35 - 2.0*x11*x36
+    x38 = R*x37
+    x39 = x30 + 2.0*x31
+    x40 = psi_dot*cos_phi
+    x41 = x39*x40
+    x42 = R*x41 + g*sin_phi
+    x43 = c6*x42
+    x44 = phi_dot*x11
+    x45 = x9*x33
+    x46 = x19*x34 + 2.0*x17*x36 + x19*x35
+    x47 = R*x46
+    x48 = phi_dot*x17
+    x49 = x47 - x42*x12 - 2.0*x48*x45
+    x50 = m*(x38 - x43*x17 + 2.0*x44*x45 + x49*x23)/x24
+    x51 = m*x16*(x49 + x21*x50)
+    x52 = 2.0*x2*x8*x33 + x20*x50 - x15*x51
+    x53 = c7*x28 - x7*x52
+    x54 = x_dot*cos_psi + y_dot*sin_psi
+    x55 = psi_dot*x54
+    x56 = x55 + (sin_psi*x50 + cos_psi*x51)
+    x57 = (sin_psi + cos_psi*x23)/x24
+    x58 = x16*(cos_psi + x57*x22)
+    x59 = x20*x57 - x15*x58
+    x60 = x7*x59
+    x61 = x60 + sin_psi*x58 - cos_psi*x57
+    x62 = 1.0/(sin_psi*x57 + cos_psi*x58)
     x63 = x61*x62
-    x64 = (x55 + x16*x23)*x48
-    x65 = c2*x9 + x18*x64 - x15*x23
-    x66 = 0.5*c1*cos_psi + x7*x65
-    x67 = x23 + cos_psi*x66 - x61*x63
-    x68 = (x24*x25 + (x46 + cos_psi*x51) - x53*x63)/x67
-    x69 = x62*(x53 - x61*x68)
-    x70 = x23*x68 + x57*x69 - x46
-    x71 = x64*x68 + x58*x69 - x49
-    x72 = c12*(x50 + x65*x68 - x59*x69)
-    x73 = x13*x23 + x64*x17
-    x74 = x13*x57 + x58*x17
-    x75 = c12*(x68*x73 + x69*x74 - (x13*x46 + x49*x17 - x38))
-    x76 = c12*(x51 + x60*x69 - x66*x68)
-    x77 = psi_dot*x52 - sin_psi*x76
-    x78 = R*delta_psi
-    x79 = R*delta_psi_dot
-    x80 = delta_chi_dot*x24
-    x81 = cos_psi*x76 + psi_dot*x25
-    x82 = x12*x26 + 2.0*x2*x28 + x12*x27 + x72*x14 + x75*x10
-    x83 = c9*delta_phi
-    x84 = R*x72
-    x85 = R*x75
-    x86 = x29 + x72*x2 - x75*x12
-    x87 = c9*delta_psi_dot
-    x88 = c9*delta_phi_dot
-    x89 = (psi_dot*x10 - phi_dot*x14)*x87 - (psi_dot*x14 - phi_dot*x10)*x88
-    x90 = x72*x10 + x75*x14 - x41
-    x91 = c9*delta_psi
-    x92 = x82*x83 + delta_m*(x30 + x70 + x2*x84 - x12*x85) + c13*x86 + 2.0*x89 - x90*x91
-    x93 = c15*delta_chi_dot
-    x94 = c6*cos_phi*x35
-    x95 = x70*x10 + x71*x2 - ((x94 - sin_phi*x34)*x24 + g*cos_phi)
-    x96 = (
-        cos_phi*delta_psi*(cos_psi*x70 - sin_psi*x71) + cos_phi*(x32 + x34)*x79
-        + 2.0*x35*x93 + delta_R*(x36 - c6*x75) + delta_g*sin_phi - delta_phi*x95
-        - c16*(x75 - (2.0*chi_dot + x31)*x35)
+    x64 = x27 + (x53 + cos_psi*x50 - sin_psi*x51) + x56*x63
+    x65 = x16*(sin_psi*x10 - x25*x22)
+    x66 = x20*x25 + x15*x65 - c2*x9
+    x67 = 0.5*c1 - x7*x66
+    x68 = x67 + cos_psi*x25 + sin_psi*x65 - x61*x63
+    x69 = x64/x68
+    x70 = x62*(x56 + x61*x69)
+    x71 = x25*x69 + x57*x70 - x50
+    x72 = x51 + x65*x69 - x58*x70
+    x73 = c10*(x66*x69 + x59*x70 - x52)
+    x74 = x18*x25 - x65*x12
+    x75 = x18*x57 + x58*x12
+    x76 = c10*(x69*x74 + x70*x75 - (x18*x50 + x51*x12 - x43))
+    x77 = c10*(x53 + x60*x70 - x67*x69)
+    x78 = sin_psi*x71 - cos_psi*x72
+    x79 = (
+        x0*delta_y_dot + x26*delta_psi_dot + delta_R*x77 - delta_psi*(x55 - x78)
+        - x1*delta_x_dot
     )
-    x97 = c14*x96
-    x98 = x0*delta_psi_dot
-    x99 = c17*sin_phi
-    x100 = cos_phi*x72
-    x101 = x100*x99 + c15*cos_phi*x76 - R*phi_dot*(x94 - sin_phi*x39)
-    x102 = x72*(2.0*x3 + x4) + 2.0*(sin_phi*x76 - x0*(chi_dot + x31))
-    x103 = (
-        sin_phi*delta_psi*(sin_psi*x70 + cos_psi*x71)
-        + 2.0*(x98*x99 + R*cos_phi*x39*delta_phi_dot + x0*x93)
-        - delta_phi*(x70*x14 + 2.0*x101 - x71*x12)
-        - delta_R*(x6*x72 + 2.0*(x76*x5 - x0*x39)) - c16*x102
+    x80 = x2*delta_psi_dot
+    x81 = x28 + sin_phi*x73 - x77
+    x82 = cos_phi*x73
+    x83 = (
+        c11*x80 + c11*delta_phi_dot*x40 + c13*x81 + c14*x81 + c15*x81
+        - c11*delta_phi*(sin_phi*x36 - x82)
     )
-    x104 = x76 + sin_phi*x72 - x47
+    x84 = x73*(2.0*x3 + x4) + 2.0*(x2*(chi_dot + x29) - sin_phi*x77)
+    x85 = c17*sin_phi
+    x86 = R*cos_phi
+    x87 = c12*delta_chi_dot
+    x88 = c4*cos_phi*x40
+    x89 = c12*cos_phi*x77 - R*phi_dot*(x88 - sin_phi*x32) - x82*x85
+    x90 = (
+        sin_phi*delta_psi*x78 + delta_R*(x6*x73 + 2.0*(x2*x32 - x77*x5)) + c16*x84
+        + 2.0*(x80*x85 + x32*delta_phi_dot*x86 + x2*x87)
+        - delta_phi*(x71*x11 + x72*x17 + 2.0*x89)
+    )
+    x91 = x90 - 2.0*c18*sin_phi*x83
+    x92 = x73*x13
+    x93 = x76*x11
+    x94 = c8*x46 + c8*x92 + sin_psi*x69 - c8*x93 - cos_psi*x70
+    x95 = x17*x34 + 2.0*x19*x36 + x17*x35 + x76*x13 - x73*x11
+    x96 = c8*delta_phi
+    x97 = x73*x19
+    x98 = x76*x17
+    x99 = c8*delta_psi_dot
+    x100 = c8*delta_phi_dot
+    x101 = (psi_dot*x13 - x44)*x99 - (psi_dot*x11 - phi_dot*x13)*x100
+    x102 = (
+        delta_psi*x94 + x95*x96 + delta_m*(x38 + x71 - R*x97 - R*x98) + 2.0*x101
+        - c19*(x97 + x98 - x37)
+    )
+    x103 = cos_psi*x71 + sin_psi*x72
+    x104 = x72*x19 + (R*psi_dot*(x88 - sin_phi*x39) + g*cos_phi) - x71*x13
     x105 = (
-        c19*delta_phi*(sin_phi*x28 + x100) + c20*x104 + c21*x104 + c22*x104 - c19*x98
-        - c19*delta_phi_dot*x35
+        cos_phi*delta_psi*x103 + delta_phi*x104 + delta_psi_dot*(x30 + x39)*x86
+        + 2.0*x40*x87 + delta_R*(x41 - c4*x76) + delta_g*sin_phi
+        - c16*(x76 - (2.0*chi_dot + x29)*x40)
     )
-    x106 = 2.0*x105 - delta_psi*(sin_psi*x68 + cos_psi*x69)
-    x107 = x103 + c18*sin_phi*x106
-    x108 = c4*x107
-    x109 = x14*x26 + x14*x27 - 2.0*x10*x28 + x75*x2 - x72*x12
-    x110 = (psi_dot*x2 + phi_dot*x12)*x87 + (psi_dot*x12 + phi_dot*x2)*x88
-    x111 = x109*x83 + delta_m*(x42 + x71 - x10*x84 - x14*x85) + 2.0*x110 - x86*x91 - c13*x90
-    x112 = x111 - x14*x97 - x11*x108
-    x113 = (x92 - x12*x97 + x9*x108 + x112*x45)/x22
-    x114 = x19*(x112 + x113*x21)
-    x115 = m*x8*x107 + x15*x113 - x18*x114
-    x116 = 0.5*c1*x106 + x7*x115
-    x117 = x77*x78 + x25*x79 + sin_psi*x80 + delta_R*x81 + (x113 - cos_psi*x116)
-    x118 = x52*x79 + cos_psi*x80 + delta_R*x77 - x81*x78 + (x114 + sin_psi*x116)
-    x119 = (x117 - x118*x63)/x67
-    x120 = x62*(x118 - x61*x119)
-    x121 = x73*x119 + x74*x120 - (x13*x113 + x114*x17 - c8*x96)
+    x106 = c21*x105
+    x107 = c20*(x8*x91)
+    x108 = c8*x97 + c8*x98 + cos_psi*x69 + sin_psi*x70 - c8*x37
+    x109 = x11*x34 + x11*x35 - 2.0*x13*x36 + x73*x17 + x76*x19
+    x110 = (psi_dot*x19 + x48)*x99 + (psi_dot*x17 + phi_dot*x19)*x100
+    x111 = (
+        delta_psi*x108 + x109*x96 + delta_m*(x47 + R*x92 - x72 - R*x93)
+        + c19*(x46 + x92 - x93) + 2.0*x110
+    )
+    x112 = x111 - x11*x106 - x13*x107
+    x113 = (x102 - x17*x106 + x19*x107 + x112*x23)/x24
+    x114 = x16*(x112 + x113*x22)
+    x115 = x91*x14 + x20*x113 - x15*x114
+    x116 = c1*x83 - x7*x115
+    x117 = x0*delta_x_dot + x1*delta_y_dot + x54*delta_psi_dot - delta_psi*(x103 - x27)
+    x118 = x117 + (sin_psi*x113 + cos_psi*x114)
+    x119 = x79 + (x116 + cos_psi*x113 - sin_psi*x114) + x118*x63
+    x120 = x119/x68
+    x121 = x62*(x118 + x61*x120)
+    x122 = x74*x120 + x75*x121 - (x18*x113 + x114*x12 - c6*x105)
     # outputs
     return _stacked(
         (22,),
         y[0],
         x_dot,
         y_dot,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
         x0,
         -x1,
+        x2,
+        -phi_dot*sin_phi,
         chi_dot,
-        -x70,
-        x71,
+        -x71,
         -x72,
-        x75,
-        -x76,
+        x73,
+        x76,
+        -x77,
         delta_x_dot,
         delta_y_dot,
         delta_psi_dot,
         delta_phi_dot,
         delta_chi_dot,
-        -(x23*x119 + x57*x120 - x113),
-        x64*x119 + x58*x120 - x114,
-        -c12*(x115 + x65*x119 - x59*x120),
-        c12*x121,
-        c12*(x116 + x66*x119 - x60*x120),
+        -(x25*x120 + x57*x121 - x113),
+        -(x114 + x65*x120 - x58*x121),
+        c10*(x66*x120 + x59*x121 - x115),
+        c10*x122,
+        -c10*(x116 + x60*x121 - x67*x120),
     )
 
 

@@ -23,7 +23,6 @@ from derive import (
     prismatic,
     rolling_on_line,
     rolling_on_plane,
-    rotation_matrix,
     rotations,
     slider,
     velocity,
@@ -144,35 +143,51 @@ def test_the_multiplier_of_a_distance_is_the_tension() -> None:
     assert one.multipliers(0.0, state, one.DEFAULTS) == pytest.approx(expected, rel=1e-12)
 
 
-def rotation(axis: int, angle: sp.Expr) -> sp.Matrix:
-    """The rotation about an axis of space."""
-    return (sp.rot_axis1, sp.rot_axis2, sp.rot_axis3)[axis](-angle)
+WHEELS = {
+    "upright": ("zy", (psi, phi), "y"),
+    "leaning": ("zxy", (psi, theta, phi), "y"),
+    "steered": ("zxyzyx", (psi, theta, phi, 0.7, -0.4, phi), "x"),
+    "sphere": ("zxy", (psi, theta, phi), ""),
+}
 
 
-@pytest.mark.parametrize("tilt", [0, theta])
-def test_the_point_of_contact_does_not_slip(tilt: sp.Expr) -> None:
+@pytest.mark.parametrize("kind", WHEELS)
+def test_the_point_of_contact_does_not_slip(kind: str) -> None:
     # oracle: differences of the position of the material point that touches the plane
-    q = (x, y, z, psi, theta, phi)
-    frame = rotation(2, psi) * rotation(0, tilt)
-    turned, arm = frame * rotation(1, phi), -R * frame[:, 2]
-    joint = rolling_on_plane("ground", q, (x, y, z), tuple(arm), rotation_matrix(turned.tolist()))
+    sequence, angles, axle = WHEELS[kind]
+    q, axes = (x, y, z, psi, theta, phi), rotations(sequence, angles)
+    joint = rolling_on_plane("ground", q, (x, y, z), R, axes, axle)
     rng = np.random.default_rng(3)
     at, rate, step = rng.uniform(-1, 1, 6), rng.normal(size=6), 1e-5
 
-    def numbers(s: float) -> list[np.ndarray]:
-        values = zip(q, at + s * rate, strict=True)
-        known = {**dict(values), R: 0.3}
-        parts = (sp.Matrix([x, y, z]), turned, arm)
-        return [np.array(part.subs(known), dtype=float) for part in parts]
+    def numbers(s: float) -> tuple[np.ndarray, np.ndarray]:
+        known = dict(zip(q, at + s * rate, strict=True))
+        return tuple(np.array(m.subs(known), float) for m in (sp.Matrix([x, y, z]), axes.matrix))
 
     before, now, after = map(numbers, (-step, 0.0, step))
-    body = now[1].T @ now[2]  # the point in axes of the body
-    moved = (after[0] + after[1] @ body - before[0] - before[1] @ body) / (2 * step)
+    axis = now[1][:, "xyz".index(axle)] if axle else np.array([0.0, 1.0, 0.0])
+    up = np.array([0, 0, 1.0])
+    arm = np.array([0, 0, -1.0])
+    arm += axis * axis[2]  # the lowest direction across the axle
+    arm *= 0.3 / np.linalg.norm(arm)
+    if axle:
+        rim = [now[1] @ (np.cos(k) * u + np.sin(k) * v) for k in np.linspace(0, 6.3, 2000)
+               for u, v in [np.delete(np.eye(3), "xyz".index(axle), axis=0)]]  # fmt: skip
+        assert arm[2] == pytest.approx(0.3 * min(point[2] for point in rim), abs=1e-6)
+    body = now[1].T @ arm  # the point in axes of the body
+    moved = (after[0][:, 0] + after[1] @ body - before[0][:, 0] - before[1] @ body) / (2 * step)
+    along = np.cross(axis, up) / np.linalg.norm(np.cross(axis, up))
     known = dict(zip((*q, *map(velocity, q)), (*at, *rate), strict=True)) | {R: 0.3}
-    slip = [float(one.formula.subs(known)) for one in joint[:2]]
-    assert np.allclose(slip, moved[:2, 0], atol=1e-8)
-    assert float(joint[2].formula.subs(known)) == pytest.approx((now[0] + now[2])[2, 0])
-    assert [one.name for one in joint] == ["ground_x", "ground_y", "ground_z"]
+    values = [float(one.formula.subs(known)) for one in joint]
+    assert np.allclose(values[:2], [moved @ along, moved @ np.cross(up, along)], atol=1e-8)
+    assert values[2] == pytest.approx(now[0][2, 0] + arm[2])
+    assert [one.name for one in joint] == ["ground_along", "ground_across", "ground_normal"]
+
+
+@pytest.mark.parametrize(("axle", "words"), [("w", "is 'w'"), ("z", "is vertical")])
+def test_wheels_without_a_horizontal_axle_are_refused(axle: str, words: str) -> None:
+    with pytest.raises(SystemDefinitionError, match=words):
+        rolling_on_plane("A", (x, y, psi), (x, y, R), R, rotations("z", (psi,)), axle)
 
 
 FILE = """
@@ -207,8 +222,9 @@ IN_FILES = [
      fixed_distance("A", (x, y), (0, 0), length)),
     ('rolling_on_line = "A"\ncentre = ["x", "y"]\nradius = "R"\nangle = "phi"',
      rolling_on_line("A", (x, y), R, phi)),
-    (f'rolling_on_plane = "A"\ncentre = ["x", "y", "R"]\narm = [0, 0, "-R"]\norientation = {SPIN}',
-     rolling_on_plane("A", (x, y, z, phi), (x, y, R), (0, 0, -R), rotations("y", [phi]))),
+    (f'rolling_on_plane = "A"\ncentre = ["x", "y", "R"]\nradius = "R"\norientation = {SPIN}\n'
+     'axle = "y"',
+     rolling_on_plane("A", (x, y, z, phi), (x, y, R), R, rotations("y", [phi]), "y")),
     (f'hinge = "A"\np = ["x", "y", "z"]\nq = [0, 0, "l"]\nfirst = {SPIN}',
      hinge("A", (x, y, z), (0, 0, length), rotations("y", [phi]))),
     (f'prismatic = "A"\np = ["x", "y", "z"]\nq = [0, 0, 0]\nfirst = {TURN}\nsecond = {SPIN}\n'
@@ -243,7 +259,7 @@ def test_joints_in_files(text: str, joint: list[Constraint], tmp_path: Path) -> 
         ('pin = "A"\np = "x"\nq = [0, 0]', "not a sequence"),
         ('slider = "x"\np = ["x", "y"]\nthrough = [0, 0]\ndirection = [1, 2]',
          "uses a name twice: x"),
-        ('rolling_on_plane = "A"\ncentre = ["x", "y", "R"]\narm = [0, 0, 1]\norientation = [[1]]',
+        ('rolling_on_plane = "A"\ncentre = ["x", "y", "R"]\nradius = 1\norientation = [[1]]',
          "must be a table"),
         ('hinge = "A"\np = ["x", "y", "z"]\nq = [0, 0, 0]\nfirst = { matrix = [[1]] }',
          "has not three rows"),
@@ -263,7 +279,7 @@ def test_joints_in_space_and_in_the_plane_differ() -> None:
     makes: list[Callable[[], object]] = [
         lambda: ball("A", (x, y), (0, 0)),
         lambda: pin("A", (x, y, z), (0, 0, 0)),
-        lambda: rolling_on_plane("A", [x], (x, y, z), (0, 0, -R), sp.eye(3)),
+        lambda: rolling_on_plane("A", [x], (x, y, z), R, sp.eye(3)),
     ]
     for make in makes:
         with pytest.raises(SystemDefinitionError, match="give"):

@@ -64,7 +64,7 @@ def _values(row: Table, kind: str, value: Value) -> dict[str, Any]:
             raise InputError(f"{row.name} is a {kind}, without {key}: keys are {', '.join(known)}")
         if key in ORIENTATIONS:
             values[key] = orientation(row, key, value)
-        elif key == "axis":
+        elif key in ("axis", "axle"):
             values[key] = row.text(key)
         elif isinstance(given, list):
             values[key] = tuple(map(formula, row.formulas(key)))

@@ -1,4 +1,4 @@
-"""Joints of wheels and other bodies that roll without slip on a line or on a plane."""
+"""Joints of wheels and spheres that roll without slip on a line or on a plane."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ import sympy as sp
 
 from derive.system.constraints import Constraint, Point
 from derive.system.joint import canonical, components, constraint_rows, unit_vector
-from derive.system.orientation import Orientation
+from derive.system.orientation import AXES, Orientation
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME, velocity
 from solvers.io.suggestion import shortened
@@ -65,10 +65,13 @@ def rolling_on_plane(
     name: str,
     coordinates: Sequence[sp.Symbol],
     centre: Point,
-    arm: Point,
+    radius: sp.Expr,
     orientation: Orientation,
+    axle: str = "",
 ) -> list[Constraint]:
-    """A body that rolls on the horizontal plane through the origin without slip.
+    """A wheel or a sphere that rolls on the horizontal plane through the origin without slip.
+
+    The point of contact is the lowest one of the wheel, which may lean and be steered.
 
     Parameters
     ----------
@@ -76,22 +79,29 @@ def rolling_on_plane(
         Name of the contact.
     coordinates : sequence of sympy.Symbol
         The coordinates on which the motion of the body depends.
-    centre, arm : sequence of sympy.Expr
-        A point of the body, and the vector from it to the point of contact, of three components
-        each: (0, 0, -R) from the centre of a sphere.
+    centre : sequence of sympy.Expr
+        The centre, of three components.
+    radius : sympy.Expr
+        The radius in m.
     orientation : Orientation
         The orientation of the body, such as that of `rotations`.
+    axle : str, optional
+        The axis of the body that is a wheel's axle, ``"x"``, ``"y"`` or ``"z"``; without it the
+        body is a sphere.
 
     Returns
     -------
     list of Constraint
-        Two constraints of velocities, whose multipliers ``name_x`` and ``name_y`` are the friction
-        on the body, and one of position, whose multiplier ``name_z`` is the normal force.
+        Two constraints of velocities, whose multipliers ``name_along`` and ``name_across`` are the
+        friction on the body, and one of position, whose multiplier ``name_normal`` is the normal
+        force. With the axle to the left, a wheel rolls forward along its path. Of a sphere the
+        directions are those of the first and second axis of space.
 
     Raises
     ------
     SystemDefinitionError
-        When a point does not have three components, or `orientation` is not one in space.
+        When the centre does not have three components, `orientation` is not one in space, or the
+        axle is no axis of the body, or vertical.
 
     Examples
     --------
@@ -99,26 +109,54 @@ def rolling_on_plane(
     >>> from derive import rotations
     >>> x, y, psi, phi = symbols("x y psi phi", real=True)
     >>> R = symbols("R", positive=True)
-    >>> axes = rotations("zy", (psi, phi))  # of an upright wheel: heading and spin
-    >>> wheel = rolling_on_plane("ground", (x, y, psi, phi), (x, y, R), (0, 0, -R), axes)
+    >>> upright = rotations("zy", (psi, phi))  # heading and spin
+    >>> wheel = rolling_on_plane("ground", (x, y, psi, phi), (x, y, R), R, upright, "y")
     >>> [one.formula for one in wheel]
-    [-R*phi_dot*cos(psi) + x_dot, -R*phi_dot*sin(psi) + y_dot]
+    [-R*phi_dot + x_dot*cos(psi) + y_dot*sin(psi), -x_dot*sin(psi) + y_dot*cos(psi)]
     """
-    place, lever = components(name, centre, 3), sp.Matrix(components(name, arm, 3))
+    x, y, z = components(name, centre, 3)
+    radius = formula(radius)
     if not isinstance(orientation, Orientation):
         raise SystemDefinitionError(
             f"the orientation of {name} is {shortened(orientation)}: give that of rotations, "
             "rotation_matrix or quaternion"
         )
+    if axle not in ("", *AXES):
+        raise SystemDefinitionError(
+            f"the axle of {name} is {shortened(axle)}: give the letter x, y or z of an axis of the "
+            "body, or none of a sphere"
+        )
+    rates = {TIME: sp.S.One} | {q: velocity(q) for q in coordinates}
 
     def rate(expression: sp.Expr) -> sp.Expr:
-        terms = (expression.diff(q) * velocity(q) for q in coordinates)
-        return sp.Add(*terms, expression.diff(TIME))
+        return sp.Add(*(expression.diff(s) * rate for s, rate in rates.items()))
 
-    # the turn of the body moves the point of contact by ω × arm = Ṙ Rᵀ arm
-    matrix = orientation.matrix
-    turned = matrix.applyfunc(rate) * matrix.T * lever
-    slips = [rate(r) + canonical(turn) for r, turn in zip(place, turned, strict=True)]
-    rows = [(axis, slips[k], f"friction on the body along {axis}") for k, axis in enumerate("xy")]
-    height = ("z", canonical(place[2] + lever[2]), "normal force on the body")
-    return [*constraint_rows(name, [*rows, height])]
+    turning = sp.zeros(3, 1)  # the angular velocity in axes of the body
+    for s, speed in rates.items():
+        turning += sp.Matrix(orientation.turn(s)) * speed
+    if axle:  # the unit vector a along it moves by ω × a
+        a, spin = orientation.matrix.col(AXES.index(axle)), turning[AXES.index(axle)]
+        tilting = rate(a[2])
+    else:
+        a, (tilting, spin, _) = sp.Matrix([0, 1, 0]), orientation.matrix * turning
+    level = _complement(a[2])
+    if level == 0:
+        raise SystemDefinitionError(f"the axle of {name} is vertical: give one that is not")
+    # the arm from centre to contact is across a: ω × arm is radius (-spin, tilting) along, across
+    along, across = ((p / level, r / level) for p, r in ((a[1], -a[0]), (a[0], a[1])))
+    rows = (
+        ("along", (*along, -radius * spin), "friction on the body, along its path"),
+        ("across", (*across, radius * tilting), "friction on the body, to the left of its path"),
+    )
+    slips = [(end, canonical(rate(x) * p + rate(y) * r + turned), meaning)
+             for end, (p, r, turned), meaning in rows]  # fmt: skip
+    height = ("normal", canonical(z - radius * level), "normal force on the body")
+    return [*constraint_rows(name, [*slips, height])]
+
+
+def _complement(sine: sp.Expr) -> sp.Expr:
+    """The cosine of a lean with this sine, positive unless the lean is a coordinate itself."""
+    for wave in (sine, -sine):
+        if isinstance(wave, sp.sin):
+            return sp.cos(wave.args[0])
+    return sp.sqrt(1 - sine**2)

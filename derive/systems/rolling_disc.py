@@ -21,7 +21,7 @@ system = System(
                 Parameter(k, "1", 0.25, "moment of inertia about a diameter / (m R**2)"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
     masses=[RigidBody(m, centre, (across, 2 * across, across), disc)],
-    constraints=rolling_on_plane("ground", q, centre, down, disc),
+    constraints=rolling_on_plane("ground", q, centre, R, disc, "y"),
     links=[Wheel(0, R, plane=(disc.turned((1, 0, 0)), disc.turned((0, 0, 1))))])
 
 PUBLISHED = r'''
