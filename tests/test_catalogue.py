@@ -9,6 +9,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from functools import cache, partial
 from importlib.util import module_from_spec, spec_from_file_location
+from itertools import combinations
 from operator import mul
 from pathlib import Path
 from types import ModuleType
@@ -34,7 +35,7 @@ from solvers.equations.module import has_constraints
 
 SYSTEMS = Path(systems.__path__[0])
 #: Lines of a system's definition, and of one with many bodies.
-LINES, LINES_OF_LARGE = 25, 30
+LINES, LINES_OF_LARGE = 25, 60
 Case = tuple[float, list[float], list[float]]
 
 
@@ -118,8 +119,11 @@ def points(mass: PointMass) -> Iterator[tuple[sp.Expr, tuple[sp.Expr, ...]]]:
     """Inertia and place of the mass, and of points on the axes that rotate as a body in space."""
     yield from mass.motions
     if isinstance(mass, RigidBody) and mass.turns:
-        half, matrix = mass.tensor.trace() / 2, mass.orientation.matrix
-        yield from ((half - mass.tensor[k, k], tuple(matrix[:, k])) for k in range(3))
+        pairs, matrix = mass.tensor.trace() / 2 * sp.eye(3) - mass.tensor, mass.orientation.matrix
+        for k in range(3):
+            yield 2 * pairs[k, k] - sum(pairs.row(k)), tuple(matrix[:, k])
+        for j, k in combinations(range(3), 2):  # 2 a b = (a + b)² - a² - b²
+            yield pairs[j, k], tuple(matrix[:, j] + matrix[:, k])
 
 
 class Alembert:
