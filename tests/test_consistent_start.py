@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
-from solvers.equations.assembly import Assembly
+from solvers.equations.assembly import EXACT, Assembly
 from solvers.equations.module import GeneratedModule
 from solvers.equations.singular_configuration import SingularConfigurationWarning
 
@@ -139,6 +139,19 @@ def test_many_starts_are_those_of_each(crank: GeneratedModule) -> None:
         ensemble(crank, (0, 1), {"x": [0.3, 0.35, 0.5]}, {})
     with pytest.raises(ValueError, match=r"pin_1_x = .* instead of 0"):
         run((0, 1), (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+
+
+def test_a_prepared_function_checks_starts_as_others_do(crank: GeneratedModule) -> None:
+    start = consistent_start(crank, {"q1": 0.8, "q1_dot": 3.0}, {}).y
+    assembly, rng, seen = Assembly(crank, np.array([crank.DEFAULTS])), np.random.default_rng(2), []
+    for size in np.logspace(-18, -11, 60):
+        y = start + size * rng.uniform(-1, 1, len(start))
+        ratio = assembly.relative(y[np.newaxis]).max() / EXACT
+        if not 0.5 < ratio < 2.0:  # both sum in another order
+            seen.append(assembly.is_exact(y.tolist()))
+            assert seen[-1] == (ratio <= 1)
+    assert {*seen} == {True, False}
+    assert not assembly.is_exact([np.nan, *start[1:]])
 
 
 def test_rounded_decimals_are_mended_and_larger_residuals_refused(crank: GeneratedModule) -> None:

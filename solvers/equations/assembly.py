@@ -5,8 +5,11 @@ start from guesses (J. García de Jalón, E. Bayo, Kinematic and Dynamic Simulat
 Systems (1994), chapter 3). Motions are rows, which are assembled independently of each other.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import hypot
+from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,6 +97,27 @@ class Assembly:
         scales = np.hstack([sizes[:, self.of_positions], moving])
         ratios = residuals / np.where(scales > 0, scales, 1.0)
         return np.where(np.isfinite(ratios), ratios, np.inf)
+
+    def is_exact(self, y: Sequence[float]) -> bool:
+        """Whether one state satisfies the constraints to rounding errors.
+
+        By numbers, which takes a hundredth of the time of `relative`, of arrays.
+        """
+        names, (params, scales), n = ("constraints", "constraints_jacobian"), self._numbers, self.n
+        try:
+            residuals, rows = (function(self.module, name)(self.t, y, params) for name in names)
+        except (ArithmeticError, ValueError):  # where a formula has no value
+            return False
+        rate = max(SLOW, *(abs(v) / scale for v, scale in zip(y[n:], scales, strict=True)))
+        sizes = [hypot(*map(mul, row[n:], scales)) for row in rows[len(self.of_positions) :]]
+        limits = [sizes[k] for k in self.of_positions] + [rate * size for size in sizes]
+        pairs = zip(residuals, limits, strict=True)
+        return all(abs(value) <= EXACT * (limit or 1.0) for value, limit in pairs)
+
+    @cached_property
+    def _numbers(self) -> tuple[list[float], list[float]]:
+        """Parameters of the first motion, and scales."""
+        return self.params[0].tolist(), self.scales.tolist()
 
     def assembled(self, y: Array, given: Flags) -> tuple[Array, Flags]:
         """States near `y` of which the given components are kept, and whether they were found."""

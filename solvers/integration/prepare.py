@@ -9,8 +9,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from solvers.equations.assembly import Assembly
 from solvers.equations.mass_matrix import check_condition
-from solvers.equations.module import GeneratedModule, has_constraints, parameter_names
+from solvers.equations.module import (
+    GeneratedModule,
+    has_constraints,
+    has_function,
+    parameter_names,
+)
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import REAL, Values
 from solvers.integration import compiled_loop, validation
@@ -120,6 +126,7 @@ class Prepared:
         self._inputs = len(input_names(module))
         self._limited = [k for k, q in enumerate(names) if q in module.POSITIVE]
         self._is_constrained = has_constraints(module)
+        self._assembly: Assembly | None = None  # of the parameters and start of the last call
         self._span_start = 0.0
         self._idle = [True]  # empty during a call; faster than a lock, and as atomic
 
@@ -155,14 +162,14 @@ class Prepared:
             self._set_inputs(inputs)
         try:
             start, end = t_span
-            values = list(y0)
+            values: list[Any] = list(y0)
             are_real = type(start) in REAL and type(end) in REAL
             are_real = are_real and REAL.issuperset(map(type, values))
             if are_real:
-                self._start[:] = values  # type: ignore[assignment]
+                self._start[:] = values
         except (TypeError, ValueError, OverflowError):
             are_real = False
-        if not are_real or self._is_constrained:
+        if not are_real or (self._is_constrained and not self._is_consistent(start, values)):
             start, end = validation.time_span(t_span)
             self._span_start = start
             self._start[:] = self._checked(y0)
@@ -204,7 +211,17 @@ class Prepared:
         problem = self._problem.with_params(list(self._params))
         return replace(problem, span=(start, end), start=np.array(self._start))
 
+    def _is_consistent(self, t: float, values: list[float]) -> bool:
+        """Whether a complete state satisfies the constraints to rounding errors."""
+        module = self._problem.form.module
+        if len(values) != len(module.STATE) or has_function(module, "redundant_constraints"):
+            return False
+        if self._assembly is None or self._assembly.t != t:
+            self._assembly = Assembly(module, np.array([self._params]), t)
+        return self._assembly.is_exact(values)
+
     def _set_params(self, params: Numbers) -> None:
+        self._assembly = None
         try:
             values: list[Any] = list(params)
             are_signed = all(values[k] >= 0 for k in self._positive)
@@ -220,6 +237,7 @@ class Prepared:
         return validation.parameters(form.module, params, form.name).tolist()
 
     def _set_inputs(self, inputs: Any) -> None:
+        self._assembly = None
         try:
             values: list[Any] = list(inputs)
             count = len(values)
