@@ -5,6 +5,7 @@ the forces in its joints as unknowns, and accelerations of joints from the motio
 """
 
 import warnings
+from dataclasses import replace
 from math import acos, atan2, cos, hypot, pi, sin, sqrt
 from pathlib import Path
 
@@ -20,6 +21,8 @@ import generated.slider_crank as crank
 import generated.two_link_arm as arm
 from derive import Coordinate, Parameter, PointMass, System, fixed_distance, load, reduced
 from solvers import build, consistent_start, integrate, load_scene, run_scene
+from solvers import load as load_module
+from solvers.equations.assembly import Assembly
 from solvers.equations.module import GeneratedModule
 
 Array = NDArray[np.float64]
@@ -433,3 +436,50 @@ def test_cranks_of_peaucellier_s_linkage_that_coincide_are_refused(
     assert np.abs(straight.constraints(0.0, y, straight.DEFAULTS)).max() < 1e-15
     with pytest.raises(ValueError, match="depends on the others, as at a toggle point"):
         integrate(straight, (0, 1), y, {})
+
+
+def test_sums_of_tensions_of_the_shipped_linkage_are_those_of_seven_bars(
+    straight: GeneratedModule,
+) -> None:
+    shipped = load_module("peaucellier")
+    y = consistent_start(straight, {"x_D_dot": 1.7}, {}, guess=inverted(0.3)).y
+    tensions = dict(
+        zip(straight.MULTIPLIERS, straight.multipliers(0.0, y, straight.DEFAULTS), strict=True)
+    )
+    params = shipped.params(m=2.0)
+    rates = dict(zip(straight.STATE, y, strict=True))
+    theta_dot = (rates["x_B_dot"] * cos(0.3) + rates["y_B_dot"] * sin(0.3)) / (0.32 * cos(0.3))
+    given = {"phi": 0.6, "phi_dot": 2 * theta_dot}
+    start = consistent_start(shipped, given, params).y
+    joints = np.array(shipped.positions(0.0, start, params))
+    assert joints == pytest.approx(y[:8].reshape(4, 2), abs=1e-13)
+    sums = dict(zip(shipped.MULTIPLIERS, shipped.multipliers(0.0, start, params), strict=True))
+    for pair, others in (("OAOC", "OA OC"), ("ABCP", "AB CD"), ("BCPA", "BC DA")):
+        assert sums[pair] == pytest.approx(sum(tensions[bar] for bar in others.split()), abs=1e-10)
+
+
+def test_the_shipped_linkage_draws_a_straight_line() -> None:
+    shipped = load_module("peaucellier")
+    start = consistent_start(shipped, {"phi": 0.8, "phi_dot": 0.0}, {})
+    assert (start.y[2:4] > 0).all()
+    assert len(start.others) == 0  # folded linkages, with u = 0, and negative distances are none
+    motion = integrate(shipped, (0, 3), start.y, {}, energy=True, **STRICT)
+    x, y = shipped.positions_many(motion.t, motion.y, shipped.DEFAULTS)[3]
+    assert np.ptp(x) > 0.4
+    assert np.abs(y + (0.5**2 - 0.25**2) / (2 * 0.16)).max() < 1e-15
+    assert np.ptp(motion.energy) < 1e-12
+
+
+def test_a_start_where_a_constraint_has_no_derivative_is_none() -> None:
+    # u = sqrt(L**2 - w**2) is 0 at the first guess of w
+    folded = build(reduced(replace(load("peaucellier"), name="folded", keep_coordinates=False)))
+    assert folded.COORDINATES == ("phi", "theta", "w")
+    assembly = Assembly(folded, np.array([folded.DEFAULTS]))
+    edge = [0.8, 0.4, 0.5, 0.0, 0.0, 0.0]
+    assert not assembly.is_exact(edge)
+    with np.errstate(all="ignore"):
+        assert np.isinf(assembly.relative(np.array([edge]))).any()
+    start = consistent_start(folded, {"phi": 0.8, "phi_dot": 0.0}, {}).y
+    assert start[1:3] == pytest.approx([0.4, 0.4654470], abs=1e-6)
+    motion = integrate(folded, (0, 1), start, {}, **STRICT)  # 0.8 m is no length of w
+    assert motion.success

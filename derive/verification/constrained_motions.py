@@ -1,5 +1,6 @@
 """Motions of systems with constraints: states that satisfy these, accelerations and multipliers."""
 
+from collections.abc import Iterator
 from contextlib import suppress
 
 import sympy as sp
@@ -13,6 +14,8 @@ from derive.verification.engine import State
 MOST_STEPS, MOST_STATES, TINY = 60, 20, mp.mpf("1e-60")
 #: Largest change in a step of a symbol's magnitude plus 1, and its change from state to state.
 LONGEST, SHIFT = mp.mpf("0.5"), sp.Rational(7, 5)
+#: Least value of a coordinate that is declared positive.
+SMALLEST = sp.Rational(1, 100)
 #: Largest ratio of accelerations that is rounding.
 ZERO = mp.mpf("1e-80")
 
@@ -22,8 +25,16 @@ def motion(derivation: Derivation, state: State) -> State:
 
     An `ExpressionError` reports constraints without a solution nearby.
     """
+    candidates = _closed(derivation, state) if derivation.holonomic else iter([dict(state)])
+    for values in candidates:
+        with suppress(ZeroDivisionError):  # constraints depend on each other there
+            return _moving(derivation, values)
+    raise ExpressionError("no generic state satisfies the constraints")
+
+
+def _moving(derivation: Derivation, values: dict[sp.Symbol, sp.Expr]) -> State:
+    """A state on the constraints of coordinates with velocities, accelerations and multipliers."""
     system = derivation.system
-    values = _closed(derivation, state) if derivation.holonomic else dict(state)
     G, drift = derivation.constraint_jacobian, derivation.constraint_rates
     _move(values, system.qdot, G, drift, Evaluator(values))
     unknown = (*system.qddot, *system.multipliers)
@@ -39,21 +50,28 @@ def motion(derivation: Derivation, state: State) -> State:
     return values | {p: evaluator(value).rounded() for p, value in momenta}
 
 
-def _closed(derivation: Derivation, state: State) -> dict[sp.Symbol, sp.Expr]:
-    """A state that satisfies the constraints of coordinates."""
+def _closed(derivation: Derivation, state: State) -> Iterator[dict[sp.Symbol, sp.Expr]]:
+    """States that satisfy the constraints of coordinates."""
     q, phi = derivation.system.q, sp.Matrix(derivation.holonomic)
     gradients = phi.jacobian(q)
     for attempt in range(MOST_STATES):
         # Newton's method may end at a local minimum of the residuals
         values = dict(state) | {s: state[s] + SHIFT * attempt * k for k, s in enumerate(q)}
+        largest = mp.inf
         with suppress(ZeroDivisionError):
             for _ in range(MOST_STEPS):
                 evaluator = Evaluator(values)
                 largest = max(abs(evaluator(entry).number) for entry in phi)
                 _move(values, q, gradients, phi, evaluator, LONGEST)
                 if largest < TINY:
-                    return values
-    raise ExpressionError("no generic state satisfies the constraints")
+                    break
+        if largest < TINY and _is_generic(values, q):
+            yield values
+
+
+def _is_generic(values: State, coordinates: tuple[sp.Symbol, ...]) -> bool:
+    """Whether positive coordinates are: they vanish where mechanisms are folded."""
+    return all(values[q] > SMALLEST for q in coordinates if q.is_positive)
 
 
 def equations(derivation: Derivation) -> sp.Matrix:

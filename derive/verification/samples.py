@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from random import Random
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import sympy as sp
 from mpmath import fp
@@ -104,7 +104,7 @@ class Samples:
         moved |= {symbol: list(self._known[symbol]) for symbol in symbols}
         for k in range(self.count):
             J = fp.matrix([[entry[k] for entry in row] for row in rows])
-            change = J.T * fp.lu_solve(J * J.T, fp.matrix([one[k] for one in column]))
+            change = J.T * _solution(J * J.T, fp.matrix([one[k] for one in column]))
             for symbol, x in zip(symbols, change, strict=True):
                 moved[symbol][k] -= x
         self._known = {symbol: moved[symbol] for symbol in self._independent}
@@ -117,7 +117,10 @@ class Samples:
             f = sp.Matrix([*f, *derivation.constraint_forcing])
         rows, column = self._at(M, f)
         solutions = [
-            fp.lu_solve([[entry[k] for entry in row] for row in rows], [one[k] for one in column])
+            _solution(
+                fp.matrix([[entry[k] for entry in row] for row in rows]),
+                fp.matrix([one[k] for one in column]),
+            )
             for k in range(self.count)
         ]
         for i, symbol in enumerate((*system.qddot, *system.multipliers)):
@@ -127,6 +130,14 @@ class Samples:
         self, matrix: sp.MatrixBase, column: sp.MatrixBase
     ) -> tuple[list[list[Numbers]], list[Numbers]]:
         return [[self(entry) for entry in row] for row in matrix.tolist()], [*map(self, column)]
+
+
+def _solution(matrix: Any, right: Any) -> Any:
+    """The solution of linear equations; NaN where they are singular."""
+    try:
+        return fp.lu_solve(matrix, right)
+    except ZeroDivisionError:
+        return fp.matrix([math.nan] * len(right))
 
 
 def _number(expression: sp.Expr) -> float:

@@ -8,7 +8,7 @@ Systems (1994), chapter 3). Motions are rows, which are assembled independently 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import hypot
+from math import hypot, inf
 from operator import mul
 
 import numpy as np
@@ -96,7 +96,7 @@ class Assembly:
         moving = sizes * np.maximum(rates, SLOW)[:, np.newaxis]
         scales = np.hstack([sizes[:, self.of_positions], moving])
         ratios = residuals / np.where(scales > 0, scales, 1.0)
-        return np.where(np.isfinite(ratios), ratios, np.inf)
+        return np.where(np.isfinite(ratios) & np.isfinite(scales), ratios, np.inf)
 
     def is_exact(self, y: Sequence[float]) -> bool:
         """Whether one state satisfies the constraints to rounding errors.
@@ -112,7 +112,7 @@ class Assembly:
         sizes = [hypot(*map(mul, row[n:], scales)) for row in rows[len(self.of_positions) :]]
         limits = [sizes[k] for k in self.of_positions] + [rate * size for size in sizes]
         pairs = zip(residuals, limits, strict=True)
-        return all(abs(value) <= EXACT * (limit or 1.0) for value, limit in pairs)
+        return all(abs(value) <= EXACT * (limit or 1.0) < inf for value, limit in pairs)
 
     @cached_property
     def _numbers(self) -> tuple[list[float], list[float]]:

@@ -54,13 +54,16 @@ class ConsistentStart:
         """Other configurations, from random guesses."""
         n, state = self.assembly.n, self.module.STATE
         free = np.array([name not in self.given for name in state[:n]])
+        # a positive coordinate is 0 where a mechanism is folded
+        positive = np.array([name in self.module.POSITIVE for name in state[:n]])
+        least = np.where(positive, CLOSE * self.assembly.scales, -np.inf)
         reach = np.where(self._angles, np.pi, 2 * self.assembly.scales)
         rng = np.random.default_rng(0)
         guesses = self.y[:n] + free * reach * rng.uniform(-1, 1, (OTHERS, n))
         found = [self.y[:n]]
         if free.any() and not self._freedom(free):
             solutions, error = self.assembly.closed(guesses, free)
-            for q in solutions[error <= CLOSED]:
+            for q in solutions[(error <= CLOSED) & (solutions > least).all(axis=1)]:
                 turned = q - self._angles * 2 * np.pi * np.round(q / (2 * np.pi))
                 if all(self._distance(turned, other) > CLOSE for other in found):
                     found.append(turned)

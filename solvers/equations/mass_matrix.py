@@ -127,7 +127,7 @@ def _condition(
     """The condition, whatever the units of coordinates, and the coordinate of least inertia."""
     try:
         M = inertia(module, t, y, params)
-    except ArithmeticError:
+    except (ArithmeticError, ValueError):  # where a formula has no value
         return 0.0, ""
     inertial = np.flatnonzero(np.diag(M))
     if not inertial.size or not np.isfinite(M).all():
