@@ -11,12 +11,13 @@ from derive.codegen.functions import contents
 from derive.handout.document import WIDTH, Block, Code, Document, Paragraph, Section
 from derive.handout.hamilton import hamilton
 from derive.handout.motion import accelerations, energy, euler_lagrange, lagrangian
-from derive.handout.notation import Notation, words
+from derive.handout.notation import Notation, names_of, words
 from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
 from derive.handout.routhian import routhian
 from derive.handout.setup import constraints, energies, system, velocities
 from derive.mechanics.derivation import Derivation
+from derive.mechanics.reduced_coordinates import reduced
 from derive.system.parts import SystemDefinitionError
 
 Blocks: TypeAlias = Callable[[Derivation, Numbering], Iterator[Block]]
@@ -102,11 +103,18 @@ def with_letters(derivation: Derivation) -> Derivation:
 
 
 def _code(derivation: Derivation) -> Iterator[Block]:
-    """The right-hand side in every target language."""
+    """The right-hand side in every target language, in the fewest coordinates."""
+    derivation = Derivation(reduced(derivation.system))
     (rhs,) = contents(derivation, ["rhs"]).functions
     yield Paragraph(
         "As generated code, the equations of motion give velocities and accelerations at a state."
     )
+    if eliminated := [one.coordinate.symbol for one in derivation.system.eliminated]:
+        q, qdot = names_of(derivation.system.q), names_of(derivation.system.qdot)
+        yield Paragraph(
+            f"The constraints determine `{names_of(eliminated)}`: the state y consists of `{q}` "
+            f"and `{qdot}` alone."
+        )
     for backend in reversed(find_backends()):
         language = LANGUAGES.get(backend.suffix, backend.suffix.removeprefix("."))
         text = backend.function(rhs).strip("\n")
