@@ -152,22 +152,27 @@ class Newton:
         self, start: Start, k: Array, change: Solve, largest: float, rate: float
     ) -> tuple[Array, tuple[float, float]]:
         """Solved k, the part of the error that the last iteration left, and the contraction."""
-        previous, rate, contraction = np.inf, float(np.sqrt(rate)), 0.0
+        previous, contraction = np.inf, 0.0
+        if self.is_controlled:  # less certain than in the last step
+            rate = float(np.sqrt(rate))
         limit = max_iterations(len(k)) if self.is_controlled else MAX_FIXED_ITERATIONS
         for iteration in range(limit):
             with _failures_reported():
                 step = change(self._residual(start, k))
             k = k + step
             size = self._size(start, k, step)
+            last_rate = rate
             if iteration:
-                last_rate, rate = rate, size / previous
+                rate = size / previous
                 contraction = rate if iteration == 1 else float(np.sqrt(rate * last_rate))
             if self.is_controlled:
                 is_solved = size == 0 or (rate < 1 and size * rate < SHARE * (1 - rate))
             else:
                 is_solved = _is_rounding(size, previous, abs(start.h) * largest)
             if is_solved:
-                return k, (min(rate, 1.0), contraction)
+                # with fixed steps the change is a rounding error, which only limits the rate
+                rate = min(rate, 1.0 if self.is_controlled else last_rate)
+                return k, (rate, contraction)
             if not np.isfinite(size) or (iteration and rate >= 1):
                 break
             previous = size

@@ -92,8 +92,10 @@ static int iterate(
     if (!linearise(method, t, z, h, params)) {
         return 0;
     }
-    /* not known before the second change: less certain than in the last step */
-    *rate = sqrt(*rate);
+    if (!task->fixed_h) {
+        /* not known before the second change: less certain than in the last step */
+        *rate = sqrt(*rate);
+    }
     result->contraction = 0.0;
     for (int iteration = 1; iteration <= limit; iteration++) {
         residuals(method, start, h, params, (const double (*)[DIM])k, states, change);
@@ -104,14 +106,15 @@ static int iterate(
             ? relative_change(method, start->z, h, (const double (*)[DIM])k,
                               (const double (*)[DIM])change)
             : scaled_change(method, task, start->z, h, (const double (*)[DIM])change);
+        const double last_rate = *rate;
         if (iteration > 1) {
-            const double last_rate = *rate;
             *rate = size/previous;
             result->contraction = iteration == 2 ? *rate : sqrt(*rate*last_rate);
         }
         if (task->fixed_h ? is_rounding(size, previous, fabs(h)*linearisation.largest)
                           : size == 0 || (*rate < 1 && size**rate < SHARE*(1 - *rate))) {
-            *rate = lane_fmin(*rate, 1);
+            /* with fixed steps the change is a rounding error, which only limits the rate */
+            *rate = lane_fmin(*rate, task->fixed_h ? last_rate : 1);
             return 1;
         }
         if (!(size < INFINITY) || (iteration > 1 && *rate >= 1)) {
