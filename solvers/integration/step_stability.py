@@ -80,29 +80,41 @@ def _has_failed(problem: Problem, outcome: Outcome) -> bool:
 
 def _last_good_time(problem: Problem, outcome: Outcome) -> float:
     """The last recorded time before the energy has changed, or the last step's end."""
-    t, y = outcome.rows()
     if not conserves_energy(problem.form.module):
         return outcome.end[0]
-    has_changed = changed_energy(problem.form, problem.start[:, np.newaxis], y.T)[2]
-    good = t[: int(np.argmax(has_changed)) if has_changed.any() else len(t)]
+    has_changed = _has_changed(problem, outcome)
+    good = outcome.rows()[0][: int(np.argmax(has_changed)) if has_changed.any() else None]
     return float(good[-1]) if len(good) else problem.span[0]
+
+
+def _has_changed(problem: Problem, outcome: Outcome) -> NDArray[np.bool_]:
+    """Whether an energy that is constant has changed, at each recorded time."""
+    states = outcome.rows()[1].T
+    if not conserves_energy(problem.form.module):
+        return np.zeros(states.shape[1], bool)
+    return changed_energy(problem.form, problem.start[:, np.newaxis], states)[2]
 
 
 def _sufficient_step(problem: Problem, longest: float) -> float:
     """The first of the steps h/2, h/4, … that, and whose half, keeps the energy; 0 if unknown."""
     begin, end = problem.span
-    h, kept = longest / 2, 0.0
+    h, kept = _rounded(longest / 2), 0.0
     while abs(end - begin) / h <= MOST_STEPS:
-        trial = replace(problem, h=h, samples=np.empty(0), events=[], max_steps=MOST_STEPS + 1)
+        trial = replace(problem, h=h, samples=None, events=[], max_steps=MOST_STEPS + 1)
         outcome = rerun(trial)
-        if outcome.status is not Status.FINISHED or _has_other_energy(trial, outcome):
+        if outcome.status is not Status.FINISHED or _has_changed(trial, outcome).any():
             kept = 0.0
         elif kept:
             return kept
         else:
             kept = h
-        h /= 2
+        h = _rounded(h / 2)
     return 0.0
+
+
+def _rounded(h: float) -> float:
+    """A step size with the digits of messages: a chaotic motion may end with no other."""
+    return float(f"{h:.3g}")
 
 
 def _rates_at_start(problem: Problem, *, with_equilibrium: bool) -> NDArray[np.complex128]:
