@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,9 +21,9 @@ from solvers.sweeps import reading
 HEAVY = ("sympy", "numpy", "scipy", "matplotlib")
 
 
-def loaded(code: str) -> set[str]:
+def loaded(code: str, packages: Iterable[str] = HEAVY) -> set[str]:
     """Numerical packages that a new process loads for these statements."""
-    report = f"print(*({set(HEAVY)!r} & {{*sys.modules}}))"
+    report = f"print(*({set(packages)!r} & {{*sys.modules}}))"
     argv = [sys.executable, "-c", f"import sys\n{code}\n{report}"]
     return {*subprocess.run(argv, capture_output=True, text=True, check=True).stdout.split()}
 
@@ -42,6 +43,17 @@ def test_importing_and_completing_load_no_numerical_package(package: str) -> Non
 )
 def test_a_name_loads_only_the_packages_that_it_needs(statement: str, packages: set[str]) -> None:
     assert loaded(statement) <= packages
+
+
+def test_a_run_loads_no_parts_of_scipy() -> None:
+    # they take as long to load as SymPy
+    parts = [f"scipy.{name}" for name in ("integrate", "linalg", "optimize", "special")]
+    code = (
+        "import generated.double_pendulum as dp; from solvers import integrate;"
+        "integrate(dp, (0, 1), (1.0, 0.0, 0.0, 0.0), {{}}, method='{}')"
+    )
+    assert loaded(code.format("dop853"), parts) == set()
+    assert loaded(code.format("RK45"), parts) == set(parts)
 
 
 def test_holonomic_offers_all_public_names() -> None:

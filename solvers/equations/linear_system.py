@@ -6,8 +6,8 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import linalg
 
 from solvers.equations.assembly import Assembly
 from solvers.equations.consistent_start import consistent
@@ -136,9 +136,7 @@ class LinearSystem:
 
     def to_scipy(self) -> Any:
         """A ``scipy.signal.StateSpace``."""
-        from scipy import signal
-
-        return signal.StateSpace(self.A, self.B, self.C, self.D)
+        return scipy.signal.StateSpace(self.A, self.B, self.C, self.D)
 
     def to_control(self) -> Any:
         """A ``control.ss`` with names, if python-control is installed."""
@@ -256,7 +254,7 @@ def _tangent(
     holonomic = position_constraints(module)
     rows = [slice(0, holonomic), slice(holonomic, None)]
     chosen = [
-        own[linalg.qr(G[row][:, own], pivoting=True, mode="r")[1][: len(G[row])]]
+        own[scipy.linalg.qr(G[row][:, own], pivoting=True, mode="r")[1][: len(G[row])]]
         for own, row in zip(parts, rows, strict=True)
     ]
     dependent = np.concatenate(chosen)

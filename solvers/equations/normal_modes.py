@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 from solvers.equations.module import GeneratedModule, function, has_function
 
@@ -32,7 +32,7 @@ class Modes:
             raise ValueError(f"{name} has no equilibrium: small motions have no modes")
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
         try:
-            squares, shapes = eigh(stiffness_matrix, mass_matrix)
+            squares, shapes = scipy.linalg.eigh(stiffness_matrix, mass_matrix)
         except np.linalg.LinAlgError as error:
             text = "the mass matrix is not positive definite at the equilibrium"
             raise ValueError(f"{name} has no modes with {params}: {text}") from error

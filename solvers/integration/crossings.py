@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.polynomial.chebyshev import (
     chebder,
     chebfit,
@@ -18,7 +19,6 @@ from numpy.polynomial.chebyshev import (
     chebval,
     chebvander,
 )
-from scipy.optimize import minimize_scalar
 
 from solvers.integration.solution import Array
 from solvers.runge_kutta.continuous_extension import bernstein_values
@@ -128,6 +128,8 @@ def approach(
             return float(tried[-1][0] * sign)
 
         limits = begin, extremum.end
-        minimize_scalar(size, bounds=limits, method="bounded", options={"xatol": 1e-8})
+        scipy.optimize.minimize_scalar(
+            size, bounds=limits, method="bounded", options={"xatol": 1e-8}
+        )
     there, part = min(tried, key=lambda pair: pair[0] * np.sign(before))
     return part, there

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.polynomial.chebyshev import chebder, chebval
-from scipy.optimize import brentq
 
 from solvers.integration.solution import Array
 from solvers.integration.step_states import EventCourse
@@ -66,7 +66,7 @@ def estimate(polynomial: Array, begin: float, bracket: Bracket) -> Estimate:
     near, far = (2 * (time - begin) / h - 1 for time in (bracket.near, bracket.far))
     if not chebval(near, polynomial) * chebval(far, polynomial) < 0:
         return Estimate()
-    x = brentq(chebval, near, far, args=(polynomial,), xtol=CLOSE)
+    x = scipy.optimize.brentq(chebval, near, far, args=(polynomial,), xtol=CLOSE)
     rate = 2 * float(chebval(x, chebder(polynomial))) / h
     return Estimate(begin + h * (x + 1) / 2, rate)
 

@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import cast
 
 import numpy as np
-from scipy import integrate
+import scipy
 
 from solvers.equations.forms import Form
 from solvers.integration.inputs import segments
@@ -21,7 +21,7 @@ from solvers.runge_kutta.stepper import NotFiniteError, Rhs, evaluated
 class DenseOutput:
     """States within the last step of a solver."""
 
-    def __init__(self, form: Form, solver: integrate.OdeSolver) -> None:
+    def __init__(self, form: Form, solver: "scipy.integrate.OdeSolver") -> None:
         self._form, self._solver = form, solver
 
     @cached_property
@@ -90,7 +90,7 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag)
     return Status.FINISHED
 
 
-def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolver:
+def _solver(problem: Problem, outcome: Outcome, y0: Array) -> "scipy.integrate.OdeSolver":
     form, method, (begin, end) = problem.form, str(problem.method), problem.span
 
     def rhs(t: float, z: Array) -> Array:
@@ -105,7 +105,7 @@ def _solver(problem: Problem, outcome: Outcome, y0: Array) -> integrate.OdeSolve
     if form.has_jacobian and method in ("Radau", "BDF", "LSODA"):
         options["jac"] = jacobian
     z = form.from_ordinary(begin, y0)
-    return getattr(integrate, method)(rhs, begin, z, end, **options)
+    return getattr(scipy.integrate, method)(rhs, begin, z, end, **options)
 
 
 def _finite(what: str, function: Rhs, t: float, z: Array, shape: tuple[int, ...]) -> Array:

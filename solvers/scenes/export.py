@@ -8,12 +8,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import scipy
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
-from scipy.interpolate import CubicHermiteSpline
 
 from solvers.equations.quantities import positive
 from solvers.io.atomic_write import write_text
@@ -122,7 +122,7 @@ def at(result: SceneResult, times: Array) -> SceneResult:
     times = np.clip(times, result.t[0], result.t[-1])
     y, n = np.full((len(result.y), len(times)), np.nan), len(result.y) // 2
     for k in np.flatnonzero(np.isfinite(result.y[:n]).all(axis=1)).tolist():
-        spline = CubicHermiteSpline(result.t, result.y[k], result.y[k + n])
+        spline = scipy.interpolate.CubicHermiteSpline(result.t, result.y[k], result.y[k + n])
         y[k], y[k + n] = spline(times), spline(times, 1)
     return replace(result, t=times, y=y, energy=None)
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from solvers.equations.module import GeneratedModule
 from solvers.sweeps.axes import Array
@@ -66,7 +66,7 @@ def lower_position(
 
             starts = [np.delete([p.get(q, 0.0) for q in module.COORDINATES], k) for p in positions]
             for start in (*starts, *random.uniform(-np.pi, np.pi, (STARTS, n - 1))):
-                others = minimize(energy, start).x if n > 1 else start
+                others = scipy.optimize.minimize(energy, start).x if n > 1 else start
                 if energy(others) < top - LOWER * max(abs(top), 1.0):
                     position = np.insert(others, k, value)
                     return dict(zip(module.COORDINATES, map(float, position), strict=True))

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from solvers.integration.orbits.curve import Curve, Node
 from solvers.integration.orbits.newton import NoPeriodicOrbitError
@@ -144,4 +144,4 @@ def _between(
     def value(distance: float) -> float:
         return function(known.get(distance) or node.curve.between(node, new, distance))
 
-    return float(brentq(value, 0.0, length, xtol=accuracy * length)), length
+    return float(scipy.optimize.brentq(value, 0.0, length, xtol=accuracy * length)), length

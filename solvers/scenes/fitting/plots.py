@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.special import ndtri
 
 from solvers.equations.quantities import Array
 from solvers.io.figures import COLOURS, panels
@@ -91,7 +91,7 @@ def _draw_residuals(panel: Axes, fit: Fit, k: int) -> None:
 
 def _draw_histogram(panel: Axes, values: Array) -> None:
     panel.hist(values, bins=BINS, density=True, color=COLOURS[5], alpha=0.7)
-    x = np.linspace(ndtri(1e-4), -ndtri(1e-4), 200)
+    x = np.linspace(scipy.special.ndtri(1e-4), -scipy.special.ndtri(1e-4), 200)
     panel.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color=COLOURS[6], lw=1)
     panel.set(xlabel="residual / noise", ylabel="density")
 

@@ -9,7 +9,7 @@ problem is one of ordinary least squares, whose normal equations are banded but 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solveh_banded
+import scipy
 
 from solvers.equations.quantities import Array
 from solvers.integration.prepare import NotFinishedError
@@ -92,7 +92,9 @@ def _step(linear: Linear, u: int, weights: Array, damping: float) -> tuple[Array
             bands[i - j, j::n] = own[:, i, j]
     bands[0] = bands[0] * (1 + damping) + np.tile(1e-9 * weights**2, count)
     columns = border.reshape(count * n, u)
-    solution = solveh_banded(bands, np.column_stack([columns, gradient.ravel()]), lower=True)
+    solution = scipy.linalg.solveh_banded(
+        bands, np.column_stack([columns, gradient.ravel()]), lower=True
+    )
     matrix = corner + damping * np.diag(np.diag(corner)) - columns.T @ solution[:, :u]
     change = np.linalg.lstsq(matrix, columns.T @ solution[:, u] - last, rcond=None)[0]
     return (-solution[:, u] - solution[:, :u] @ change).reshape(count, n), change

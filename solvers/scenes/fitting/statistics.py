@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
+import scipy
 
 from solvers.equations.quantities import Array
 
@@ -31,7 +31,7 @@ def covariance(triangle: Array) -> Array:
 
 def quantile(degrees: int, level: float = LEVEL) -> float:
     """Half the width of an interval in standard errors, by Student's distribution."""
-    return float(stdtrit(degrees, (1 + level) / 2))
+    return float(scipy.special.stdtrit(degrees, (1 + level) / 2))
 
 
 def autocorrelation(residuals: Sequence[Array], lags: int) -> Array:

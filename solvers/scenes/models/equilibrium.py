@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
-from scipy.linalg import expm
+import scipy
 
 from solvers.equations.module import GeneratedModule, depends_on_time
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
@@ -75,4 +75,4 @@ def _propagated(jacobian: Array, defect: Array, times: Array) -> Array:
     augmented = np.zeros((n + 1, n + 1))
     augmented[:n, :n], augmented[:n, n] = jacobian, defect
     with np.errstate(over="ignore", invalid="ignore"):
-        return np.asarray(expm(augmented * times[:, None, None]))[:, :n, n]
+        return np.asarray(scipy.linalg.expm(augmented * times[:, None, None]))[:, :n, n]

@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import ClassVar, Self
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm, rounding_error
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
@@ -240,7 +240,9 @@ def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
             if np.isnan(values[outer]):
                 raise OutsideDomainError("the motion approaches a singularity")
             try:
-                end = brentq(kinetic, inner, points[outer], xtol=1e-300, rtol=4 * EPS)
+                end = scipy.optimize.brentq(
+                    kinetic, inner, points[outer], xtol=1e-300, rtol=4 * EPS
+                )
             except RuntimeError as error:  # it converges to a pole of the potential at 0
                 raise OutsideDomainError("the motion approaches a singularity") from error
             ends.append(float(end))
@@ -268,7 +270,9 @@ def _with_barriers(reduced: ReducedMotion, points: Array) -> Array:
     values, barriers = inertia(points), []
     for k in np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] < values[2:])) + 1:
         bounds = np.sort(points[[k - 1, k + 1]])
-        lowest = minimize_scalar(inertia, bounds=bounds, method="bounded", options={"xatol": 1e-12})
+        lowest = scipy.optimize.minimize_scalar(
+            inertia, bounds=bounds, method="bounded", options={"xatol": 1e-12}
+        )
         if lowest.fun < VANISHING * values.max():
             if reduced.energy - reduced.parts(np.array(lowest.x))[1] > 0:
                 raise OutsideDomainError("the motion passes too close to a pole of its coordinates")
