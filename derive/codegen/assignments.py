@@ -27,6 +27,12 @@ DIGITS = 40
 SUM, PRODUCT, ATOM = 1, 2, 3
 
 
+# signs are those of numerators: comparisons of fractions take long
+@cache
+def _is_in_range(value: Fraction) -> bool:
+    return -LARGEST < value < LARGEST
+
+
 @cache
 def _is_float(value: Number) -> bool:
     return bool(-LARGEST < value < LARGEST and value == float(value))
@@ -50,7 +56,7 @@ class Notation:
 
     def literal(self, value: Fraction) -> str:
         """A number, exact where the floating-point numbers are."""
-        if not -LARGEST < value < LARGEST:
+        if not _is_in_range(value):
             raise UnsupportedFunctionError(f"no generated code for a number out of range: {RANGE}")
         # a quotient of exact numbers is rounded once, in any type
         if _is_float(value) or not all(map(_is_float, (value.numerator, value.denominator))):
@@ -59,7 +65,7 @@ class Notation:
 
     def decimal(self, value: Number) -> str:
         """A number as a decimal fraction, with `DIGITS` where no float is equal to it."""
-        return f"{'-' * (value < 0)}{_digits(value)}"
+        return f"{'-' * (value.numerator < 0)}{_digits(value)}"
 
     def call(self, function: str, *arguments: str) -> str:
         """A call of ``select`` or of a mathematical function, by its name in C99."""
@@ -200,8 +206,8 @@ class Assignments:
 
     def _sum(self, coefficients: dict[int, Fraction]) -> str:
         ordered = self._constants_first(coefficients)
-        positive = [n for n in ordered if coefficients[n] > 0]
-        negative = [n for n in ordered if coefficients[n] < 0]
+        positive = [n for n in ordered if coefficients[n].numerator > 0]
+        negative = [n for n in ordered if coefficients[n].numerator < 0]
         if not positive and all(c == -1 for c in coefficients.values()) and len(negative) > 1:
             return f"-({' + '.join(self._text(n, SUM) for n in negative)})"
         text = ""

@@ -212,7 +212,7 @@ class Graph:
             reduce(gcd, (c.denominator for _, c in ordered)),
         )
         # of s and -s, the one with more plus signs is the node
-        negative = sum(c < 0 for _, c in ordered)
+        negative = sum(c.numerator < 0 for _, c in ordered)
         if 2 * negative > len(ordered) or (2 * negative == len(ordered) and ordered[0][1] < 0):
             content = -content
         rest = []

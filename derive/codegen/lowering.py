@@ -168,8 +168,10 @@ class Lowering:
     def _parts(self, terms: list[Term]) -> Iterator[list[Term]]:
         """Terms to add first: the constants, then those with a common coefficient."""
         yield [t for t in terms if self.operations[t[0]].constant]
-        for scale in {abs(c): None for _, c in terms if abs(c) != 1}:
-            yield [t for t in terms if abs(t[1]) == scale]
+        by_scale: dict[Fraction, list[Term]] = {}
+        for n, coefficient in terms:
+            by_scale.setdefault(abs(coefficient), []).append((n, coefficient))
+        yield from (part for scale, part in by_scale.items() if scale != 1)
 
     def _product(self, powers: list[tuple[int, int]]) -> int:
         above = [n for n, power in powers for _ in range(power)]

@@ -76,7 +76,7 @@ def cost(operation: Operation) -> int:
     n = len(operation.operands)
     match operation:
         case Sum(coefficients=coefficients):
-            scalings = sum(abs(c) != 1 for c in coefficients)
+            scalings = sum(c not in (1, -1) for c in coefficients)
             return n - 1 + scalings + all(c == -1 for c in coefficients)
         case Product():
             return n - 1
