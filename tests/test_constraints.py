@@ -4,6 +4,7 @@ from collections.abc import Callable
 from math import cos, sin
 from pathlib import Path
 
+import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
@@ -125,6 +126,27 @@ def test_jacobians_are_derivatives(make: Callable[[], System]) -> None:
     form = Form(one, "variational", one.DEFAULTS)
     perturbed = form.rhs(0.3, form.from_ordinary(0.3, np.array([*z, *change])))[-len(z) :]
     assert np.allclose(perturbed, np.transpose(rows) @ change, atol=1e-5)
+
+
+@pytest.mark.parametrize("degree", [0, 1])
+def test_the_right_side_of_constraints_is_that_of_their_derivatives(degree: int) -> None:
+    # oracle: decimal differences of the constraints themselves along a motion at constant speed
+    slip = velocity(y) * sp.cos(x + TIME) - velocity(x) * TIME * y - y * sp.sin(TIME)
+    formula = [x * y * sp.cos(TIME) - x**2 * TIME - y**3, slip][degree]
+    one = System("one", "One", PLANE, [KG], [PointMass(m, (x, y))], potential=0,
+        constraints=[formula])  # fmt: skip
+    (gamma,) = Derivation(one).constraint_forcing
+    at = dict(zip((x, y, velocity(x), velocity(y), TIME), (0.7, -0.4, 1.3, 0.8, 0.5), strict=True))
+
+    def along(s: mp.mpf) -> mp.mpf:
+        p, r, t = 0.7 + 1.3 * s, -0.4 + 0.8 * s, 0.5 + s
+        if degree == 0:
+            return p * r * mp.cos(t) - p**2 * t - r**3
+        return 0.8 * mp.cos(p + t) - 1.3 * t * r - r * mp.sin(t)
+
+    with mp.workdps(30):
+        expected = -float(mp.diff(along, 0, 2 - degree))
+    assert float(gamma.subs(at)) == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.parametrize("method", SCIPY)

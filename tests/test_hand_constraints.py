@@ -156,8 +156,23 @@ def test_substitution_into_the_lagrangian_is_recognised(system: str, tmp_path: P
     assert verdicts[-1].note.startswith("it is the Lagrangian of motions alone")
 
 
+def test_forces_count_in_equations_by_substitution(tmp_path: Path) -> None:
+    braked = 'dissipation = "c*theta_dot**2/2"\npotential = "0"'
+    text = SYSTEMS["sleigh"].replace('potential = "0"', braked)
+    text = text.replace("[parameters]", '[parameters]\nc = { value = 0.1, unit = "N m s" }')
+    (tmp_path / "braked.toml").write_text(text)
+    path, (_, equations) = tmp_path / "source.toml", SUBSTITUTED["sleigh"]
+    for force, count in (("- c*theta_dot", 1), ("c*theta_dot", 0)):
+        turn = equations[1].replace("= 0", f"= {force}")
+        path.write_text(f'system = "braked.toml"\neuler_lagrange = ["{turn}"]')
+        (one,) = judge(path).equations
+        assert one.verdict == "wrong"
+        assert one.note.count("it follows from the Lagrangian without y_dot; ") == count
+
+
 # L of the shipped disc with x_dot = R*chi_dot*cos(psi), y_dot = R*chi_dot*sin(psi); of its own
-# equations that of phi holds, and those of chi and psi lack the moments of the multipliers
+# equations that of phi holds, and those of chi and psi lack the moments of the multipliers. The
+# last equation is that of psi with chi_dot = x_dot/(R*cos(psi)), y_dot = x_dot*tan(psi)
 def test_a_rolling_disc_by_substitution_is_wrong(tmp_path: Path) -> None:
     path = tmp_path / "disc.toml"
     path.write_text("""
@@ -168,14 +183,20 @@ euler_lagrange = ["(2*k + 1)*n_dot = 0",
  '''k*psi_ddot*cos(phi)**2 - 2*k*psi_dot*phi_dot*sin(phi)*cos(phi)
  + (2*k + 1)*(n_dot*sin(phi) + n*phi_dot*cos(phi)) = 0''',
  '''(k + 1)*phi_ddot + k*psi_dot**2*sin(phi)*cos(phi) - (2*k + 1)*psi_dot*n*cos(phi)
- - g*sin(phi)/R = 0''']
+ - g*sin(phi)/R = 0''',
+ '''k*psi_ddot*cos(phi)**2 - 2*k*psi_dot*phi_dot*sin(phi)*cos(phi)
+ + (2*k + 1)*(n_dot*sin(phi) + n*phi_dot*cos(phi) - n*chi_dot*tan(psi)) = 0''']
 names.n = "chi_dot + psi_dot*sin(phi)"
 """)
-    lagrangian, turn, heading, lean = judge(path).equations
+    lagrangian, turn, heading, lean, other = judge(path).equations
     assert lagrangian.note.startswith("it is the Lagrangian of motions alone")
-    for one in (turn, heading):
+    for one, removed in (
+        (turn, "x_dot, y_dot"),
+        (heading, "x_dot, y_dot"),
+        (other, "y_dot, chi_dot"),
+    ):
         assert one.verdict == "wrong"
-        assert one.note.startswith("it follows from the Lagrangian without x_dot, y_dot; ")
+        assert one.note.startswith(f"it follows from the Lagrangian without {removed}; ")
     assert (lagrangian.verdict, lean.verdict) == ("wrong", "verified")
 
 
