@@ -372,6 +372,8 @@ def test_invalid_bodies_are_refused() -> None:
         (A, "is not a sequence"),
         ([(1, 0, 0), (1, 1, 0), (0, 0, 1)], "is not symmetric"),
         ([(1, 0), (0, 1)], "is no tensor"),
+        ([(1, 2, 0), (2, 1, 0), (0, 0, 1)], "a principal moment that is negative or larger"),
+        ([(1, 0.99, 0), (0.99, 1, 0), (0, 0, 1)], "1.0]] has a principal moment"),
         ("abc", "is not a sequence"),
     ):
         with pytest.raises(SystemDefinitionError, match=words):
@@ -396,6 +398,43 @@ def test_invalid_bodies_are_refused() -> None:
     unknown = quaternion(*sp.symbols("w x y q", real=True))
     with pytest.raises(SystemDefinitionError, match="orientation of body 1 contains unknown sym"):
         free(unknown, KAPPA)
+
+
+ROD = [Parameter(m, "kg", 1.2, "mass"), Parameter(A, "kg m^2", 0.7, "across the rod"),
+       Parameter(g, "m/s^2", 9.81, "gravity")]  # fmt: skip
+
+
+def rod(inertia: tuple[object, ...], constraints: list[sp.Expr]) -> System:
+    """A thin rod on a ball joint, a metre above its centre of mass."""
+    axes = ORIENTATIONS["quaternion"]
+    body = RigidBody(m, axes.turned((0, 0, -1)), inertia, axes)
+    return System("rod", "A thin rod", KAPPA, ROD, [body], constraints=constraints)
+
+
+SPIN = w * velocity(z) - z * velocity(w) + y * velocity(x) - x * velocity(y)  # about the rod
+
+
+def test_a_rod_that_cannot_spin_moves_as_a_spherical_pendulum() -> None:
+    module, pendulum = build(rod((A, A, 0), [SPIN])), generated.spherical_pendulum
+    strict = STRICT | {"t_eval": [0.0, 1.0, 2.0, 3.0]}
+    motion = integrate(module, (0, 3), start((1.0, 2.0, 0.0), (0.8, 0.6, 0, 0)), {}, **strict)
+    # oracle: equal moments m l² + A and weights, from the angle from below and the rates there
+    length = 1 + 0.7 / 1.2
+    params = pendulum.params(m=1.0, l=length, g=9.81)
+    centre = module.positions_many(motion.t, motion.y, module.DEFAULTS)[0]
+    theta, azimuth = np.arccos(-centre[2, 0]), np.arctan2(centre[1, 0], centre[0, 0])
+    by_angles = (theta, azimuth, 1.0, 2.0 / np.sin(theta))
+    other = integrate(pendulum, (0, 3), by_angles, params, **strict)
+    expected = pendulum.positions_many(other.t, other.y, params)[0] / length
+    assert np.abs(centre - expected).max() < 1e-11
+    assert np.abs(module.constraints_many(0.0, motion.y, module.DEFAULTS)).max() < 1e-14
+
+
+@pytest.mark.parametrize("inertia", [(A, A, 0), (0, 0, 0)])
+def test_rotations_without_inertia_are_refused_with_a_way_out(inertia: tuple[object, ...]) -> None:
+    words = r"rotations of body m with .*0.* move no mass; give positive .* rotations\('xy'"
+    with pytest.raises(SystemDefinitionError, match=words):
+        Derivation(rod(inertia, []))
 
 
 def test_a_copy_of_a_system_has_each_norm_once() -> None:

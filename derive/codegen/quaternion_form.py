@@ -70,7 +70,8 @@ class QuaternionForm(ProjectionForm):
         quasi, node = self._quasi, self._quasi_node
         inertia = [[*map(node, quasi.mass_matrix.row(i))] for i in range(len(quasi.u))]
         constraints = [[*map(node, row)] for row in quasi.constraint_jacobian]
-        return ConstrainedFactorisation(self._graph, inertia, constraints, singular=False)
+        singular = quasi.has_singular_mass_matrix
+        return ConstrainedFactorisation(self._graph, inertia, constraints, singular=singular)
 
     @cached_property
     def _accelerations(self) -> list[Node]:

@@ -19,7 +19,7 @@ import sympy as sp
 from derive.mechanics.constraints import Constraints
 from derive.mechanics.cyclic_coordinates import CyclicCoordinates
 from derive.mechanics.equilibria import equilibria
-from derive.mechanics.independence import check_independence
+from derive.mechanics.independence import check_independence, is_singular
 from derive.mechanics.linearisation import Linearisation, SmallOscillations
 from derive.mechanics.outputs import outputs as output_formulas
 from derive.mechanics.point import Formula, Point
@@ -130,13 +130,7 @@ class Derivation(CyclicCoordinates):
     @cached_property
     def has_singular_mass_matrix(self) -> bool:
         """Whether some motions of the coordinates, which constraints prevent, move no mass."""
-        if not self.system.conditions:
-            return False
-        try:
-            check_independence(self.system, self.mass_matrix)
-        except SystemDefinitionError:
-            return True
-        return False
+        return bool(self.system.conditions) and is_singular(self.system, self.mass_matrix)
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small oscillations about an equilibrium, by default the system's own, or zeros.

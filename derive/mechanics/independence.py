@@ -4,6 +4,7 @@ import sympy as sp
 
 from derive.formulas.numeric import Evaluator, NoValueError
 from derive.system.parts import SystemDefinitionError
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
 
@@ -24,12 +25,33 @@ def check_independence(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> 
                 others = ", ".join(s.name for s in system.q[:k])
                 reason = f"moves the masses only in ways in which {others} can move them"
             raise SystemDefinitionError(
-                f"coordinate {q.name!r} of system {system.name!r} {reason}: omit it, or let a "
-                "position depend on it"
+                f"coordinate {q.name!r} of system {system.name!r} {reason}: {_way_out(system, q)}"
             )
         for i in range(k + 1, len(rows)):
             ratio = rows[i][k] / rows[k][k]
             rows[i] = [a - ratio * b for a, b in zip(rows[i], rows[k], strict=True)]
+
+
+def is_singular(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> bool:
+    """Whether some motions of the coordinates move no mass."""
+    try:
+        check_independence(system, mass_matrix)
+    except SystemDefinitionError:
+        return True
+    return False
+
+
+def _way_out(system: System, q: sp.Symbol) -> str:
+    for body in system.masses:
+        if isinstance(body, RigidBody) and q in body.quaternion:
+            parts = ", ".join(map(str, body.quaternion))
+            return (
+                f"rotations of body {body.mass} with {body.moments} move no mass; give positive "
+                "principal moments, a constraint that prevents these rotations, or instead of the "
+                f"quaternion {parts} only angles that move a mass, such as "
+                "rotations('xy', (alpha, beta)) for a thin rod along z"
+            )
+    return "omit it, or let a position depend on it"
 
 
 def _generic_values(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> list[list[sp.Expr]]:

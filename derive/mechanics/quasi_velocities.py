@@ -17,6 +17,7 @@ import sympy as sp
 
 from derive.formulas.expansion import is_expandable
 from derive.mechanics.derivation import Derivation
+from derive.mechanics.independence import is_singular
 from derive.mechanics.kinetics import Matrix, derivative
 from derive.mechanics.reduction import reduced
 from derive.system.rigid_body import RigidBody
@@ -123,6 +124,14 @@ class QuasiVelocities:
         n = len(self.u)
         upper = {(i, j): entry(i, j) for i in range(n) for j in range(i, n)}
         return Matrix(n, n, lambda i, j: upper[min(i, j), max(i, j)])
+
+    @cached_property
+    def has_singular_mass_matrix(self) -> bool:
+        """Whether some motions that keep the norms move no mass, as the spin of a thin rod."""
+        d = self.derivation
+        rows = [k for k, one in enumerate(d.system.conditions) if one.formula in self.norms]
+        G = d.constraint_jacobian.extract(rows, [*range(len(d.system.q))])
+        return is_singular(d.system, d.mass_matrix + G.T * G)
 
     @cached_property
     def inertial_forces(self) -> tuple[sp.Expr, ...]:

@@ -14,6 +14,8 @@ from solvers.io.suggestion import shortened
 Moments = tuple[sp.Expr, ...]
 Tensor = tuple[Moments, ...]
 AXES = range(3)
+#: Of tensors in decimal numbers, relative.
+ROUNDING = sp.Float("1e-12")
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,7 @@ class RigidBody(PointMass):
                 )
         if is_spatial:
             _check_triangle(moments)
+            _check_tensor(self.tensor)
 
     @property
     def axes(self) -> Orientation | None:
@@ -159,16 +162,19 @@ class RigidBody(PointMass):
         return self.axes.quaternion if self.axes else ()
 
     @property
+    def moments(self) -> str:
+        """The inertia in words."""
+        if self.axes is None:
+            return f"moment of inertia {self.inertia}"
+        if self._products:
+            return f"tensor of inertia {self.tensor.tolist()}"
+        return f"principal moments {', '.join(map(str, self._diagonal))}"
+
+    @property
     def words(self) -> str:
         """Mass, position, inertia and orientation."""
-        if self.axes is None:
-            inertia = f"moment of inertia {self.inertia}"
-        elif self._products:
-            inertia = f"tensor of inertia {self.tensor.tolist()}"
-        else:
-            inertia = f"principal moments {', '.join(map(str, self._diagonal))}"
         orientation = f": {self.axes.words}" if self.axes else f" {self.orientation}"
-        return f"{super().words}, {inertia}, orientation{orientation}"
+        return f"{super().words}, {self.moments}, orientation{orientation}"
 
     def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> Self:
         """A copy with `function` applied to every expression."""
@@ -235,6 +241,19 @@ def _check_triangle(moments: Moments) -> None:
             raise SystemDefinitionError(
                 f"moment of inertia {moment} is larger than the sum of both others, of "
                 f"{', '.join(map(str, moments))}: no body has such moments about its centre of mass"
+            )
+
+
+def _check_tensor(tensor: sp.ImmutableDenseMatrix) -> None:
+    """The same for a tensor in numbers: of P = tr(J)/2 - J no eigenvalue is negative."""
+    P = tensor.trace() / 2 * sp.eye(3) - tensor
+    pairs = (P.extract(pair, pair).det() for pair in map(list, combinations(AXES, 2)))
+    for power, value in enumerate((P.trace(), sp.Add(*pairs), P.det()), start=1):
+        if value.is_number and value < -ROUNDING * tensor.trace() ** power:
+            rows = [[float(f"{float(entry):.6g}") for entry in row] for row in tensor.tolist()]
+            raise SystemDefinitionError(
+                f"the tensor of inertia {rows} has a principal moment that is negative or larger "
+                "than the sum of both others: no body has it about its centre of mass"
             )
 
 
