@@ -1,9 +1,12 @@
 """One motion in a compiled loop."""
 
+from contextlib import suppress
+from threading import Thread
 from warnings import warn
 
 from solvers.equations.forms import fastest_form
-from solvers.equations.module import header
+from solvers.equations.module import GeneratedModule, header
+from solvers.integration.compiled.compilation import is_ahead
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
@@ -18,6 +21,8 @@ from solvers.runge_kutta.tableau import Tableau
 ROW_CAPACITY, EVENT_CAPACITY = 4096, 64
 #: Seconds of C between checks for an interruption by the user.
 TIME_LIMIT = 0.05
+#: Threads that compile, by the arguments of `kernel`.
+_threads: dict[tuple[GeneratedModule, str, str, bool, bool], Thread] = {}
 
 
 def obstacle(problem: Problem) -> str:
@@ -77,8 +82,25 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
 
 def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
     """The compiled loop for the problem."""
-    form, method, compensated = problem.form, problem.options.method, problem.options.compensated
-    return kernel(form.module, form.name, method, lanes=lanes, compensated=compensated)
+    form, options = problem.form, problem.options
+    arguments = form.module, form.name, options.method, lanes, options.compensated
+    if thread := _threads.get(arguments):
+        thread.join()
+    return kernel(*arguments)
+
+
+def compile_ahead(module: GeneratedModule, form: str, method: str) -> None:
+    """Start to compile a loop in another thread, for which `loop` waits."""
+    arguments = module, form, method, False, False
+
+    def compile_loop() -> None:
+        is_ahead.set(True)
+        with suppress(Exception):  # `loop` raises it again
+            kernel(*arguments)
+
+    if arguments not in _threads and header(module) is not None:
+        _threads[arguments] = Thread(target=compile_loop, daemon=True)
+        _threads[arguments].start()
 
 
 def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:

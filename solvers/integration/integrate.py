@@ -17,6 +17,7 @@ from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
 from solvers.integration.inputs import Controller, Held
 from solvers.integration.memory import limit_steps
+from solvers.integration.predictability import compile_perturbations
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.singularity import singularity
 from solvers.integration.solution import Array, Interrupted, Solution, Status
@@ -139,6 +140,7 @@ def integrate(
     )
     problem = validation.problem(module, t_span, y0, params, options)
     check_condition(module, [("", problem.form.constants, problem.start.tolist())], problem.span[0])
+    compile_perturbations(problem)
     problem, program = compiled_loop.select(problem, lanes=False)
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)

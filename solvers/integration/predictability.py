@@ -9,11 +9,11 @@ from math import inf
 
 import numpy as np
 
-from solvers.equations.module import has_function
+from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
-from solvers.integration.compiled_loop import loop, obstacle
+from solvers.integration.compiled_loop import compile_ahead, loop, obstacle
 from solvers.integration.problem import Options, Problem
 from solvers.integration.rerun import rerun
 from solvers.integration.solution import Array, Status
@@ -62,6 +62,13 @@ def is_ignored() -> bool:
     return _IS_IGNORED.get()
 
 
+def compile_perturbations(problem: Problem) -> None:
+    """Start to compile the loop of `predictable_until`, while that of the motion is compiled."""
+    module = problem.form.module
+    if _has_perturbations(module) and not (is_ignored() or problem.has_varying_inputs):
+        compile_ahead(module, "variational", METHOD)
+
+
 def predictable_until(problem: Problem, end: float) -> float:
     """The time in s from which on usual errors are as large as the motion.
 
@@ -74,7 +81,7 @@ def predictable_until(problem: Problem, end: float) -> float:
     before `end`, or if it is unknown: without a compiled loop.
     """
     begin, module = problem.span[0], problem.form.module
-    if begin == end or "variational" not in module.FORMS or not has_function(module, "mass_matrix"):
+    if begin == end or not _has_perturbations(module):
         return inf
     variational = replace(
         problem.with_form("variational"),
@@ -129,6 +136,10 @@ def predictable_until(problem: Problem, end: float) -> float:
         return inf
     after = float(allowed / growth[-1] * elapsed[-1])
     return inf if after >= abs(end - begin) else begin + direction * after
+
+
+def _has_perturbations(module: GeneratedModule) -> bool:
+    return "variational" in module.FORMS and has_function(module, "mass_matrix")
 
 
 def _error_at(problem: Problem, t: float) -> float:

@@ -5,6 +5,8 @@ import os
 import sys
 import threading
 from collections.abc import Sequence
+from contextlib import nullcontext
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -36,6 +38,10 @@ if ctypes.string_at(ctypes.addressof(key)) != sys.argv[2].encode():
     sys.exit("it is another one")
 getattr(library, "probe", int)()
 """
+
+
+#: Whether this thread compiles a library that another one will need.
+is_ahead = ContextVar("compiling ahead", default=False)
 
 
 class TimeLimitError(CommandError):
@@ -75,7 +81,7 @@ class Compilation:
         with running(command, folder) as compiler:
             limit = TRIAL_LIMIT if is_trial else PATIENCE
             if not compiler.ends_within(limit):
-                if is_trial or not self.compiler_works(ready):
+                if is_trial or not self.compiler_works(folder.parent):
                     raise TimeLimitError(f"did not end within {PATIENCE + TRIAL_LIMIT:g} s")
                 if not compiler.ends_within(TIME_LIMIT):
                     raise TimeLimitError(f"did not end within {TIME_LIMIT:g} s")
@@ -93,10 +99,10 @@ class Compilation:
         except CommandError as error:
             raise CommandError(f"wrote a library that does not work: {error}") from error
 
-    def compiler_works(self, ready: Path) -> bool:
-        """Whether the compiler builds a library of a program of two lines."""
+    def compiler_works(self, place: Path) -> bool:
+        """Whether the compiler builds a library of a program of two lines, in a new folder."""
         trial = Compilation(TRIAL, self.command, self.flags, "trial")
-        with TemporaryDirectory(prefix=BUILD_PREFIX, dir=ready.parent.parent) as folder:
+        with TemporaryDirectory(prefix=BUILD_PREFIX, dir=place) as folder:
             try:
                 (ready := Path(folder, "ready")).mkdir()
                 trial.run(ready, is_trial=True)
@@ -113,6 +119,7 @@ class Attempts:
 
     def __init__(self) -> None:
         self._errors: dict[tuple[str, ...] | str, str] = {}
+        self._working: set[tuple[str, ...]] = set()
         self.renew_lock()
         os.register_at_fork(after_in_child=self.renew_lock)
 
@@ -121,21 +128,28 @@ class Attempts:
         self._lock = threading.Lock()
 
     def run(self, compilation: Compilation, ready: Path) -> None:
-        """Run one compilation at a time, unless it has failed before, or its compiler."""
+        """Run a compilation, unless it has failed before, or its compiler.
+
+        Until a compiler has worked, it runs one compilation at a time. A thread that compiles ahead
+        does not wait: it tries the compiler with a small program.
+        """
         key, command, place = compilation.key, compilation.command, ready.parent.parent
         digest = hashlib.sha256("\0".join(identity(command)).encode()).hexdigest()[:32]
         name = f"hanging-{digest}"
-        with self._lock:
+        if command not in self._working and is_ahead.get() and compilation.compiler_works(place):
+            self._working.add(command)
+        with nullcontext() if command in self._working else self._lock:
             if error := self._errors.get(command) or self._errors.get(key):
                 raise CommandError(error)
             if error := note(place, name):
                 raise CommandError(f"{error} in another process (remove {place / name} to retry)")
             try:
                 compilation.run(ready)
+                self._working.add(command)
             except CommandError as error:
                 is_slow = isinstance(error, TimeLimitError)
                 if is_slow:
                     leave_note(place, name, str(error))
-                works = not is_slow and compilation.compiler_works(ready)
+                works = not is_slow and compilation.compiler_works(place)
                 self._errors[key if works else command] = str(error)
                 raise

@@ -36,9 +36,9 @@ class Kernel:
         module: GeneratedModule,
         form: str,
         method: str,
-        *,
         lanes: bool = False,
         compensated: bool = False,
+        *,
         reproducible: bool = False,
     ) -> None:
         tableau = load(method)
