@@ -73,7 +73,9 @@ def test_compiled_implicit_steps_converge_where_fixed_point_iteration_does_not()
         for backend in ("python", "compiled")
     )
     assert np.abs(python.y - compiled.y).max() < 1e-10
-    assert python.njev == compiled.njev == 100
+    # some steps keep the Jacobian of the last one: rounding decides which
+    assert 0 < python.njev < 100
+    assert 0 < compiled.njev < 100
     pendulum = integrate(sp, (0, 3), (0.0, 0.5), (1.0, start[0], 9.81), rtol=1e-12).y[:, -1]
     assert compiled.y[1::2, -1] == pytest.approx(pendulum, abs=1e-4)
     # and stages that cannot be solved end with a status
