@@ -103,7 +103,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "ace94a6c7be044d1"
+DIGEST = "1f348313c9fc5321"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -146,6 +146,7 @@ DEFAULTS: tuple[float, ...] = (1.0, 0.1, 0.3)
 POSITIVE = ("m", "J", "a")
 MULTIPLIERS = ("skate",)
 RESIDUALS = ("skate",)
+LINKS = (("rod", (0, 1)),)
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
@@ -158,6 +159,7 @@ CALLS_FUNCTIONS = (
     "correction",
     "mass_matrix",
     "positions",
+    "points",
     "rational_state",
 )
 OPERATIONS = {
@@ -174,6 +176,7 @@ OPERATIONS = {
     "correction_sensitivity": (57, 7),
     "mass_matrix": (8, 3),
     "positions": (6, 0),
+    "points": (6, 0),
     "rational_state": (2, 0),
     "rhs_rational": (70, 7),
     "rhs_variational": (131, 7),
@@ -1342,6 +1345,43 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     _, _, a = params
     # outputs
     return _stacked((1, 2), y[0], x + a*cos(theta), y_ + a*sin(theta))
+
+
+def points(t: float, y: Numbers, params: Numbers) -> Matrix:
+    """Points of `LINKS`, which pictures join.
+
+    6 operations, 0 of them on parameters alone.
+
+    Parameters
+    ----------
+    t : float
+        Time in s; not used.
+    y : iterable of 6 floats
+        x, y in m; theta in rad; x_dot, y_dot in m/s; theta_dot in rad/s.
+    params : iterable of 3 floats
+        m in kg; J in kg m^2; a in m.
+
+    Returns
+    -------
+    Matrix
+        One row a point: its Cartesian components in m, the last one upwards.
+    """
+    # inputs
+    x, y_, theta, _, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    _, _, a = params.tolist() if hasattr(params, "tolist") else params
+    # outputs
+    return ((x, y_), (x + a*cos(theta), y_ + a*sin(theta)))
+
+
+def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
+    """`points` over arrays: the result has shape (2, 2, ...)."""
+    from numpy import cos, sin
+
+    # inputs
+    x, y_, theta, _, _, _ = y
+    _, _, a = params
+    # outputs
+    return _stacked((2, 2), y[0], x, y_, x + a*cos(theta), y_ + a*sin(theta))
 
 
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "12aa519e32d259be"
+DIGEST = "c2b1be30f1173a6b"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -165,7 +165,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "l", "A", "C", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 0.3, 0.02, 0.01, 9.81)
 POSITIVE = ("m", "l", "A", "C")
-LINKS = (("rod", (0, 1)),)
+LINKS = (("rod", (0, 1)), ("wheel", (1, 2, 3)))
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs",
@@ -190,7 +190,7 @@ OPERATIONS = {
     "energy": (27, 4),
     "mass_matrix": (12, 3),
     "positions": (9, 0),
-    "points": (9, 0),
+    "points": (49, 0),
     "angular_momentum": (76, 2),
     "hamiltonian_state": (19, 3),
     "rhs_hamiltonian": (32, 7),
@@ -837,7 +837,7 @@ def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Points of `LINKS`, which pictures join.
 
-    9 operations, 0 of them on parameters alone.
+    49 operations, 0 of them on parameters alone.
 
     Parameters
     ----------
@@ -854,33 +854,72 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
         One row a point: its Cartesian components in m, the last one upwards.
     """
     # inputs
-    phi, _, theta, _, _, _ = y.tolist() if hasattr(y, "tolist") else y
+    phi, psi, theta, _, _, _ = y.tolist() if hasattr(y, "tolist") else y
     _, l, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # intermediate terms
-    x0 = l*sin(theta)
+    sin_phi = sin(phi)
+    sin_theta = sin(theta)
+    x0 = l*sin_theta
+    cos_phi = cos(phi)
+    cos_theta = cos(theta)
+    cos_psi = cos(psi)
+    sin_psi = sin(psi)
+    x1 = sin_phi*cos_theta
+    x2 = sin_phi*sin_theta
+    x3 = l*((1.0/3.0)*(cos_phi*cos_psi - sin_psi*x1) + x2)
+    x4 = sin_theta*cos_phi
+    x5 = cos_phi*cos_theta
+    x6 = l*(x4 - (1.0/3.0)*(sin_phi*cos_psi + sin_psi*x5))
+    x7 = l*(x2 - (1.0/3.0)*(cos_phi*sin_psi + cos_psi*x1))
+    x8 = l*(x4 + (1.0/3.0)*(sin_phi*sin_psi - cos_psi*x5))
     # outputs
-    return ((0.0, 0.0, 0.0), (sin(phi)*x0, -cos(phi)*x0, l*cos(theta)))
+    return (
+        (0.0, 0.0, 0.0),
+        (sin_phi*x0, -cos_phi*x0, l*cos_theta),
+        (x3, -x6, l*(cos_theta + (1.0/3.0)*sin_theta*sin_psi)),
+        (x7, -x8, l*(cos_theta + (1.0/3.0)*sin_theta*cos_psi)),
+    )
 
 
 def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (2, 3, ...)."""
+    """`points` over arrays: the result has shape (4, 3, ...)."""
     from numpy import cos, sin
 
     # inputs
-    phi, _, theta, _, _, _ = y
+    phi, psi, theta, _, _, _ = y
     _, l, _, _, _ = params
     # intermediate terms
-    x0 = l*sin(theta)
+    sin_phi = sin(phi)
+    sin_theta = sin(theta)
+    x0 = l*sin_theta
+    cos_phi = cos(phi)
+    cos_theta = cos(theta)
+    cos_psi = cos(psi)
+    sin_psi = sin(psi)
+    x1 = sin_phi*cos_theta
+    x2 = sin_phi*sin_theta
+    x3 = l*((1.0/3.0)*(cos_phi*cos_psi - sin_psi*x1) + x2)
+    x4 = sin_theta*cos_phi
+    x5 = cos_phi*cos_theta
+    x6 = l*(x4 - (1.0/3.0)*(sin_phi*cos_psi + sin_psi*x5))
+    x7 = l*(x2 - (1.0/3.0)*(cos_phi*sin_psi + cos_psi*x1))
+    x8 = l*(x4 + (1.0/3.0)*(sin_phi*sin_psi - cos_psi*x5))
     # outputs
     return _stacked(
-        (2, 3),
+        (4, 3),
         y[0],
         0.0,
         0.0,
         0.0,
-        sin(phi)*x0,
-        -cos(phi)*x0,
-        l*cos(theta),
+        sin_phi*x0,
+        -cos_phi*x0,
+        l*cos_theta,
+        x3,
+        -x6,
+        l*(cos_theta + (1.0/3.0)*sin_theta*sin_psi),
+        x7,
+        -x8,
+        l*(cos_theta + (1.0/3.0)*sin_theta*cos_psi),
     )
 
 

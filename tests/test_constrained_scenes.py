@@ -75,8 +75,10 @@ def test_what_was_completed_is_reported(tmp_path: Path) -> None:
     shipped = run_scene(find("single", load))
     result = replace(shipped, scene=replace(shipped.scene, completed=one.completed))
     text, values = "\n".join(summary(result)), figures(result)
-    assert f"\nstart {one.completed}\n" in text
-    assert "; another solution, for guesses near it: psi = " in text
+    first, second = one.completed.split("; ")
+    assert f"\nstart {first}\n  {second}\nmodel" in text
+    assert second.startswith("another solution, for guesses near it: psi = ")
+    assert first.endswith(", psi_dot, chi_dot = 0")
     assert f"Start {one.completed}." in full_note([result])
     assert values["completed"] == one.completed
     assert values["initial_state"] == dict(

@@ -127,6 +127,17 @@ def test_it_plays_at_the_selected_speed(
     assert pace(player) == pytest.approx(speed, rel=0.2)
 
 
+@pytest.mark.parametrize(
+    ("end", "speed", "text"),
+    [(1e-3, "0.001", "0.000000 s of 0.001 s"), (0.03, "0.01", "0.00000 s of 0.03 s"),
+     (5, "1", "0.000 s of 5 s")],
+)  # fmt: skip
+def test_short_motions_play_slowly(end: float, speed: str, text: str, player: Player) -> None:
+    player.open([at_rest(end=end)])
+    assert player.find("#speed").get_attribute("value") == speed
+    assert player.find("#time").text == text
+
+
 def test_a_clock_of_twice_the_speed_is_noticed(
     player: Player, slow_tracks: list[Track], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

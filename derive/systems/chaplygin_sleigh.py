@@ -6,7 +6,7 @@ r"""Chaplygin's sleigh: a body on ice that a skate prevents from moving sideways
 """
 from sympy import cos, sin, symbols
 
-from derive import Constraint, Coordinate, Parameter, RigidBody, System, velocity
+from derive import Constraint, Coordinate, Parameter, RigidBody, Rod, System, velocity
 
 x, y, theta = symbols("x y theta", real=True)
 m, J, a = symbols("m J a", positive=True)
@@ -19,6 +19,7 @@ system = System(
                 Parameter(J, "kg m^2", 0.1, "moment of inertia about the centre of mass"),
                 Parameter(a, "m", 0.3, "from the skate to the centre of mass")],
     masses=[RigidBody(m, (x + a * cos(theta), y + a * sin(theta)), J, theta)], potential=0,
+    links=[Rod((x, y), 0)],
     constraints=[Constraint(skate, "skate", "N", "force on the skate, to its left")])
 
 PUBLISHED = r'''

@@ -8,7 +8,7 @@ r"""Lagrange's top: a symmetric body that spins about a fixed point below its ce
 """
 from sympy import symbols
 
-from derive import Coordinate, Parameter, RigidBody, Rod, System, rotations
+from derive import Coordinate, Parameter, RigidBody, Rod, System, Wheel, rotations
 
 phi, theta, psi, g = symbols("phi theta psi g", real=True)
 m, l, A, C = symbols("m l A C", positive=True)
@@ -21,7 +21,8 @@ system = System(
                 Parameter(A, "kg m^2", 0.02, "moment of inertia across the axis, at the centre"),
                 Parameter(C, "kg m^2", 0.01, "moment of inertia about the axis"),
                 Parameter(g, "m/s^2", 9.81, "gravitational acceleration")],
-    masses=[RigidBody(m, axes.turned((0, 0, l)), (A, A, C), axes)], links=[Rod((0, 0, 0), 0)])
+    masses=[RigidBody(m, axes.turned((0, 0, l)), (A, A, C), axes)], links=[
+        Rod((0, 0, 0), 0), Wheel(0, l / 3, plane=(axes.turned((1, 0, 0)), axes.turned((0, 1, 0))))])
 
 PUBLISHED = r'''
 source = "L. D. Landau, E. M. Lifshitz, Mechanics, § 35, problem 1"

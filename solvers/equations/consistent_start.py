@@ -81,6 +81,14 @@ class ConsistentStart:
         units = self.module.UNITS
         return np.array([units[name] == "rad" for name in self.module.COORDINATES])
 
+    @cached_property
+    def _zeros(self) -> list[str]:
+        """Components of the state that are 0 up to rounding errors."""
+        n, scales = self.assembly.n, self.assembly.scales
+        rate = np.abs(self.y[n:] / scales).max(initial=0.0)
+        is_zero = np.abs(self.y) <= EXACT * np.hstack([scales, rate * scales])
+        return [name for name, zero in zip(self.module.STATE, is_zero, strict=True) if zero]
+
     def _distance(self, q: Array, other: Array) -> float:
         change = (q - other) / self.assembly.scales
         change = np.where(self._angles, np.abs(np.sin(change / 2)) * 2, np.abs(change))
@@ -92,11 +100,15 @@ class ConsistentStart:
         state = dict(zip(self.module.STATE, self.y.tolist(), strict=True))
         if not self.completed:
             return ""
-        text = f"from the constraints: {_listed(self.module, state, self.completed)}"
-        free = [q for q in self.module.COORDINATES if q in self.completed]
+        zeros = [name for name in self.completed if name in self._zeros]
+        others = [name for name in self.completed if name not in self._zeros]
+        parts = [_listed(self.module, state, others), f"{', '.join(zeros)} = 0" if zeros else ""]
+        text = f"from the constraints: {', '.join(filter(None, parts))}"
         for q in self.others:
             other = dict(zip(self.module.COORDINATES, q.tolist(), strict=True))
-            text += f"; another solution, for guesses near it: {_listed(self.module, other, free)}"
+            changes = np.abs(q - self.y[: self.assembly.n]) > CLOSE * self.assembly.scales
+            names = [name for name, is_other in zip(other, changes, strict=True) if is_other]
+            text += f"; another solution, for guesses near it: {_listed(self.module, other, names)}"
         return text
 
     def __repr__(self) -> str:

@@ -1,6 +1,6 @@
 // The clock and its controls: the button, the slider, the chart and the keyboard.
 
-/** Step of an arrow key in s. */
+/** Step of an arrow key in s, at the speed 1. */
 const KEY_STEP = 0.02;
 
 const element = (name) => document.getElementById(name);
@@ -14,6 +14,7 @@ const overTime = new StateChart(element("over-time"), (track, number) => [track.
 const phasePlane = new StateChart(element("phase-plane"), (track, number) => track.coordinates[number].slice(2));
 const stateCharts = coordinates.length > 0 ? [overTime, phasePlane] : [];
 const clock = { time: startTime, playing: false, lastFrame: null };
+const decimals = Math.max(3, 3 - Math.floor(Math.log10(endTime - startTime || 1)));
 let frameIsRequested = false;
 
 function legendEntry(label, number) {
@@ -56,7 +57,7 @@ function show() {
   energyChart.moveCursor(time);
   for (const chart of stateCharts) chart.moveDots(time);
   slider.value = String(time);
-  const text = `${time.toFixed(3).replace("-", "−")} s`;
+  const text = `${time.toFixed(decimals).replace("-", "−")} s`;
   element("time").textContent = `${text} of ${Number(endTime.toPrecision(6))} s`;
   // screen readers announce it only when paused
   if (!clock.playing) slider.setAttribute("aria-valuetext", text);
@@ -92,6 +93,12 @@ function togglePlaying() {
   setPlaying(!clock.playing);
 }
 
+/** Select the highest speed up to 1 at which the motion lasts a second. */
+function selectSpeed() {
+  const slow = [...speed.options].filter(({ value }) => Number(value) <= Math.min(1, endTime - startTime));
+  (slow.at(-1) ?? speed.options[0]).selected = true;
+}
+
 /** Go to a time and pause there. */
 function seek(time) {
   clock.time = Math.min(Math.max(time, startTime), endTime);
@@ -121,8 +128,8 @@ function addListeners() {
     if (!isVisible(element("player"))) return; // on a long page these keys scroll
     // the space bar clicks a focused button anyway
     if (event.key === " " && !event.target.matches("button")) togglePlaying();
-    else if (event.key === "ArrowLeft") seek(clock.time - KEY_STEP);
-    else if (event.key === "ArrowRight") seek(clock.time + KEY_STEP);
+    else if (event.key === "ArrowLeft") seek(clock.time - KEY_STEP * Number(speed.value));
+    else if (event.key === "ArrowRight") seek(clock.time + KEY_STEP * Number(speed.value));
     else return;
     event.preventDefault();
   });
@@ -154,6 +161,7 @@ element("state").hidden = coordinates.length === 0;
 element("coordinate").append(...coordinates.map(([label]) => new Option(label)));
 if (coordinates.length > 0) showCoordinate(0);
 addListeners();
+selectSpeed();
 energyChart.draw();
 for (const chart of stateCharts) chart.draw();
 setPlaying(!matchMedia("(prefers-reduced-motion: reduce)").matches);

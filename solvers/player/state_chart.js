@@ -76,5 +76,6 @@ function rateOf(label) {
 
 /** The label of an axis. */
 function inUnit(label, unit) {
+  if (unit === "1") return label;
   return `${label} / ${unit.includes("/") ? `(${unit})` : unit}`;
 }

@@ -15,7 +15,7 @@ def summary(result: SceneResult) -> Iterator[str]:
     label = "" if scene.label == scene.title else f": {scene.label}"
     yield f"{scene.title}{label}, {scene.duration:g} s"
     if scene.completed:
-        yield f"start {scene.completed}"
+        yield from f"start {scene.completed}".replace("; ", "\n  ").splitlines()
     yield f"model: {model.name}{_integration(result)}"
     yield f"  {model.why}"
     for name, reason in result.selection.declined.items():
@@ -24,7 +24,8 @@ def summary(result: SceneResult) -> Iterator[str]:
     yield f"error estimate {model.error_estimate:.1e}, requested {scene.accuracy:.0e}{met}"
     error, units = max(model.error_estimate, 1e-16), scene.module.UNITS
     decimals = int(np.clip(np.floor(-np.log10(error)), 0, 15)) if np.isfinite(error) else 0
-    values = ", ".join(f"{name} = {x:.{decimals}f} {units[name]}" for name, x in state.items())
+    numbers = (f"{name} = {x:.{decimals}f} {units[name]}" for name, x in state.items())
+    values = ", ".join(number.removesuffix(" 1") for number in numbers)
     no_digit = " (none of these digits is significant)" if model.error_estimate > 1 else ""
     yield f"final state: {values}{no_digit}"
     if result.energy is not None:
