@@ -108,6 +108,16 @@ def test_invalid_options_are_refused(
     assert not Path("out").exists()
 
 
+def test_systems_with_constraints_are_refused_with_a_way_out(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("crank.csv").write_text("t,phi\n0,0.5\n0.1,1.0\n0.2,1.4\n0.3,1.3\n")
+    assert main(["fit", "four_bar", "crank.csv", "--unknown", "m1"]) == 2
+    words = " ".join(capsys.readouterr().err.split())
+    assert "system 'four_bar' has constraints, B_x, B_y: identifiable parameters, " in words
+    assert "fits, need independent coordinates; write positions as functions of these" in words
+
+
 def test_unknown_models_and_missing_files_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fit", "single_pendulm", "swing.csv"]) == 2
     assert "did you mean 'single_pendulum'?" in capsys.readouterr().err

@@ -215,10 +215,12 @@ class Derivation(CyclicCoordinates):
         m1, m2: only as m2/m1; give one of them a value
         """
         if self.system.conditions:
+            names = ", ".join(one.name for one in self.system.conditions)
             raise SystemDefinitionError(
-                f"identifiable parameters of system {self.system.name!r} are derived without "
-                "constraints only: use Derivation(derive.reduced(system)) if no constraint remains "
-                "there"
+                f"system {self.system.name!r} has constraints, {names}: identifiable parameters, "
+                "and thus fits, need independent coordinates; write positions as functions of "
+                "these, or declare those coordinates positive that are, so that derive.reduced "
+                "eliminates others"
             )
         known = {part.symbol.name: part.symbol for part in self.system.parameters}
         for name in unknown or ():
