@@ -48,6 +48,7 @@ def test_the_report_has_equations_1_to_128_and_20_more_displays() -> None:
 DELIMITERS = [
     ("a.tex", r"so $$«x = 1»$$", "$$", False),
     ("a.tex", r"so \[ «x = 1 \\[2pt] y = 2» \]", r"\[", False),
+    ("a.tex", r"\begin{document} \[«x = 1»\] \end{document} \[y = 2\]", r"\[", False),
     ("a.tex", r"so $«x = \$1»$", "$", True),
     ("a.tex", r"so \(«x = 1»\)", r"\(", True),
     ("a.tex", r"so «\begin{align*} x \\[1ex] \end{align*}» on", "align*", False),

@@ -26,7 +26,7 @@ DEFINITION = (
 )
 SHORTHAND = re.compile(rf"({MACRO})[ \t}}]*+\{{\s*+(\\(begin|end)\s*+\{{([a-z]+\*?)\}})\s*+\}}")
 BODY = re.compile(r"^[^%\n]*?\\begin\{document\}", re.M)
-BODY_END = re.compile(r"^[^%\n]*?\\end\{document\}", re.M)
+BODY_END = re.compile(r"^[^%\n]*?(?=\\end\{document\})", re.M)
 INCLUDED = re.compile(r"^[^%\n]*?(\\(?:input|include|subfile)\b[^%\n]{0,80})", re.M)
 
 
@@ -70,7 +70,7 @@ def excerpts(text: str) -> Iterator[Excerpt | Unread]:
     )
     begin, end = BODY.search(text), BODY_END.search(text)
     start = begin.end() if begin else 0
-    yield from scanned(text, tokens, start, end.start() if end else None)
+    yield from scanned(text, tokens, start, end.end() if end else None)
 
 
 def notes(text: str) -> tuple[str, ...]:
