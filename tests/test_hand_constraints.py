@@ -58,6 +58,20 @@ g = { value = 9.81, unit = "m/s^2" }
 mass = "m"
 position = ["x", "y"]
 """,
+    # at some generic states a > l, and the bob is not below the ceiling
+    "ceiling": """
+title = "Pendulum below a ceiling"
+constraints = ["x**2 + (h + a)**2 - l**2"]
+coordinates = { x = { unit = "m" }, h = { unit = "m", positive = true } }
+[parameters]
+m = { value = 1, unit = "kg" }
+l = { value = 0.8, unit = "m" }
+a = { value = 0.3, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[[masses]]
+mass = "m"
+position = ["x", "-h"]
+""",
 }
 X = "m*x_ddot - m*a*theta_ddot*sin(theta) - m*a*theta_dot**2*cos(theta) = -lambda*sin(theta)"
 Y = "m*y_ddot + m*a*theta_ddot*cos(theta) - m*a*theta_dot**2*sin(theta) = lambda*cos(theta)"
@@ -94,6 +108,8 @@ def judged(folder: Path, system: str, equations: list[str], more: str = "") -> t
         ("swing", ["y*x_ddot - x*y_ddot = g*x"], ""),
         ("swing", ["m*x_ddot = 2*rod*x", "m*y_ddot = 2*rod*y - m*g",
                    "2*rod*l**2 = -m*(x_dot**2 + y_dot**2) + m*g*y"], ""),
+        ("ceiling", ["m*x_ddot = -2*lambda*x", "m*h_ddot - m*g = -2*lambda*(h + a)",
+                     "h = sqrt(l**2 - x**2) - a"], ""),
     ],
 )  # fmt: skip
 def test_correct_equations_hold(
@@ -113,6 +129,7 @@ def test_correct_equations_hold(
         ("disc", [*ROLLING[1:], SPIN, "m*x_ddot = -lambda_1"], "lambda_1"),
         ("swing", ["m*x_ddot = -2*lambda*x", "m*y_ddot - m*g = -2*lambda*y"], "m*g"),
         ("swing", ["y*x_ddot + x*y_ddot = g*x"], "x*y_ddot"),
+        ("swing", ["x_dot = y*y_dot/x"], "y*y_dot/x"),
     ],
 )  # fmt: skip
 def test_the_wrong_term_is_found(

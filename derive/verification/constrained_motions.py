@@ -51,9 +51,9 @@ def _moving(derivation: Derivation, values: dict[sp.Symbol, sp.Expr]) -> State:
 
 
 def _closed(derivation: Derivation, state: State) -> Iterator[dict[sp.Symbol, sp.Expr]]:
-    """States that satisfy the constraints of coordinates."""
+    """States that satisfy the constraints of coordinates, generic ones first."""
     q, phi = derivation.system.q, sp.Matrix(derivation.holonomic)
-    gradients = phi.jacobian(q)
+    gradients, others = phi.jacobian(q), list[dict[sp.Symbol, sp.Expr]]()
     for attempt in range(MOST_STATES):
         # Newton's method may end at a local minimum of the residuals
         values = dict(state) | {s: state[s] + SHIFT * attempt * k for k, s in enumerate(q)}
@@ -65,8 +65,12 @@ def _closed(derivation: Derivation, state: State) -> Iterator[dict[sp.Symbol, sp
                 _move(values, q, gradients, phi, evaluator, LONGEST)
                 if largest < TINY:
                     break
-        if largest < TINY and _is_generic(values, q):
-            yield values
+        if largest < TINY:
+            if _is_generic(values, q):
+                yield values
+            else:
+                others.append(values)
+    yield from others  # generic parameters may allow no others
 
 
 def _is_generic(values: State, coordinates: tuple[sp.Symbol, ...]) -> bool:

@@ -34,6 +34,10 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
             return verdict(verdict="verified", note=joined("it follows from the constraints", note))
         if depends_on(value, system.p) and (note := model.context.agreement(value)) is not None:
             return verdict(verdict="definition", note=joined("it defines a momentum", note))
+        if system.conditions:
+            witness = model.motions.witness(value, sp.S.Zero)
+            note = "it does not follow from the constraints"
+            return verdict(verdict="wrong", witness=witness, note=note)
         return verdict(verdict="wrong", note="it contains no acceleration")
     coefficients = [value.diff(a) for a in unknown]
     is_linear = all(model.context.is_zero(c.diff(a)) for c in coefficients for a in unknown)

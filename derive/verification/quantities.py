@@ -73,9 +73,9 @@ def _judge_quantity(model: Model, label: str, text: str, kind: str, name: str) -
     if invalid := sorted(symbol.name for symbol in value.free_symbols & foreign):
         raise ExpressionError(f"{', '.join(invalid)} cannot occur in a formula of this kind")
     derived = QUANTITIES[kind](model, name)
-    # energies, but not the Lagrangian, may contain the constraints
-    is_energy = system.conditions and kind in ENERGIES
-    agreement = model.agreement if is_energy else context.agreement
+    # energies and other values, but not the Lagrangian, may contain the constraints
+    is_of_motion = system.conditions and kind in (*ENERGIES, "value")
+    agreement = model.agreement if is_of_motion else context.agreement
     if (note := agreement(value - derived)) is not None:
         return verdict(verdict="verified", note=note)
     total = derivation.kinetic_energy + derivation.potential_energy

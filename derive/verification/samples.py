@@ -19,8 +19,8 @@ from derive.verification.model import Model
 #: Numbers at all states; NaN where there is no real number.
 Numbers: TypeAlias = list[float]
 
-#: Steps of Newton's method onto constraints.
-NEWTON = 12
+#: Steps of Newton's method onto constraints, and the largest residual after them.
+NEWTON, CLOSED = 12, 1e-9
 
 #: By their names in formulas and in SymPy.
 FUNCTIONS: dict[str, Callable[..., float]] = {
@@ -93,7 +93,25 @@ class Samples:
         system, phi = derivation.system, sp.Matrix(derivation.holonomic)
         for _ in range(NEWTON if derivation.holonomic else 0):
             self._shift(system.q, phi.jacobian(system.q), phi)
+        self._keep(self._closed(phi, [q for q in system.q if q.is_positive]))
         self._shift(system.qdot, derivation.constraint_jacobian, derivation.constraint_rates)
+
+    def _closed(self, phi: sp.MatrixBase, positive: Sequence[sp.Symbol]) -> list[int]:
+        """The states on constraints, with positive coordinates."""
+        residuals, coordinates = [*map(self, phi)], [*map(self, positive)]
+        return [
+            k
+            for k in range(self.count)
+            if all(abs(one[k]) < CLOSED for one in residuals)
+            and all(one[k] > 0 for one in coordinates)
+        ]
+
+    def _keep(self, indices: Sequence[int]) -> None:
+        """Repeat some states in place of all."""
+        if not indices:
+            raise NotImplementedError("no state satisfies the constraints")
+        chosen = [indices[k % len(indices)] for k in range(self.count)]
+        self._known = {s: [self._known[s][k] for k in chosen] for s in self._independent}
 
     def _shift(
         self, symbols: Sequence[sp.Symbol], gradients: sp.MatrixBase, residuals: sp.MatrixBase

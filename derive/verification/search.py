@@ -88,6 +88,8 @@ class Search:
 
     def _changes(self) -> Iterator[Change]:
         for piece in self._pieces:
+            if piece in self._wholes[:1] and isinstance(piece.node, ast.Name):
+                continue  # a formula for a quantity
             if piece.is_term:
                 yield from self._products(piece)
                 # a term that is missing in an equation is missing on the left

@@ -57,7 +57,8 @@ class Comparison:
             inside = self._roles.value(side.part(5, len(side.text) - 1), "square", left**2)
             if inside.verdict.verdict in CORRECT:
                 return plain("verified", formula, "it holds for one sign of the root")
-            result = inside if inside.verdict.corrections else result
+            is_relation = result.kind == "euler_lagrange"
+            result = inside if inside.verdict.corrections and not is_relation else result
         if values := self._special_values(left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")

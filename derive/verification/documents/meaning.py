@@ -29,8 +29,8 @@ def meaning(candidate: Candidate) -> Meaning:
     """The system of a candidate with the document's coordinates and parameters."""
     template = candidate.system
     symbols: dict[str, sp.Symbol] = {}
-    for name in candidate.coordinates:
-        symbols[name] = sp.Symbol(valid_name(name), real=True)
+    for i, name in enumerate(candidate.coordinates):
+        symbols[name] = sp.Symbol(valid_name(name), **_assumptions(candidate, i))
     units, defaults = dict[str, str](), dict[str, float]()
     values: dict[sp.Symbol, sp.Expr] = {}
     for parameter in template.parameters:
@@ -83,6 +83,16 @@ def meaning(candidate: Candidate) -> Meaning:
         constraints=[one.with_formula(one.formula.xreplace(values)) for one in template.conditions],
     )
     return Meaning(system, symbols)
+
+
+def _assumptions(candidate: Candidate, index: int) -> dict[str, bool]:
+    """Those of a coordinate of the system if that of the document has the same value."""
+    for q, signs, offset in zip(
+        candidate.system.q, candidate.signs, candidate.offsets, strict=True
+    ):
+        if offset == 0 and sum(map(abs, signs)) == signs[index] == 1:
+            return q._assumptions_orig
+    return {"real": True}
 
 
 def _damping(candidate: Candidate, damped: Damped) -> sp.Matrix:

@@ -56,6 +56,8 @@ class Roles:
         inside = self._inside_rate(first, side)
         if inside is not None:
             return inside
+        if system.conditions and self._is_relation(first):
+            return self.equation(first, side)
         if not depends_on((left - right).xreplace(self._model.momenta), system.qddot):
             return self.value(side, subject, left)
         if subject.isidentifier():
@@ -81,6 +83,11 @@ class Roles:
                             verdict = judge_formula(model, "", inner.text, "momenta", name)
                             return SideVerdict(verdict, ((0, inner),), "momenta")
         return None
+
+    def _is_relation(self, first: Text) -> bool:
+        """Whether a side contains coordinates, velocities and parameters alone."""
+        values = [self._scope.all_names[word] for word in WORD.findall(first.text)]
+        return all(one.is_Symbol for one in values if isinstance(one, Value))
 
     def equation(self, first: Text, side: Text) -> SideVerdict:
         """The verdict on an equation of motion."""
