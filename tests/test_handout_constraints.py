@@ -1,5 +1,6 @@
 """Documents of systems with constraints: multipliers, G and γ, and reasons; verified when read."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from derive.handout.sections import document
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
 from derive.verification.documents.hints import hints
-from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.judgement import judge_document
 
 SWING = """
@@ -42,6 +43,22 @@ position = ["x - R*sin(theta)", "y + R*cos(theta)", "0"]
 """
 
 
+#: Of the slider-crank: formulas that follow from its constraints, and others, with corrections.
+FOLLOWING = (
+    r"u = \sqrt{(l - w)(l + w)}",
+    r"u^2 + w^2 = l^2",
+    r"\dot w = -r\dot\phi\cos\phi",
+    r"\dot u = -\frac{r^2\dot\phi\sin\phi\cos\phi}{\sqrt{l^2 - r^2\sin^2\phi}}",
+)
+AGAINST = [
+    (r"w = r\sin\phi", r"r\sin\phi", r"w = -r \sin\phi"),
+    (r"u = \sqrt{l^2 + r^2\sin^2\phi}", r"r^2\sin^2\phi",
+     r"u = \sqrt{l^2 - r^2 \sin^2\phi}"),
+    (r"u^2 = l^2 + w^2", "w^2", "u^2 = l^2 - w^2"),
+    (r"w + r\cos\phi = 0", r"r\cos\phi", r"w + r \sin\phi = 0"),
+]  # fmt: skip
+
+
 @pytest.fixture
 def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     path = tmp_path / "system.toml"
@@ -68,6 +85,55 @@ def test_a_document_is_verified_from_its_own_latex(path: Path) -> None:
     assert motion.verdict == "verified"
     with_multipliers = [one for one in formulas if r"\lambda_1 \frac{\partial \phi" in one.latex]
     assert [one.verdict for one in with_multipliers] == ["verified"] * 2
+
+
+@pytest.fixture(scope="module")
+def crank(tmp_path_factory: pytest.TempPathFactory) -> list[JudgedFormula]:
+    """Verdicts on the document of the slider-crank, with formulas that follow it."""
+    path = tmp_path_factory.mktemp("crank") / "crank.tex"
+    write_document(Derivation(load("slider_crank")), path)
+    lines = "".join(f"\\[\n{one}\n\\]\n" for one in (*FOLLOWING, *(one for one, *_ in AGAINST)))
+    text = path.read_text(encoding="utf-8").replace(r"\end{document}", lines + r"\end{document}")
+    path.write_text(text, encoding="utf-8")
+    return [*judge_document(read_document(path), hints("slider_crank", None)).formulas]
+
+
+def test_formulas_of_eliminated_coordinates_are_listed_and_verified(
+    crank: list[JudgedFormula],
+) -> None:
+    listed = [one for one in crank if re.match(r"[wu] & = ", one.latex)]
+    assert {one.latex: one.verdict for one in listed} == {
+        r"w & = -r \sin\left(\phi\right)": "verified",
+        r"u & = \sqrt{l^2 - r^2 \sin^2\left(\phi\right)}": "verified",
+    }
+
+
+def test_formulas_that_follow_from_the_constraints_are_verified(
+    crank: list[JudgedFormula],
+) -> None:
+    verdicts = {one.latex: one.verdict for one in crank}
+    assert {verdicts[one] for one in FOLLOWING} == {"verified"}
+
+
+@pytest.mark.parametrize(("wrong", "term", "correction"), AGAINST)
+def test_a_formula_against_the_constraints_is_wrong(
+    wrong: str, term: str, correction: str, crank: list[JudgedFormula]
+) -> None:
+    (verdict,) = (one for one in crank if one.latex == wrong)
+    assert (verdict.verdict, verdict.wrong_term) == ("wrong", term)
+    assert re.sub(r"\\left\(|\\right\)", "", verdict.correction) == correction
+    assert verdict.note == "it does not follow from the constraints"
+
+
+@pytest.mark.parametrize("path", [SWING], indirect=True)
+def test_a_root_holds_for_one_sign(path: Path) -> None:
+    root = r"\begin{align} y = \sqrt{l^2 - x^2} \end{align}"
+    (formula,) = (
+        one
+        for one in judged(path, (r"\end{document}", root + r"\end{document}")).formulas
+        if "sqrt" in one.latex
+    )
+    assert (formula.verdict, formula.note) == ("verified", "it holds for one sign of the root")
 
 
 @pytest.mark.parametrize("path", [SWING], indirect=True)

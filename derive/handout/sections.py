@@ -79,7 +79,7 @@ def document(derivation: Derivation) -> Document:
         for title, blocks in SECTIONS.items()
         if _exists(blocks, derivation)
     ]
-    sections.append(Section("Generated code", tuple(_code(derivation))))
+    sections.append(Section("Generated code", tuple(_code(derivation, formulas))))
     return Document(words(derivation.system.title), tuple(sections))
 
 
@@ -102,19 +102,22 @@ def with_letters(derivation: Derivation) -> Derivation:
     return Derivation(replace(system, constraints=renamed))
 
 
-def _code(derivation: Derivation) -> Iterator[Block]:
+def _code(derivation: Derivation, formulas: Numbering) -> Iterator[Block]:
     """The right-hand side in every target language, in the fewest coordinates."""
     derivation = Derivation(reduced(derivation.system))
     (rhs,) = contents(derivation, ["rhs"]).functions
     yield Paragraph(
         "As generated code, the equations of motion give velocities and accelerations at a state."
     )
-    if eliminated := [one.coordinate.symbol for one in derivation.system.eliminated]:
+    if eliminated := derivation.system.eliminated:
+        determined = names_of([one.coordinate.symbol for one in eliminated])
         q, qdot = names_of(derivation.system.q), names_of(derivation.system.qdot)
         yield Paragraph(
-            f"The constraints determine `{names_of(eliminated)}`: the state y consists of `{q}` "
-            f"and `{qdot}` alone."
+            f"The constraints determine `{determined}`: the state y consists of `{q}` and `{qdot}` "
+            "alone."
         )
+        for one in eliminated:
+            yield formulas.equation(one.coordinate.symbol.name, value=one.formula)
     for backend in reversed(find_backends()):
         language = LANGUAGES.get(backend.suffix, backend.suffix.removeprefix("."))
         text = backend.function(rhs).strip("\n")
