@@ -166,7 +166,9 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
     for parameter in system.parameters:
         groups.setdefault(kind_of(parameter), []).append(parameter.symbol.name)
     for choice in _likeliest(*(_choices(kind, names, letters) for kind, names in groups.items())):
-        yield {name: letter for one in choice for name, letter in one.items()}
+        used = [letter for one in choice for letter in {*one.values()}]
+        if len({*used}) == len(used):  # no letter has two units
+            yield {name: letter for one in choice for name, letter in one.items()}
 
 
 def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str, str]]:
