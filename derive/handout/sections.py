@@ -116,8 +116,9 @@ def _code(derivation: Derivation, formulas: Numbering) -> Iterator[Block]:
             f"The constraints determine `{determined}`: the state y consists of `{q}` and `{qdot}` "
             "alone."
         )
-        for one in eliminated:
-            yield formulas.equation(one.coordinate.symbol.name, value=one.formula)
+        for one in eliminated:  # no exercises, which contain no code
+            name = one.coordinate.symbol.name
+            yield formulas.equation(name, value=one.formula, is_given=True)
     for backend in reversed(find_backends()):
         language = LANGUAGES.get(backend.suffix, backend.suffix.removeprefix("."))
         text = backend.function(rhs).strip("\n")
