@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from derive.reading.documents import read_document
 from derive.verification.documents.hints import hints
 from derive.verification.documents.judged import JudgedDocument
@@ -46,7 +44,7 @@ so that the equations of motion are
 """
 
 
-def judged(folder: Path, text: str, system: str | None) -> JudgedDocument:
+def judged(folder: Path, text: str, system: str) -> JudgedDocument:
     path = folder / "paper.tex"
     path.write_text(text)
     return judge_document(read_document(path), hints(system, None))
