@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from test_constraints import lifted
+from test_integrals import yoke
 
 from derive import Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, integrate
@@ -87,6 +88,7 @@ SYSTEMS: dict[Callable[[], System], tuple[dict, dict, dict]] = {
         {"phi": 0.75, "phi_dot": 3.0},
         {"theta": 0.5, "psi": 1.0},
     ),
+    yoke: ({"x": 0.3, "phi": -1.0, "phi_dot": 3.0}, {"x": 0.3, "phi": -1.0, "phi_dot": 4.0}, {}),
     lifted: ({"x": 0.48, "x_dot": 3.0}, {"x": 0.48, "x_dot": 4.0}, {"y": -0.6}),
 }
 SLOW, FAST = (0, 0.125), (1, 0.5)  # which start, and the duration
@@ -128,9 +130,9 @@ class DecimalMotion:
     def after(self, method: Tableau, steps: int) -> np.ndarray:
         """The end of the motion by equal steps of a method."""
         h, t = Decimal(self.duration) / steps, Decimal(0)
-        z = self.projected(
-            t, np.array(decimal_state(self.form, self.start))[: len(self.form.state)]
-        )
+        start = decimal_state(self.form, self.start)
+        self._project.keep_integrals(t, start)
+        z = self.projected(t, np.array(start)[: len(self.form.state)])
         A, b, c = (_decimals(part) for part in (method.A, method.b, method.c))
         k = np.array([self.rhs(t, z)] * len(b))
         for step in range(steps):

@@ -128,6 +128,26 @@ def test_an_integral_that_is_no_polynomial_is_left_out() -> None:
     assert (result.integrals, result.integrable) == ((), 1)
 
 
+@pytest.mark.parametrize(
+    ("constraints", "held"),
+    [
+        ([2 * y * dx + x * dy], ()),  # x² y, whose gradient is 0 at x = 0
+        ([2 * y * dx + x * dy, dz - dphi], (phi - z,)),
+        # of y cos(theta) - x sin(theta) and one of these, gradients are not always independent
+        ([*DISC, dtheta], (theta, x - R * phi * c, y - R * phi * s)),
+        ([dx - x * sp.tan(theta) * dtheta], (x * c,)),
+    ],
+)
+def test_motions_are_kept_on_integrals_with_factors_that_are_never_0(
+    constraints: list[sp.Expr], held: tuple[sp.Expr, ...]
+) -> None:
+    result = constrained(*constraints).integrability
+    assert {*map(sp.expand, result.held)} == {*held}
+    missing = result.integrable - len(held)
+    left = f"{missing} without an integral that can be kept at its value at the start"
+    assert (left in str(result)) == bool(missing)
+
+
 def test_the_statement_names_the_reason() -> None:
     assert str(constrained(dx - R * dphi).integrability) == (
         "1 integrable: positions remain restricted; constant along a motion: R*phi - x"

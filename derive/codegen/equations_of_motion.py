@@ -141,7 +141,8 @@ class EquationsOfMotion:
 
         For a coordinate that does not occur in energies and forces, the positions decide.
         """
-        conditions = self._nodes([one.formula for one in self._system.conditions])
+        formulas = [one.formula for one in self._system.conditions]
+        conditions = self._nodes([*formulas, *self._derivation.integrals])
         dynamics = [*self._dependencies, self._potential, *self._applied, *conditions]
         names = self._only_as_angles(dynamics)
         names |= self._only_as_angles(self.positions) - self._leaves(dynamics)

@@ -46,6 +46,10 @@ def _multipliers(derivation: Derivation) -> str:
     return ", ".join(one.name for one in derivation.system.all_conditions)
 
 
+def _integrals(derivation: Derivation) -> str:
+    return ", ".join(map(str, derivation.integrals))
+
+
 def _redundant(derivation: Derivation) -> str:
     return ", ".join(one.name for one in derivation.redundant)
 
@@ -126,6 +130,12 @@ SPECS = (
     FunctionSpec("constraints_jacobian", "lagrangian", "residuals state",
         "Derivatives of `constraints` with respect to the state.",
         "Entry [i][j] is the derivative of residual i with respect to y[j]."),
+    FunctionSpec("integrals", "lagrangian", "integrals",
+        "Functions {} of the coordinates, which constraints of velocities keep constant.",
+        "One number for each.", _integrals),
+    FunctionSpec("integrals_rational", "rational", "integrals",
+        "`integrals` of the rational state.",
+        "One number for each."),
     FunctionSpec("redundant_constraints", "lagrangian", "redundant",
         "Residuals of the constraints {}, which follow from the others, with default parameters.",
         "One for each; where it is not 0, the parameters are such that none follows.", _redundant),
@@ -221,12 +231,14 @@ class Function:
     shape: tuple[int, ...]  # of the result; () is a single number
     lowering: Lowering  # its outputs are the result, flat in C order
     takes_signs: bool = False  # of switching functions, after the parameters
+    constants: tuple[str, ...] = ()  # values of integrals, after the parameters
 
     @property
     def parameters(self) -> tuple[str, ...]:
         """Names of the parameters, in order, in the sensitivity form after perturbations."""
         changes = self.system.parameter_variations if self.form == "sensitivity" else ()
-        return tuple(symbol.name for symbol in (*changes, *self.system.params))
+        names = (symbol.name for symbol in (*changes, *self.system.params))
+        return (*names, *self.constants)
 
     def arguments(self, state: str) -> dict[str, tuple[str, ...]]:
         """Names of the components of the arguments, of which the state is called `state`."""
@@ -269,7 +281,7 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
     constants |= {"outputs": len(system.measured), "params": len(system.params)}
     constants |= {"points": len(system.points)}
     constants |= {"multipliers": len(system.all_conditions)}
-    constants |= {"redundant": len(derivation.redundant)}
+    constants |= {"redundant": len(derivation.redundant), "integrals": len(derivation.integrals)}
     constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}
     sizes |= {name: count for name, count in constants.items() if count}
     sizes |= {form: len(state) for form, state in states.items()}
@@ -283,9 +295,11 @@ def contents(derivation: Derivation, only: Collection[str] | None = None) -> Con
             texts = spec.summary.format(detail), spec.returns.format(detail)
             state, shape = states.get(spec.form, ()), tuple(sizes[axis] for axis in axes)
             takes_signs = bool(derivation.switching_functions)
+            values = derivation.integral_values if spec.name.startswith("correction") else ()
             one = Function(
-                system, spec.name, *texts, spec.form, state, shape, lowering, takes_signs
-            )
+                system, spec.name, *texts, spec.form, state, shape, lowering, takes_signs,
+                tuple(symbol.name for symbol in values),
+            )  # fmt: skip
             functions.append(one)
     return Contents(derivation, states, tuple(functions))
 
@@ -305,7 +319,8 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
     outputs = getattr(form(derivation), spec.name)
     angles = [q.name for q in derivation.system.q]
     system = derivation.system
-    parameters = {s.name for s in (*system.params, *system.parameter_variations)}
+    constants = (*system.params, *system.parameter_variations, *derivation.integral_values)
+    parameters = {s.name for s in constants}
     return Lowering(with_fewest_calls(outputs, angles), parameters)
 
 

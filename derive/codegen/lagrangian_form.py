@@ -91,6 +91,16 @@ class LagrangianForm(EquationsOfMotion):
         return [self._derivative(one, name) for one in self.constraints for name in names]
 
     @property
+    def integrals(self) -> list[Node]:
+        """Functions of coordinates and time that constraints of velocities keep constant."""
+        return self._nodes(self._derivation.integrals)
+
+    @property
+    def integrals_rational(self) -> list[Node]:
+        """The same as functions of the rational state."""
+        return rationalised(self.integrals, [q.name for q in self.angles])
+
+    @property
     def redundant_constraints(self) -> list[Node]:
         """Constraints that follow from the others."""
         return self._nodes([one.formula for one in self._derivation.redundant])

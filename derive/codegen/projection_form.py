@@ -5,6 +5,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.codegen.constrained_factorisation import ConstrainedFactorisation
 from derive.codegen.lagrangian_form import LagrangianForm
 from derive.codegen.node import Node
 from derive.codegen.rational import rationalised
@@ -27,13 +28,35 @@ class ProjectionForm(LagrangianForm):
         still = [self._graph.zero for _ in self._n]
         return self._constrained.solve(still, [-one for one in residuals])[0]
 
+    @cached_property
+    def _change_of_positions(self) -> list[Node]:
+        """The smallest x that removes residuals of constraints of coordinates, and of integrals."""
+        if not self._derivation.integrals:
+            return self._removing(self._position_residuals)
+        values = zip(self.integrals, self._nodes(self._derivation.integral_values), strict=True)
+        residuals = [*self._nodes(self._derivation.holonomic), *(f - value for f, value in values)]
+        rows = [[self._derivative(f, q.name) for q in self._system.q] for f in residuals]
+        solver = ConstrainedFactorisation(self._graph, self._metric, rows, singular=False)
+        still = [self._graph.zero for _ in self._n]
+        return solver.solve(still, [-one for one in residuals])[0]
+
+    @property
+    def _metric(self) -> list[list[Node]]:
+        """M, or M + Gᵀ G where it is singular."""
+        rows = self._constraint_jacobian if self._derivation.has_singular_mass_matrix else []
+        return [
+            [self._graph.sum([(self._inertia[i][j], 1), *((row[i] * row[j], 1) for row in rows)])
+             for j in self._n]
+            for i in self._n
+        ]  # fmt: skip
+
     def _moved(self, change: Sequence[Node]) -> dict[sp.Symbol, Node]:
         return dict(zip(self._system.q, change, strict=True))
 
     @cached_property
     def correction(self) -> list[Node]:
         """A step of Newton's method: changes of q, then of q̇, whose residuals change with q."""
-        of_q = self._removing(self._position_residuals)
+        of_q = self._change_of_positions
         moved = self._moved(of_q)
         rates = [rate + self._change(rate, moved) for rate in self._constraint_rates]
         return [*of_q, *self._removing(rates)]

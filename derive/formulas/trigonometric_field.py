@@ -82,6 +82,15 @@ class TrigonometricField:
         """The number of an element where all variables and parameters have certain values."""
         return value.numer(*self._point) / value.denom(*self._point)
 
+    def is_never_zero(self, value: Any) -> bool:
+        """Whether the numerator has no variables but in factors 1 + tan² of half an angle."""
+        numerator = value.numer
+        for t in (self.field(half).numer for half in self._halves.values()):
+            while numerator and not numerator.rem(t**2 + 1):
+                numerator = numerator.exquo(t**2 + 1)
+        moving = range(len(self.moving))
+        return bool(numerator) and not any(powers[k] for powers in numerator for k in moving)
+
     def rank(self, rows: Sequence[Sequence[Any]]) -> int:
         """The number of independent rows."""
         shape = (len(rows), len(self.variables))

@@ -43,6 +43,27 @@ class Constraints(Kinetics):
         """The decision which constraints of velocities are constraints of positions."""
         return integrability(self.system, self.holonomic, self.velocity_constraints)
 
+    @property
+    def integrals(self) -> tuple[sp.Expr, ...]:
+        """Functions f(q, t) that motions keep at their values at the start, to rounding.
+
+        Constraints of velocities that are integrable are the constraints f = constant.
+        """
+        return self.integrability.held
+
+    @cached_property
+    def integral_values(self) -> tuple[sp.Symbol, ...]:
+        """The values of the integrals, which are constants of a motion."""
+        system, names = self.system, list[str]()
+        state = (*system.q, *system.qdot, *system.params, TIME)
+        used = {s.name for s in (*state, *system.parameter_variations, *system.variations)}
+        for k in range(1, len(self.integrals) + 1):
+            name = f"integral_{k}"
+            while name in used:
+                name += "_"
+            names.append(name)
+        return tuple(sp.Symbol(name, real=True) for name in names)
+
     @cached_property
     def constraint_rates(self) -> Matrix:
         """G q̇ + b, a column that remains 0: rates of change φ̇, and constraints of velocities."""

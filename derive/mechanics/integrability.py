@@ -7,10 +7,12 @@ such forms, together with the differentials of constraints of positions, the der
 
 ends with those that are combinations of differentials df (R. L. Bryant et al., Exterior
 Differential Systems, chapter II). Their f, the integrals, keep the value that they have at the
-start, as a constraint of positions. The other constraints restrict no positions. They enter the
-equations of motion by multipliers, since displacements that they allow do not commute: velocities
-that are removed from the Lagrangian before it is differentiated lose the forces of these brackets
-(J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems, chapter III).
+start, as a constraint of positions. Their gradients are combinations of the constraints, with
+integrating factors; where these are never 0, motions are kept on f = constant. The other
+constraints restrict no positions. They enter the equations of motion by multipliers, since
+displacements that they allow do not commute: velocities that are removed from the Lagrangian before
+it is differentiated lose the forces of these brackets (J. I. Neimark, N. A. Fufaev, Dynamics of
+Nonholonomic Systems, chapter III).
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,6 +25,7 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from derive.formulas.trigonometric_field import TrigonometricField
+from derive.mechanics.regular_integrals import RegularIntegrals
 from derive.system.symbols import TIME
 from derive.system.system import System
 
@@ -41,6 +44,9 @@ class Integrability:
     integrals : tuple of sympy.Expr
         Functions of coordinates and time that the constraints of velocities keep constant:
         polynomials in these and in sines and cosines of angles.
+    held : tuple of sympy.Expr
+        Those of the integrals whose gradients are independent wherever the constraints are, and to
+        whose values at the start motions are kept.
     integrable : int
         The number of combinations of constraints that are constraints of positions, with or without
         a known integral.
@@ -55,12 +61,16 @@ class Integrability:
     integrable: int
     nonholonomic: int
     note: str = ""
+    held: tuple[sp.Expr, ...] = ()
 
     def __str__(self) -> str:
         constant = ", ".join(map(sp.sstr, self.integrals))
+        free = self.integrable - len(self.held)
         lines = {
             f"{self.integrable} integrable: positions remain restricted": self.integrable,
             f"constant along a motion: {constant}": constant,
+            f"{free} without an integral that can be kept at its value at the start: positions "
+            "leave it by the error of the method": free,
             f"{self.nonholonomic} not integrable: no positions are restricted, and multipliers "
             "enforce the constraints; they must not be used to remove velocities from the "
             "Lagrangian, whose derivatives would lack forces": self.nonholonomic,
@@ -107,7 +117,24 @@ def integrability(
     every = _Forms(functions, [*gradients, *rows])
     closed = every.integrable
     count = closed.rank - functions.rank(gradients)
-    return Integrability(closed.integrals(gradients, count), count, every.rank - closed.rank)
+    candidates = closed.integrals(gradients, count)
+    held = RegularIntegrals(functions, gradients, rows, candidates).most(count)
+    integrals = _independent(functions, gradients, [*held, *candidates])
+    return Integrability(integrals, count, every.rank - closed.rank, held=held)
+
+
+def _independent(
+    functions: TrigonometricField, known: Sequence[Sequence[Any]], integrals: Sequence[sp.Expr]
+) -> tuple[sp.Expr, ...]:
+    """Integrals of which none is a function of those before it and the known differentials."""
+    gradients, found = [*known], list[sp.Expr]()
+    rank = functions.rank(gradients)
+    for formula in integrals:
+        gradient = functions.gradient(functions.value(formula))
+        if functions.rank([*gradients, gradient]) == rank + len(found) + 1:
+            gradients.append(gradient)
+            found.append(formula)
+    return tuple(found)
 
 
 def _form(system: System, rate: sp.Expr) -> list[sp.Expr]:
@@ -191,17 +218,17 @@ class _Forms:
         waves = (wave for wave in functions.waves if wave.free_symbols & used)
         return [*(v for v in functions.variables if v in used), *waves]
 
-    def integrals(self, known: list[list[Any]], count: int) -> tuple[sp.Expr, ...]:
-        """At most `count` functions with differentials among the forms, apart from known ones."""
-        functions, found, gradients = self._functions, list[sp.Expr](), [*known]
-        rank = functions.rank(known)
+    def integrals(self, known: list[list[Any]], count: int) -> list[sp.Expr]:
+        """Functions with differentials among the forms, `count` of which are independent.
+
+        Fewer if they are not found. Independence is that of each other and of the known ones.
+        """
+        functions, found = self._functions, list[sp.Expr]()
         for degree in range(1, HIGHEST_DEGREE + 1):
-            for formula in self._polynomials(degree) if len(found) < count else ():
-                gradient = functions.gradient(functions.value(formula))
-                if functions.rank([*gradients, gradient]) == rank + len(found) + 1:
-                    gradients.append(gradient)
-                    found.append(formula)
-        return tuple(found[:count])
+            if len(_independent(functions, known, found)) == count:
+                break
+            found += self._polynomials(degree)
+        return found
 
     def _polynomials(self, degree: int) -> Iterator[sp.Expr]:
         """Polynomials of a degree with differentials among the forms."""

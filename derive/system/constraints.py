@@ -22,7 +22,8 @@ class Constraint:
     ----------
     formula : sympy.Expr
         A function of coordinates, parameters and ``derive.TIME``; or an affine function of the
-        velocities (``derive.velocity(x)``), such as that of a rolling wheel.
+        velocities (``derive.velocity(x)``), such as that of a rolling wheel. If this is integrable
+        and its integral is found, motions keep the integral at its value at the start.
     name : str
         Name of the multiplier λ: the generalized reaction is λ ∂formula/∂q, or λ ∂formula/∂q̇.
     unit : str, optional

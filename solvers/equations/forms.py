@@ -19,6 +19,7 @@ from solvers.equations.module import (
     has_constraints,
     has_function,
     has_perturbation,
+    integrals,
     named,
     parameter_names,
     state_names,
@@ -63,6 +64,7 @@ class Form:
             )
         self.name, self.module, self.params = name, module, tuple(params)
         self.feedback, self.signs = feedback, tuple(signs)
+        self.integrals: tuple[Any, ...] = ()  # their values, which are kept
         self.function, jacobian = function(module, named("rhs", name)), named("jacobian", name)
         self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
         self.state: tuple[str, ...] = module.STATES[name]
@@ -82,7 +84,18 @@ class Form:
     def in_form(self, name: str) -> "Form":
         """The same equations in another form; parameters are not perturbed there."""
         n = len(parameter_names(self.module, name)) - len(self.constants)
-        return Form(self.module, name, (*[0.0] * n, *self.constants), self.feedback, self.signs)
+        form = Form(self.module, name, (*[0.0] * n, *self.constants), self.feedback, self.signs)
+        form.integrals = self.integrals
+        return form
+
+    def starting(self, t: float, y: Array) -> "Form":
+        """The form that keeps integrals at their values at an ordinary state."""
+        if not integrals(self.module):
+            return self
+        form, state = copy(self), y[: len(self.module.STATE)]
+        values = self._value(function(self.module, "integrals"), t, state, self.constants)
+        form.integrals = tuple(values.tolist())
+        return form
 
     @property
     def constants(self) -> tuple[Any, ...]:
@@ -150,7 +163,9 @@ class Form:
 
         A sign of 0 keeps its function at 0.
         """
-        return Form(self.module, self.name, self.params, self.feedback, [*map(float, signs)])
+        form = copy(self)
+        form.signs = tuple(map(float, signs))
+        return form
 
     def values(self, t: float, y: Array) -> Array:
         """Switching functions at a state of Lagrange's form."""
@@ -211,7 +226,7 @@ class Form:
         """The state `z` with sin² + cos² = 1 restored, moved onto the constraints."""
         z = self._normalised(z)
         for _ in range(CORRECTIONS * self.has_constraints):
-            change = self._value(self._correction, t, z, self.params).ravel()
+            change = self._value(self._correction, t, z, (*self.params, *self.integrals)).ravel()
             for k, i in self.angle_columns:
                 z[i : i + 2] += change[k] * np.array([z[i + 1], -z[i]])
             for k, i in self.shared_columns:
@@ -227,7 +242,11 @@ class Form:
 
     def tangent_change(self, t: float, rows: Array) -> Array:
         """Changes that make the perturbations of ordinary states, in rows, tangent."""
-        changes = self._many(f"{self.correction}_many", t, self._rearranged(rows))
+        params = [*self.params]
+        if integrals(self.module):
+            states = rows[:, : len(self.module.STATE)]
+            params += [*self._many("integrals_many", t, states, self.constants).T]
+        changes = self._many(f"{self.correction}_many", t, self._rearranged(rows), params)
         return np.hstack([changes[:, :, 2], changes[:, :, 3]])
 
     @property
@@ -270,7 +289,7 @@ class Form:
     def from_ordinary_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
         """As `from_ordinary`, for states (n, state); and whole turns, shape (n, angles)."""
         if self.name == "hamiltonian":
-            return self._many("hamiltonian_state_many", t, y), np.empty((len(y), 0))
+            return self._many("hamiltonian_state_many", t, y, self.params), np.empty((len(y), 0))
         z = self._rearranged(y)
         wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.angle_columns]
         turns = np.reshape(wrapped, (len(self.angle_columns), len(y))).T / (2 * np.pi)
@@ -279,7 +298,7 @@ class Form:
     def to_ordinary_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
         """The ordinary states (n, state) from the results of `from_ordinary_many`."""
         if self.name == "hamiltonian":
-            return self._many("lagrangian_state_many", t, z)
+            return self._many("lagrangian_state_many", t, z, self.params)
         y = np.empty((len(z), len(self.ordinary)))
         for k, i in self.shared_columns:
             y[:, k] = z[:, i]
@@ -287,11 +306,11 @@ class Form:
             y[:, k] = np.arctan2(z[:, i], z[:, i + 1]) + 2 * np.pi * whole
         return y
 
-    def _many(self, name: str, t: ArrayLike, states: Array) -> Array:
+    def _many(self, name: str, t: ArrayLike, states: Array, params: Sequence[Any]) -> Array:
         """A vectorised function of the module at states in rows; NaN and infinity propagate."""
-        params = [np.asarray(p, float) for p in self.params]
+        numbers = [np.asarray(p, float) for p in params]
         with np.errstate(all="ignore"):
-            return np.asarray(function(self.module, name)(t, states.T, params)).T
+            return np.asarray(function(self.module, name)(t, states.T, numbers)).T
 
 
 def _differences(values: Callable[[Array], Array], z: Array) -> Array:

@@ -52,6 +52,8 @@ class GeneratedModule(Protocol):
     @property
     def RESIDUALS(self) -> tuple[str, ...]: ...  # of ``constraints``: those of rates end in _dot
     @property
+    def INTEGRALS(self) -> tuple[str, ...]: ...  # functions that constraints keep at their values
+    @property
     def LINKS(self) -> Links: ...  # kinds and numbers of ``points``, if the system has links
     @property
     def INPUTS(self) -> tuple[str, ...]: ...  # the last parameters, if the system has inputs
@@ -152,6 +154,11 @@ def position_constraints(module: GeneratedModule) -> int:
     """Number of constraints of coordinates, whose residuals are the first of `constraints`."""
     names = module.RESIDUALS if has_constraints(module) else ()
     return sum(f"{name}_dot" in names for name in names)
+
+
+def integrals(module: GeneratedModule) -> tuple[str, ...]:
+    """Functions that constraints of velocities keep at their values at the start."""
+    return module.INTEGRALS if has_function(module, "integrals") else ()
 
 
 def inputs(module: GeneratedModule) -> tuple[str, ...]:

@@ -60,6 +60,10 @@ class Problem:
     schedule: Schedule | None = None  # of inputs that are held between samples
     levels: tuple[float, ...] = ()  # values of switching functions that count as 0
 
+    def starting(self) -> "Problem":
+        """The same problem, which keeps integrals at their values at the start."""
+        return self.with_form_of(self.form.starting(self.span[0], self.start))
+
     def with_form(self, name: str) -> "Problem":
         """The same problem in another form with the same ordinary state."""
         return self.with_form_of(self.form.in_form(name))

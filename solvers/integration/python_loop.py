@@ -27,7 +27,7 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
 
     Once `stop` is set, the integration ends with the last step.
     """
-    stop = stop or StopFlag()
+    problem, stop = problem.starting(), stop or StopFlag()
     if not isinstance(problem.method, Tableau):
         scipy_loop.run(problem, outcome, stop)
         return

@@ -5,7 +5,7 @@ from decimal import Decimal
 from functools import partial
 
 from solvers.equations.forms import Form
-from solvers.equations.module import function, with_functions
+from solvers.equations.module import function, integrals, named, with_functions
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.series import Series
 from solvers.references.series_functions import series_functions
@@ -21,17 +21,35 @@ class DecimalProjection:
         self._form, self._tape = form, list[Series]()
         self._time = Series(self._tape, [])
         self._state = [Series(self._tape, []) for _ in form.state]
+        constants = [*map(partial(Series.number, self._tape), params)]
+        self._kept = [Series(self._tape, []) for _ in integrals(form.module)]
+        self._integrals = []
+        if self._kept:
+            self._integrals = self._series(named("integrals", form.name), constants)
+        self._changes = self._series(form.correction, [*constants, *self._kept])
+
+    def _series(self, name: str, params: Sequence[Series]) -> list[Series]:
+        """The results of a function of the module."""
         number = partial(Series.number, self._tape)
-        exact = with_exact_literals(function(form.module, form.correction), number)
-        correction = with_functions(exact, series_functions(self._tape, []))
-        changes = correction(self._time, self._state, [*map(number, params)])
-        self._changes = [one if isinstance(one, Series) else number(one) for one in changes]
+        exact = with_exact_literals(function(self._form.module, name), number)
+        results = with_functions(exact, series_functions(self._tape, []))(
+            self._time, self._state, params
+        )
+        return [one if isinstance(one, Series) else number(one) for one in results]
+
+    def keep_integrals(self, t: Decimal, state: Sequence[Decimal]) -> None:
+        """Keep the values of integrals at this state of the form."""
+        for one in self._kept:
+            one.coefficients[:] = [Decimal(0)]
+        values = self._at(t, state[: len(self._form.state)], self._integrals)
+        for one, value in zip(self._kept, values, strict=True):
+            one.coefficients[:] = [value]
 
     def __call__(self, t: Decimal, state: Sequence[Decimal]) -> list[Decimal]:
         """The state of the form, followed by its angles, moved onto the constraints."""
         result, size = [*state], len(self._form.state)
         for _ in range(STEPS):
-            changes = self._at(t, result[:size])
+            changes = self._at(t, result[:size], self._changes)
             for k, i in self._form.shared_columns:
                 result[i] += changes[k]
             for a, (k, i) in enumerate(self._form.angle_columns):
@@ -42,7 +60,7 @@ class DecimalProjection:
                 result[size + a] += changes[k]
         return result
 
-    def _at(self, t: Decimal, state: Sequence[Decimal]) -> list[Decimal]:
+    def _at(self, t: Decimal, state: Sequence[Decimal], results: Sequence[Series]) -> list[Decimal]:
         for series in self._tape:
             series.coefficients.clear()
         self._time.coefficients[:] = [t]
@@ -50,4 +68,4 @@ class DecimalProjection:
             one.coefficients[:] = [value]
         for series in self._tape:
             series.extend(0)
-        return [one.at(0) for one in self._changes]
+        return [one.at(0) for one in results]

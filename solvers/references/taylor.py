@@ -150,7 +150,10 @@ class _Motion:
             self._state.append(Series(self._tape, []))
         self._columns = [columns[k] for k in range(2 * half)]
         self._project = DecimalProjection(form, params) if form.has_constraints else None
-        self.restart(start, decimal_state(form, y0))
+        state = decimal_state(form, y0)
+        if self._project:
+            self._project.keep_integrals(start, state)
+        self.restart(start, state)
 
     def restart(self, t: Decimal, state: Sequence[Decimal]) -> None:
         """Discard all coefficients and continue from this time and state, on the constraints."""

@@ -205,7 +205,7 @@ SWITCH = """
 /* A switching function. With HOLONOMIC_SIGNS, `params` ends with a sign of each, which decides in
    place of its value. */
 #ifdef HOLONOMIC_SIGNS
-#define {guard}_SWITCH(k, x) ((void)(x), params[{guard}_PARAMETERS + (k)])
+#define {guard}_SWITCH(k, x) ((void)(x), params[{first} + (k)])
 #else
 #define {guard}_SWITCH(k, x) (x)
 #endif
@@ -237,7 +237,7 @@ class CBackend(Backend):
     suffix = ".h"
 
     def notation(self, function: Function) -> Notation:
-        others = len(function.parameters) - len(function.system.params)
+        others = len(function.parameters) - len(function.constants) - len(function.system.params)
         return CNotation(function.system.name, others)
 
     def comment(self, text: str) -> str:
@@ -277,6 +277,8 @@ class CBackend(Backend):
         numbers = NUMBERS if f"{guard}_NUMBER(" in functions else ""
         called = {name for f in contents.functions for name in f.lowering.library_functions}
         calls = "\n".join(_call(system.name, name) for name in sorted(called))
+        values = len(contents.derivation.integrals)  # between parameters and signs
+        first = f"{guard}_PARAMETERS" + (f" + {values}" if values else "")
         has_switches = any(f.lowering.has_switches for f in contents.functions)
         has_choices = any("select" in f.lowering.functions for f in contents.functions)
         return HEADER.format(
@@ -293,7 +295,7 @@ class CBackend(Backend):
             numbers=numbers.format(system=system.name, guard=guard),
             calls=CALLS.format(calls=calls) if called else "",
             select=SELECT.format(system=system.name) if has_choices else "",
-            switch=SWITCH.format(guard=guard) if has_switches else "",
+            switch=SWITCH.format(guard=guard, first=first) if has_switches else "",
             functions=functions,
         )
 

@@ -248,7 +248,7 @@ def _constants(contents: Contents) -> str:
     system, functions = contents.system, contents.functions
     parameters = [symbol.name for symbol in system.params]
     switching, conditions = contents.derivation.switching_functions, system.all_conditions
-    names = {f.name for f in functions}
+    integrals, names = contents.derivation.integrals, {f.name for f in functions}
     with_rhs = {f.form for f in functions if f.name.startswith("rhs")}
     forms = [form for form in contents.states if form in with_rhs]
     used = {*parameters, *(name for state in contents.states.values() for name in state)}
@@ -268,6 +268,7 @@ def _constants(contents: Contents) -> str:
         **(_of_constraints(contents.derivation) if conditions else {}),
         **({"LINKS": _links(system)} if "points" in names else {}),
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
+        **({"INTEGRALS": _literal(map(str, integrals))} if integrals else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),
@@ -345,6 +346,7 @@ def _stacked(function: Function, outputs: Sequence[str]) -> str:
 def _parameters(function: Function) -> str:
     """Sections of the docstring: the arguments, with their units."""
     unit, rows = units(function.system), []
+    unit |= dict.fromkeys(function.constants, "the units of `integrals`")
     if function.state:
         unused = "" if function.depends_on_time else "; not used"
         rows.append(f"    t : float\n        Time in s{unused}.")

@@ -42,6 +42,7 @@ class DoubleDouble(Precision):
     def numbers(self, equations: Equations) -> str:
         """The operations, and the right-hand side in calls of them and in lanes of doubles."""
         functions = {"RHS": equations.rhs, "CORRECTION": equations.correction}
+        functions["EVALUATE"] = equations.integrals
         return "\n".join(
             [
                 source("double_double.h"),

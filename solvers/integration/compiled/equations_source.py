@@ -40,6 +40,15 @@ static inline void correct(State *state, const real *params)
 {correct}
     (void)state; (void)params;
 }}
+
+/* Values of integrals, which are parameters from FIRST_KEPT on. */
+enum {{ KEPT = {integrals}, FIRST_KEPT = {first} }};
+
+static inline void evaluate_integrals(const State *state, const real *params, real *values)
+{{
+{evaluate}
+    (void)state; (void)params; (void)values;
+}}
 {projection_h}"""
 
 CORRECT = """\
@@ -47,21 +56,31 @@ CORRECT = """\
     {name}(state->t, state->z, params, change);
 {lines}"""
 
+EVALUATE = "    {name}(state->t, state->z, params + {shift}, values);"
+
 #: The same where the functions of the header take vectors.
-VECTOR_CORRECT = """\
-    stage_vector all_params[{parameters} + 1], z[{state}], all[{changes}];
-    double change[{changes}];
+VECTORS = """\
+    stage_vector all_params[{parameters} + 1], z[{state}], all[{results}];
     for (int p = 0; p < {parameters}; p++) {{
         all_params[p] = (stage_vector){{0}} + params[p];
     }}
     for (int n = 0; n < {state}; n++) {{
         z[n] = (stage_vector){{0}} + state->z[n];
     }}
-    {name}((stage_vector){{0}} + state->t, z, all_params, all);
+    {name}((stage_vector){{0}} + state->t, z, all_params + {shift}, all);
+"""
+
+VECTOR_CORRECT = """\
+{vectors}    double change[{changes}];
     for (int n = 0; n < {changes}; n++) {{
         change[n] = all[n][0];
     }}
 {lines}"""
+
+VECTOR_EVALUATE = """\
+{vectors}    for (int n = 0; n < KEPT; n++) {{
+        values[n] = all[n][0];
+    }}"""
 
 #: Switching functions of a state with momenta.
 SWITCHING_OF_MOMENTA = """
@@ -146,6 +165,9 @@ class Equations:
     perturbed: Sequence[tuple[int, int]] = ()  # indices of each velocity and its perturbation
     correction: str = ""  # name of the function that removes residuals of constraints
     corrected: Sequence[str] = ()  # statements that add its `change`s to a state
+    integrals: str = ""  # name of the function of which motions keep the values
+    kept: int = 0  # number of these values, the last of the parameters
+    perturbed_parameters: int = 0  # number of perturbations before the parameters
 
     @property
     def switching(self) -> str:
@@ -212,21 +234,35 @@ def _takes_stage_vectors(equations: Equations) -> bool:
 
 def projection_text(equations: Equations, tableau: Tableau) -> str:
     """The functions by which states are moved onto the constraints."""
-    correct = ""
+    is_vector = tableau.is_parallel and _takes_stage_vectors(equations)
+    correct = evaluate = ""
     if equations.correction:
-        is_vector = tableau.is_parallel and _takes_stage_vectors(equations)
+        name, changes = equations.correction, len(equations.corrected)
         correct = (VECTOR_CORRECT if is_vector else CORRECT).format(
-            name=equations.correction,
-            changes=len(equations.corrected),
-            state=equations.state,
-            parameters=equations.parameters,
+            name=name,
+            changes=changes,
             lines="\n".join(f"    {line}" for line in equations.corrected),
+            vectors=_vectors(equations, name, changes),
+        )
+    if equations.integrals:
+        name, shift = equations.integrals, equations.perturbed_parameters
+        evaluate = (VECTOR_EVALUATE if is_vector else EVALUATE).format(
+            name=name, shift=shift, vectors=_vectors(equations, name, equations.kept, shift)
         )
     return PROJECTION.format(
         corrections=CORRECTIONS if correct else 0,
         correct=correct,
+        evaluate=evaluate,
+        integrals=equations.kept,
+        first=equations.parameters - equations.kept,
         projection_h=source("projection.h"),
     )
+
+
+def _vectors(equations: Equations, name: str, results: int, shift: int = 0) -> str:
+    """A call with vectors."""
+    sizes = {"state": equations.state, "parameters": equations.parameters}
+    return VECTORS.format(name=name, results=results, shift=shift, **sizes)
 
 
 def sliding_text(equations: Equations, tableau: Tableau) -> str:

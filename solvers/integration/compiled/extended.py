@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
-from solvers.equations.module import GeneratedModule, header
+from solvers.equations.module import GeneratedModule, header, integrals
 from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.double_double import DoubleDouble
 from solvers.integration.compiled.extended_source import (
@@ -165,7 +165,8 @@ def integrate_extended(
     loop, samples = kernel(module, precision), np.ascontiguousarray(times, dtype=float)
     begin, end = float(samples[0]), float(samples[-1])
     rows, numbers = np.empty((len(samples), len(module.STATE))), np.zeros(4)
-    start, values = _parts(loop.form, y0), np.array(params, dtype=float)
+    kept = np.zeros(len(integrals(module)))  # values that C sets
+    start, values = _parts(loop.form, y0), np.array([*params, *kept], dtype=float)
     signs = np.random.default_rng(perturbation).choice([-CHANGE, CHANGE], len(start) + len(values))
     changes = signs * bool(perturbation)
     memory = np.zeros(loop.size + ALIGNMENT, np.uint8)

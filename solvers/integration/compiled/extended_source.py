@@ -28,6 +28,7 @@ PROGRAM = """\
 #include <time.h>
 {sizes}
 {numbers}
+#define HAS_INTEGRALS {has_integrals}
 static const real EPSILON = {epsilon};
 static const int COLUMN[] = {{{columns}}}, RATE[] = {{{rates}}}, SINE[] = {{{sines}}};
 {coefficients}
@@ -38,7 +39,9 @@ static const int COLUMN[] = {{{columns}}}, RATE[] = {{{rates}}}, SINE[] = {{{sin
 """
 
 #: Of systems without constraints.
-NO_PROJECTION = "static void project(Motion *motion) { (void)motion; (void)SINE; }"
+NO_PROJECTION = """\
+static void project(Motion *motion) { (void)motion; (void)SINE; }
+static void keep_integrals(Motion *motion) { (void)motion; }"""
 
 #: The equations in one number type; {prefix} distinguishes them from those in another.
 EQUATIONS = """\
@@ -119,6 +122,7 @@ class Precision(ABC):
     def numbers(self, equations: Equations) -> str:
         """The types of numbers, the right-hand side in them, and CORRECTION with constraints.
 
+        EVALUATE gives the integrals, if there are any.
         `NotArithmeticError` where it cannot be written in them.
         """
 
@@ -134,6 +138,8 @@ class Precision(ABC):
         sizes = {
             "DIM": equations.state,
             "PARAMETERS": equations.parameters,
+            "KEPT": equations.kept,
+            "FIRST_KEPT": equations.parameters - equations.kept,
             "ANGLES": len(equations.angles),
             "ORDINARY": equations.ordinary,
             "PARTS": PARTS,
@@ -142,6 +148,7 @@ class Precision(ABC):
         return PROGRAM.format(
             sizes=sizes_and_statuses(sizes),
             numbers=self.numbers(equations),
+            has_integrals=int(equations.kept > 0),
             epsilon=self.epsilon,
             columns=", ".join(str(columns[k]) for k in range(equations.ordinary)),
             rates=", ".join(map(str, rates)),
@@ -176,6 +183,7 @@ class Sequential(Precision):
                 *(f"typedef {kind.name} {name};" for name, kind in types.items()),
                 f"static const lower LOWER_EPSILON = {self.lower.epsilon};",
                 f"#define CORRECTION {equations.correction}" if equations.correction else "",
+                f"#define EVALUATE {equations.integrals}" if equations.kept else "",
             ]
         )
 

@@ -7,7 +7,9 @@ from typing import Any
 from solvers.equations.forms import Form
 from solvers.equations.module import (
     GeneratedModule,
+    has_perturbation,
     header,
+    integrals,
     named,
     parameter_names,
     switching_functions,
@@ -69,14 +71,18 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
         shared = layout.shared_columns
         corrected = [f"add_to_component(state, {i}, change[{k}]);" for k, i in shared]
         corrected += [f"turn(state, {i}, change[{k}]);" for k, i in layout.angle_columns]
+    kept, motion = integrals(module), form
+    if has_perturbation(form):  # which follows the motion in a state
+        motion = "rational" if layout.angle_columns else "lagrangian"
     called = [named("rhs", form), *([layout.correction] if corrected else [])]
+    called += [named("integrals", motion)] if kept else []
     called += [named("switches", form)] if switches else []
     return Equations(
         text,
         rhs,
         jacobian,
         state=len(layout.state),
-        parameters=len(layout.params),
+        parameters=len(layout.params) + len(kept),
         ordinary=len(layout.ordinary),
         angles=layout.angles,
         from_ordinary=from_ordinary,
@@ -85,6 +91,9 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
         perturbed=layout.perturbed,
         correction=f"{path.stem}_{layout.correction}" if corrected else "",
         corrected=corrected,
+        integrals=f"{path.stem}_{named('integrals', motion)}" if kept else "",
+        kept=len(kept),
+        perturbed_parameters=len(layout.params) - len(module.PARAMETERS),
         switches=len(switching_functions(module)) if switches else 0,
     )
 

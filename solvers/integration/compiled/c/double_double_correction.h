@@ -1,9 +1,12 @@
-/* Changes of a motion's components in sums of two doubles, for extended_projection.h; all lanes are
+/* Integrals, and changes of a motion's components, in sums of two doubles, for extended_projection.h; all lanes are
    equal. */
 
 typedef double_double number;
 
-static void correction(const Motion *motion, number *change)
+typedef void (*Function)(
+    double_double t, const double_double *y, const double_double *params, double_double *result);
+
+static void evaluate(Function function, const Motion *motion, double_double *result)
 {
     double_double y[DIM], params[PARAMETERS + 1];
     for (int n = 0; n < DIM; n++) {
@@ -12,7 +15,26 @@ static void correction(const Motion *motion, number *change)
     for (int n = 0; n < PARAMETERS; n++) {
         params[n] = constant(motion->params[n], motion->params_low[n]);
     }
-    CORRECTION(constant(motion->t, motion->t_low), y, params, change);
+    function(constant(motion->t, motion->t_low), y, params, result);
+}
+
+static void correction(const Motion *motion, number *change)
+{
+    evaluate(CORRECTION, motion, change);
+}
+
+static void keep_integrals(Motion *motion)
+{
+#if HAS_INTEGRALS
+    double_double values[KEPT];
+    evaluate(EVALUATE, motion, values);
+    for (int k = 0; k < KEPT; k++) {
+        motion->params[FIRST_KEPT + k] = values[k].high[0];
+        motion->params_low[FIRST_KEPT + k] = values[k].low[0];
+    }
+#else
+    (void)motion;
+#endif
 }
 
 static void shift(Motion *motion, int n, number change)

@@ -2,7 +2,7 @@
 
    Defined before this file: the motion of extended_motion.h; the types Stages and RefinedStages, with
    predict(), solve(), refine(), transform(), move() and derivative_at_start(); project(), which moves a
-   motion onto its constraints; epsilon(); the indices COLUMN of components of an ordinary state;
+   motion onto its constraints; keep_integrals(), which lets it keep their values; epsilon(); the indices COLUMN of components of an ordinary state;
    ORDINARY, PARTS. */
 
 enum { STEPS_BETWEEN_CHECKS = 8 };
@@ -130,6 +130,7 @@ void extended_start(
             motion->y[n] = compensated_sum(motion->y[n], state[n][part], motion->y_low + n);
         }
     }
+    keep_integrals(motion);
     project(motion);
     lower rate[DIM];
     derivative_at_start(motion, rate);

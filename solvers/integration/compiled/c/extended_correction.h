@@ -1,4 +1,4 @@
-/* Changes of a motion's components in `real`, for extended_projection.h. */
+/* Integrals, and changes of a motion's components, in `real`, for extended_projection.h. */
 
 typedef real number;
 
@@ -6,6 +6,16 @@ static void correction(const Motion *motion, number *change)
 {
     clear_upper_halves();
     CORRECTION(motion->t, motion->y, motion->params, change);
+}
+
+static void keep_integrals(Motion *motion)
+{
+#if HAS_INTEGRALS
+    clear_upper_halves();
+    EVALUATE(motion->t, motion->y, motion->params, motion->params + FIRST_KEPT);
+#else
+    (void)motion;
+#endif
 }
 
 static void shift(Motion *motion, int n, number change)

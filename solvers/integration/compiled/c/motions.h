@@ -42,6 +42,9 @@ static void load_motion(Lanes *lanes, int lane)
             within->terminal = -1;
             MASK_LANE(lanes->starting, lane) = trajectory->status == WAITING ? -1 : 0;
             MASK_LANE(lanes->loaded, lane) = -1;
+            if (LANE(lanes->motion.attempts, lane) == 0) {
+                keep_integrals(&lanes->motion, lane);
+            }
 #if HAS_SWITCHES
             if (trajectory->status == WAITING) {
                 start_signs(&lanes->motion, lane);
