@@ -164,8 +164,11 @@ def test_an_integrable_constraint_beside_one_that_is_not(backend: str) -> None:
     rate = dphi - (1 + sp.cos(theta) / 2) * velocity(theta)
     body = (x + a * sp.cos(theta), y + a * sp.sin(theta))
     masses = [RigidBody(M, body, J, theta), RigidBody(m, (0, 0), J, phi)]
-    one, two = (build(mechanism(f"skate_{k}", (x, y, theta, phi), masses, edge, other,
-        potential=m * g * R * sp.cos(phi))) for k, other in enumerate((rate, wheel - c0)))  # fmt: skip
+    q, weight = (x, y, theta, phi), m * g * R * sp.cos(phi)
+    one, two = (
+        build(mechanism(name, q, masses, edge, constraint, potential=weight))
+        for name, constraint in (("by_rate", rate), ("by_angle", wheel - c0))
+    )
     assert one.INTEGRALS == ("-2*phi + 2*theta + sin(theta)",)
     y0 = consistent_start(one, {"phi": 0.3, "theta_dot": 1.0, "x_dot": 0.5}, {}).y
     options = {"method": "rk4", "h": 0.01, "backend": backend}

@@ -58,7 +58,7 @@ def test_a_constraint_with_an_integral(seed: int) -> None:
     constraint = FACTORS[seed % len(FACTORS)] * rate(integral)
     result = constrained(constraint).integrability
     assert (result.integrable, result.nonholonomic) == (1, 0)
-    (found,) = result.held
+    (found,) = result.held.values()
     row = coefficients(constraint)
     assert is_combination([found.diff(q) for q in VARIABLES], [row])
     # where the constraint is regular, so is the integral
@@ -76,7 +76,7 @@ def test_two_constraints_that_are_integrable_together(seed: int) -> None:
     rows = [*map(coefficients, constraints)]
     for found in result.integrals:
         assert is_combination([found.diff(q) for q in VARIABLES], rows)
-    assert set(result.held) <= set(result.integrals)
+    assert set(result.held.values()) <= set(result.integrals)
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -92,5 +92,5 @@ def test_a_constraint_without_an_integral(seed: int) -> None:
     )  # fmt: skip
     assert not all(map(vanishes, curls))
     result = constrained(constraint).integrability
-    assert (result.integrable, result.nonholonomic, result.held) == (0, 1, ())
+    assert (result.integrable, result.nonholonomic, result.held) == (0, 1, {})
     assert not result.note

@@ -31,24 +31,23 @@ class ProjectionForm(LagrangianForm):
     @cached_property
     def _change_of_positions(self) -> list[Node]:
         """The smallest x that removes residuals of constraints of coordinates, and of integrals."""
-        if not self._derivation.integrals:
-            return self._removing(self._position_residuals)
-        values = zip(self.integrals, self._nodes(self._derivation.integral_values), strict=True)
-        residuals = [*self._nodes(self._derivation.holonomic), *(f - value for f, value in values)]
-        rows = [[self._derivative(f, q.name) for q in self._system.q] for f in residuals]
-        solver = ConstrainedFactorisation(self._graph, self._metric, rows, singular=False)
+        derivation, residuals = self._derivation, [*self._position_residuals]
+        if not derivation.integrals:
+            return self._removing(residuals)
+        rows, conditions = [*self._constraint_jacobian], self._system.conditions
+        formulas, values = derivation.velocity_constraints, self._nodes(derivation.integral_values)
+        places = [k for k, one in enumerate(conditions) if one.formula in formulas]
+        for (index, formula), value in zip(
+            derivation.integrability.held.items(), values, strict=True
+        ):
+            f = self._node(formula)
+            residuals[places[index]] = f - value
+            rows[places[index]] = [self._derivative(f, q.name) for q in self._system.q]
+        inertia = [[self._inertia[i][j] for j in self._n] for i in self._n]
+        singular = derivation.has_singular_mass_matrix
+        factorised = ConstrainedFactorisation(self._graph, inertia, rows, singular=singular)
         still = [self._graph.zero for _ in self._n]
-        return solver.solve(still, [-one for one in residuals])[0]
-
-    @property
-    def _metric(self) -> list[list[Node]]:
-        """M, or M + Gᵀ G where it is singular."""
-        rows = self._constraint_jacobian if self._derivation.has_singular_mass_matrix else []
-        return [
-            [self._graph.sum([(self._inertia[i][j], 1), *((row[i] * row[j], 1) for row in rows)])
-             for j in self._n]
-            for i in self._n
-        ]  # fmt: skip
+        return factorised.solve(still, [-one for one in residuals])[0]
 
     def _moved(self, change: Sequence[Node]) -> dict[sp.Symbol, Node]:
         return dict(zip(self._system.q, change, strict=True))

@@ -49,7 +49,7 @@ class Constraints(Kinetics):
 
         Constraints of velocities that are integrable are the constraints f = constant.
         """
-        return self.integrability.held
+        return tuple(self.integrability.held.values())
 
     @cached_property
     def integral_values(self) -> tuple[sp.Symbol, ...]:

@@ -15,8 +15,8 @@ it is differentiated lose the forces of these brackets (J. I. Neimark, N. A. Fuf
 Nonholonomic Systems, chapter III).
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property, reduce
 from itertools import chain, combinations, combinations_with_replacement
 from typing import Any
@@ -44,9 +44,9 @@ class Integrability:
     integrals : tuple of sympy.Expr
         Functions of coordinates and time that the constraints of velocities keep constant:
         polynomials in these and in sines and cosines of angles.
-    held : tuple of sympy.Expr
-        Those of the integrals whose gradients are independent wherever the constraints are, and to
-        whose values at the start motions are kept.
+    held : mapping of int to sympy.Expr
+        The integrals to whose values at the start motions are kept, by the index of the constraint
+        of velocities that each replaces: integrating factors are never 0.
     integrable : int
         The number of combinations of constraints that are constraints of positions, with or without
         a known integral.
@@ -61,7 +61,7 @@ class Integrability:
     integrable: int
     nonholonomic: int
     note: str = ""
-    held: tuple[sp.Expr, ...] = ()
+    held: Mapping[int, sp.Expr] = field(default_factory=dict)
 
     def __str__(self) -> str:
         constant = ", ".join(map(sp.sstr, self.integrals))
@@ -119,7 +119,7 @@ def integrability(
     count = closed.rank - functions.rank(gradients)
     candidates = closed.integrals(gradients, count)
     held = RegularIntegrals(functions, gradients, rows, candidates).most(count)
-    integrals = _independent(functions, gradients, [*held, *candidates])
+    integrals = _independent(functions, gradients, [*held.values(), *candidates])
     return Integrability(integrals, count, every.rank - closed.rank, held=held)
 
 

@@ -1,8 +1,7 @@
 """Integrals of constraints of velocities that can replace these: with factors that are never 0.
 
 The gradients of integrals are combinations of the constraints, A rows + B known, with integrating
-factors A. They are independent wherever the constraints are, if a minor of A of full size is never
-0.
+factors A. They can replace those rows whose columns of A have a determinant that is never 0.
 """
 
 from collections.abc import Sequence
@@ -33,27 +32,32 @@ class RegularIntegrals:
         # where a denominator is 0, there is no constraint
         self._rows = [_polynomials(row) for row in rows]
 
-    def most(self, count: int) -> tuple[sp.Expr, ...]:
-        """As many as possible that are regular together, at most `count`."""
+    def most(self, count: int) -> dict[int, sp.Expr]:
+        """As many as possible, at most `count`, by the index of the row that each replaces."""
         best = self._extended((), count)
-        return tuple(self._integrals[k] for k in best)
+        return dict(
+            zip(self._replaced(best) or (), (self._integrals[k] for k in best), strict=True)
+        )
 
     def _extended(self, chosen: tuple[int, ...], count: int) -> tuple[int, ...]:
         """The longest choice that begins with the chosen ones."""
         best = chosen
         for k in range(chosen[-1] + 1 if chosen else 0, len(self._integrals)):
-            if len(best) < count and self._is_regular(trial := (*chosen, k)):
+            if len(best) < count and self._replaced(trial := (*chosen, k)):
                 best = max(best, self._extended(trial, count), key=len)
         return best
 
-    def _is_regular(self, chosen: tuple[int, ...]) -> bool:
+    def _replaced(self, chosen: tuple[int, ...]) -> tuple[int, ...] | None:
+        """The rows that these integrals can replace together."""
         size, field = len(chosen), self._functions.field
         for columns in combinations(range(len(self._rows)), size):
             minor = [[self._factors[k][j] for j in columns] for k in chosen]
-            determinant = DomainMatrix(minor, (size, size), field).charpoly()[-1]
+            determinant = DomainMatrix(minor, (size, size), field).charpoly()[
+                -1
+            ]  # but for its sign
             if self._functions.is_never_zero(determinant):
-                return True
-        return False
+                return columns
+        return None
 
     @cached_property
     def _factors(self) -> list[list[Any]]:
