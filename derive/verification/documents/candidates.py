@@ -100,6 +100,8 @@ def candidates(
         frictions(letters, n),
     )
     for (signs, offsets), order, mapping, forces, friction in islice(choices, MAX_CANDIDATES):
+        if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
+            continue  # the letter of a force of the system
         stated = _numbers(system, mapping, numbers or {})
         if numbers is None or stated:
             yield Candidate(system, order, signs, offsets, mapping, forces, friction, stated)
