@@ -11,6 +11,7 @@ from sympy import symbols
 
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
+import generated.four_bar as four_bar
 import generated.single_pendulum as sp
 from derive import Derivation, load
 from derive.codegen.assignments import Notation
@@ -21,8 +22,10 @@ from derive.mechanics.specialisation import specialised as folded
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.system import System
 from solvers.app.modules import generator_text, specialiser
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.specialise import required_functions, specialised_module
 from solvers.integration.integrate import integrate
+from solvers.integration.predictability import ignore_predictability
 from solvers.io.build_cache import cache_folder
 from solvers.scenes.models.method_choice import MethodChoice
 
@@ -158,6 +161,23 @@ def test_a_specialised_motion_equals_the_general_one(
         for module, params in ((special, ()), (dp, dp.DEFAULTS))
     ]
     assert ends[0] == pytest.approx(ends[1], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("method", "form", "h"), [("verner853", "rational", None), ("gauss2", "lagrangian", 1e-2)]
+)
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_specialised_motions_keep_their_constraints(
+    method: str, form: str, h: float | None, backend: str
+) -> None:
+    special = specialiser(four_bar, four_bar.DEFAULTS, MethodChoice(method, form, ""))
+    start = consistent_start(four_bar, {"phi": 1.0}, {}, guess={"psi": 0.5, "chi": 1.5}).y
+    options = {"method": method, "form": form, "h": h, "rtol": 1e-6, "backend": backend}
+    with ignore_predictability():
+        end = integrate(special, (0, 5), start, (), **options).y[:, -1]
+    residuals = four_bar.constraints(0.0, end, four_bar.DEFAULTS)
+    assert max(map(abs, residuals[:2])) < 1e-15  # positions, in m
+    assert max(map(abs, residuals[2:])) < 1e-14
 
 
 def test_a_module_is_generated_once_and_again_when_damaged() -> None:

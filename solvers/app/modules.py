@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module_cache import cached_module
-from solvers.equations.specialise import required_functions, specialised_module
+from solvers.equations.specialise import (
+    projection_functions,
+    required_functions,
+    specialised_module,
+)
 from solvers.scenes.models.method_choice import MethodChoice
 
 if TYPE_CHECKING:
@@ -145,9 +149,9 @@ def specialiser(
 
     # the name of a module from the cache contains a digest of its system
     version = module.__name__ + generator_text()
-    return specialised_module(
-        module, params, required_functions(choice.method, choice.form), generator, version
-    )
+    needed = required_functions(choice.method, choice.form)
+    needed += projection_functions(module, choice.form)
+    return specialised_module(module, params, needed, generator, version)
 
 
 def system_of(module: GeneratedModule) -> "System":

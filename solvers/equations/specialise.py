@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from solvers.equations.module import GeneratedModule, named
+from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
 from solvers.equations.module_cache import cached_module
 from solvers.runge_kutta.catalogue import SCIPY, load
 
@@ -16,6 +16,16 @@ def required_functions(method: str, form: str) -> tuple[str, ...]:
     needs_jacobian = method not in SCIPY and load(method).needs_jacobian
     jacobian = (named("jacobian", form),) if needs_jacobian else ()
     return (named("rhs", form), *conversions, *jacobian)
+
+
+def projection_functions(module: GeneratedModule, form: str) -> tuple[str, ...]:
+    """Names of the functions that find and keep states on the constraints."""
+    if not has_constraints(module):
+        return ()
+    of_form = (named(name, form) for name in ("correction", "integrals"))
+    of_state = ("constraints", "constraints_jacobian", "redundant_constraints", "integrals")
+    names = (*of_state, *of_form, "mass_matrix")
+    return tuple(name for name in dict.fromkeys(names) if has_function(module, name))
 
 
 def specialised_module(
