@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+import generated.rolling_disc as disc
 from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
 from solvers.equations.assembly import EXACT, Assembly
@@ -124,6 +125,16 @@ def test_constraints_that_move_give_velocities(lifted: GeneratedModule) -> None:
     assert motion.y[:, 0] == pytest.approx(start.y, abs=1e-15)
     with pytest.raises(ValueError, match=r"lambda_1_dot = 1\.6 instead of 0"):
         integrate(lifted, (0, 1), (0.8, 0.0, 1.1, 0.0), {})
+
+
+def test_velocities_without_constraints_remain() -> None:
+    # energy couples spin and precession of the disc, whose slips contain the spin alone
+    given = {"phi": 0.3, "chi_dot": 6.0}
+    start = dict(zip(disc.STATE, consistent_start(disc, given, {}).y.tolist(), strict=True))
+    assert start["psi_dot"] == start["phi_dot"] == 0.0
+    assert start["x_dot"] == pytest.approx(0.3 * 6.0, abs=1e-14)
+    guess = {"psi_dot": 0.2}
+    assert consistent_start(disc, given, {}, guess=guess).y[disc.STATE.index("psi_dot")] == 0.2
 
 
 def test_many_starts_are_those_of_each(crank: GeneratedModule) -> None:

@@ -29,6 +29,8 @@ SLOW = 1e-3
 STEPS, LARGEST, HALVINGS = 60, 0.5, 12
 #: Other guesses where the first one leads to no configuration.
 GUESSES = 24
+#: States at which matrices are examined for elements that are always 0.
+GENERIC = 3
 #: Singular values, relative to the largest, that count as 0.
 SINGULAR = 1e-10
 
@@ -196,10 +198,11 @@ class Assembly:
     def velocities(self, y: Array, free: Flags) -> tuple[Array, Flags]:
         """Velocities that satisfy the constraints, and whether they exist.
 
-        Free ones are, by kinetic energy, as near as possible to those of `y`.
+        Free ones that a constraint contains are, by kinetic energy, as near as possible to those of
+        `y`; the others are those of `y`.
         """
         states = y.copy()
-        states[:, self.n :] += self._velocity_changes(states, free)
+        states[:, self.n :] += self._velocity_changes(states, free & self.in_constraints)
         error = self._velocity_errors(states)
         rounded = (error > CLOSED) & (error <= ROUNDED)
         if rounded.any():
@@ -207,6 +210,14 @@ class Assembly:
             states[rounded, self.n :] += part._velocity_changes(states[rounded], every)
             error[rounded] = part._velocity_errors(states[rounded])
         return states[:, self.n :], error <= CLOSED
+
+    @cached_property
+    def in_constraints(self) -> Flags:
+        """Coordinates whose velocities a constraint contains, by G at generic states."""
+        rng = np.random.default_rng(0)
+        states = rng.uniform(0.1, 1.0, (GENERIC, 2 * self.n)) * np.tile(self.scales, 2)
+        first = replace(self, params=self.params[:1])
+        return np.asarray((np.nan_to_num(first.jacobian(states), nan=1.0) != 0).any(axis=(0, 1)))
 
     def _velocity_errors(self, y: Array) -> Array:
         return self.relative(y)[:, len(self.of_positions) :].max(axis=1, initial=0.0)

@@ -130,7 +130,8 @@ def consistent_start(
     """A state that satisfies the constraints, from some of its components.
 
     Gauss-Newton steps from a guess lead to the coordinates that are not given, and linear equations
-    to the velocities that are not given: those of least kinetic energy.
+    to the velocities that are not given: those of least kinetic energy, and 0, or the guess, where
+    no constraint contains them.
 
     Parameters
     ----------

@@ -35,10 +35,11 @@ def tangent_start(form: Form, t: float, rows: Array, given: Flags) -> Array:
     if not given.all():
         every = [*range(len(assembly.names))]
         first, last = slice(0, assembly.n), slice(assembly.n, size)
-        for part, of in ((first, assembly.of_positions), (last, every)):
+        moving = assembly.in_constraints
+        for part, of, free in ((first, assembly.of_positions, True), (last, every, moving)):
             # the residual of a perturbation is that which the change of all components removes
             removing = form.tangent_change(t, result)[:, part] / assembly.scales
             residuals = -np.einsum("kij,kj->ki", assembly.jacobian(y)[:, of], removing)
-            changes[:, part] += assembly.smallest_change(y, residuals, ~given[part], of)
+            changes[:, part] += assembly.smallest_change(y, residuals, ~given[part] & free, of)
     changes += form.tangent_change(t, result)
     return result
