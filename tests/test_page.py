@@ -384,6 +384,36 @@ def test_the_view_of_a_motion_in_space_turns_by_keys_and_pointer(player: Player)
     assert not player.find("#turning").is_displayed()
 
 
+@pytest.mark.parametrize("axes", [2, 3])
+def test_the_view_follows_a_system_that_goes_far(axes: int, player: Player) -> None:
+    t = np.linspace(0, 5, 51)
+    rear = np.stack([8 * t, *(0 * t for _ in range(axes - 1))])
+    front = rear + np.eye(axes)[:, :1]  # 1 m further, of a path of 41 m
+    links = (("rod", (0, 1)),)
+    wheels = Track("ride", t, np.stack([rear, front]), links, t, UNIT, np.stack([rear]))
+    player.open([wheels])
+
+    def apart() -> float:
+        """Pixels from one mass to the other, which are beside the middle."""
+        image = player.pixels(PANELS)
+        places = [np.median(np.nonzero((image == bob).all(-1)), axis=1) for bob in BOBS]
+        off = np.mean(places, axis=0) - [(image.shape[0] - 12) / 2, (image.shape[1] + 30) / 2]
+        assert np.abs(off).max() < 2
+        return float(np.linalg.norm(places[1] - places[0]))
+
+    width = player.find("#time-slider").rect["width"]
+    for part in (0.1, 0.8):
+        player.drag("#time-slider", 0.5 * width, part * width)
+        assert apart() > 60
+    assert player.find("#follow").is_displayed()
+    player.find("#follow").click()
+    image = player.pixels(PANELS)
+    places = [np.nonzero((image == bob).all(-1))[1] for bob in BOBS]
+    assert all(places[1].max() - place.min() < 40 for place in places)  # they overlap
+    player.open([track_of("verner853")])
+    assert not player.find("#follow").is_displayed()
+
+
 def test_coordinates_are_shown_over_time_and_in_the_phase_plane(player: Player) -> None:
     t = np.linspace(0, 5, 501)
     swing = Coordinate("θ₁", "rad", np.cos(t), -np.sin(t))

@@ -15,7 +15,7 @@ from solvers.player.track import Track
 SOURCES = Path(__file__).parent
 #: The parts of the player; each uses those before it.
 SCRIPTS = (
-    *("motion.js", "camera.js", "canvas.js", "shapes.js", "panel.js"),
+    *("motion.js", "following.js", "camera.js", "canvas.js", "shapes.js", "panel.js"),
     *("energy_chart.js", "state_chart.js", "player.js"),
 )
 

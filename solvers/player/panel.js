@@ -8,9 +8,10 @@ const MASS_RADIUS = 8;
 const MARGINS = { left: 44, right: 14, top: 24, bottom: 36 };
 
 class Panel {
-  constructor(track, number, box) {
+  /** `boxAt` gives the box to show at a time; that of the whole motion is `box`. */
+  constructor(track, number, box, boxAt) {
     this.track = track;
-    this.box = box;
+    this.boxAt = boxAt;
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("role", "img");
     this.isInSpace = box.centre.length === 3;
@@ -28,8 +29,9 @@ class Panel {
 
   draw(time) {
     const { context, width, height } = clearedCanvas(this.canvas);
-    const view = new View(this.box, width, height);
-    if (this.isInSpace) drawGround(context, view, this.box.ground);
+    const box = this.boxAt(time);
+    const view = new View(box, width, height);
+    if (this.isInSpace) drawGround(context, view, box.ground);
     else drawMetres(context, view);
     // rails have no ends
     context.save();

@@ -4,9 +4,9 @@
 const KEY_STEP = 0.02;
 
 const element = (name) => document.getElementById(name);
-const [playButton, slider, speed] = ["play", "time-slider", "speed"].map(element);
-const box = boundingBox();
-const panels = tracks.map((track, number) => new Panel(track, number, box));
+const [playButton, slider, speed, follow] = ["play", "time-slider", "speed", "follow"].map(element);
+const [box, size] = [boundingBox(), largestConfiguration()];
+const panels = tracks.map((track, number) => new Panel(track, number, box, (time) => boxOf(track, time)));
 const energyChart = new EnergyChart(element("energy-chart"));
 const errors = tracks.map((track, number) => legendEntry(track.label, number));
 const { coordinates } = tracks[0];
@@ -24,6 +24,11 @@ function legendEntry(label, number) {
   entry.append(swatch(number), `${label}: `, value);
   element("legend").append(entry);
   return value;
+}
+
+/** The box that a run's panel shows at a time. */
+function boxOf(track, time) {
+  return goesFar(box, size) && follow.checked ? boxAround(track, time, size, box) : box;
 }
 
 /** Request one frame, however many changes precede it. */
@@ -113,6 +118,7 @@ function isVisible(node) {
 function addListeners() {
   playButton.addEventListener("click", togglePlaying);
   slider.addEventListener("input", () => seek(Number(slider.value)));
+  follow.addEventListener("change", redraw);
   const seekToPointer = (event) => seek(energyChart.timeAt(event.offsetX));
   energyChart.canvas.addEventListener("pointerdown", (event) => {
     // captured, so that the drag continues outside the chart
@@ -126,8 +132,8 @@ function addListeners() {
     // a list of options and the shortcuts of the browser have keys of their own
     if (event.target.matches("select") || event.ctrlKey || event.metaKey || event.altKey) return;
     if (!isVisible(element("player"))) return; // on a long page these keys scroll
-    // the space bar clicks a focused button anyway
-    if (event.key === " " && !event.target.matches("button")) togglePlaying();
+    // the space bar clicks a focused button or box anyway
+    if (event.key === " " && !event.target.matches("button, #follow")) togglePlaying();
     else if (event.key === "ArrowLeft") seek(clock.time - KEY_STEP * Number(speed.value));
     else if (event.key === "ArrowRight") seek(clock.time + KEY_STEP * Number(speed.value));
     else return;
@@ -152,6 +158,7 @@ function addListeners() {
 }
 
 element("panels").append(...panels.map((panel) => panel.figure));
+follow.parentElement.hidden = !goesFar(box, size);
 element("turning").hidden = !panels[0].isInSpace;
 element("distance").hidden = tracks.length < 2;
 element("trace-seconds").textContent = String(TRACE_SECONDS);
