@@ -219,8 +219,8 @@ class Derivation(CyclicCoordinates):
             raise SystemDefinitionError(
                 f"system {self.system.name!r} has constraints, {names}: identifiable parameters, "
                 "and thus fits, need independent coordinates; write positions as functions of "
-                "these, or declare those coordinates positive that are, so that derive.reduced "
-                "eliminates others"
+                "these, declare those coordinates positive that are, or use "
+                "Derivation(derive.reduced(system)) if no constraint remains there"
             )
         known = {part.symbol.name: part.symbol for part in self.system.parameters}
         for name in unknown or ():
