@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 from latex_trees import show
 
-from derive import Derivation, load, names
+from derive import Derivation, load, names, reduced
 from derive.formulas.lettering import lettering
 from derive.handout.notation import Notation
 from derive.handout.sections import document, with_letters
@@ -120,6 +120,7 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     for k, residual in zip(others, d.routh_equations, strict=True):
         force = f" - Q_{s.q[k]}" if s.applied[k] else ""
         values[f"ddt(d(R, {s.qdot[k]})) - d(R, {s.q[k]}){force}"] = residual
+    values |= {one.coordinate.symbol.name: one.formula for one in reduced(s).eliminated}
     if s.conditions:
         values |= {f"phi_{k}": one.formula for k, one in enumerate(s.conditions, 1)}
         values |= {"G": d.constraint_jacobian, "gamma_vector": d.constraint_forcing}

@@ -359,7 +359,9 @@ def test_without_their_propagation_errors_would_be_underestimated(
     monkeypatch.setattr(normal_modes, "MARGIN", 0.0)
     assert NormalModes.of(motion).error_estimate < largest_error(motion, NormalModes.of(motion))
     motion = motion_from(sp, (pi, 0.0), 14)
-    monkeypatch.setattr(equilibrium, "expm", lambda matrix: np.eye(matrix.shape[-1]) + matrix)
+    monkeypatch.setattr(
+        equilibrium.scipy.linalg, "expm", lambda matrix: np.eye(matrix.shape[-1]) + matrix
+    )
     assert Equilibrium.of(motion).error_estimate < largest_error(motion, Equilibrium.of(motion))
 
 
