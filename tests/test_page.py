@@ -248,7 +248,10 @@ def test_the_energy_chart_ends_at_the_powers_of_ten_around_all_errors(player: Pl
 def test_marks_are_round_and_paths_end_at_their_times(player: Player) -> None:
     t = np.linspace(0, 5, 6)
     player.open([Track("across", t, np.array([[t, 0 * t]]), (), t, UNIT)])
-    sources = "".join((page.SOURCES / name).read_text() for name in page.SCRIPTS[:5])
+    sources = "".join(
+        (page.SOURCES / name).read_text()
+        for name in page.SCRIPTS[: page.SCRIPTS.index("panel.js") + 1]
+    )
     spacings, marks, path, ranges, corners = player.driver.execute_script(f"""{sources}
         const view = new View(boundingBox(), 400, 300);
         return [[0.02, 0.021, 0.3, 0.5, 6, 10].map(roundSpacing),
