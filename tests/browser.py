@@ -115,6 +115,10 @@ class Player:
     def playing(self) -> bool:
         return {"true": True, "false": False}[self.js("document.documentElement.dataset.playing")]
 
+    def click(self, selector: str) -> None:
+        self.find(selector).click()
+        self.settle()
+
     def press(self, keys: str) -> None:
         from selenium.webdriver import ActionChains
 

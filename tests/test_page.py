@@ -123,7 +123,7 @@ def test_it_plays_at_the_selected_speed(
     speed: float, player: Player, slow_tracks: list[Track]
 ) -> None:
     player.open(slow_tracks)
-    player.find(f"#speed [value='{speed}']").click()
+    player.click(f"#speed [value='{speed}']")
     assert pace(player) == pytest.approx(speed, rel=0.2)
 
 
@@ -150,8 +150,7 @@ def test_it_plays_at_once_and_can_be_paused(player: Player, slow_tracks: list[Tr
     player.open(slow_tracks, playing=True)
     assert player.playing
     assert 0 < player.time < 100
-    player.find("#play").click()
-    player.settle()
+    player.click("#play")
     assert not player.playing
     assert player.find("#play").text == "Play"
     held, image = player.time, player.pixels(PANELS)
@@ -170,17 +169,16 @@ def test_it_is_paused_for_readers_who_prefer_reduced_motion(
 
 def test_it_stops_at_the_end_and_starts_again(player: Player) -> None:
     player.open([at_rest(end=1)])
-    player.find("#speed [value='4']").click()
-    player.find("#play").click()
+    player.click("#speed [value='4']")
+    player.click("#play")
     player.driver.execute_async_script("""
         const look = () => document.documentElement.dataset.playing === "false"
           ? arguments[0]() : requestAnimationFrame(look);
         requestAnimationFrame(look);
     """)
     assert player.time == 1
-    player.find("#speed [value='0.1']").click()
-    player.find("#play").click()
-    player.settle()
+    player.click("#speed [value='0.1']")
+    player.click("#play")
     assert player.playing
     assert player.time < 1
 
@@ -409,7 +407,7 @@ def test_the_view_follows_a_system_that_goes_far(axes: int, player: Player) -> N
         player.drag("#time-slider", 0.5 * width, part * width)
         assert apart() > 60
     assert player.find("#follow").is_displayed()
-    player.find("#follow").click()
+    player.click("#follow")
     image = player.pixels(PANELS)
     places = [np.nonzero((image == bob).all(-1))[1] for bob in BOBS]
     assert all(places[1].max() - place.min() < 40 for place in places)  # they overlap
@@ -437,8 +435,7 @@ def test_coordinates_are_shown_over_time_and_in_the_phase_plane(player: Player) 
             near = player.pixels(f"{selector} canvas")[row - 2 : row + 3, column - 2 : column + 3]
             assert (near == AFTER_ONE[0]).all(-1).any()
     assert player.find(f"{chart} canvas").get_attribute("aria-label") == "θ₁ over time"
-    player.find("#coordinate option:nth-child(2)").click()
-    player.settle()
+    player.click("#coordinate option:nth-child(2)")
     label = player.find(f"{plane} canvas").get_attribute("aria-label")
     assert label == "Rate of change of x over x"
     up = player.find(f"{chart} .dot").rect["y"] - player.find(f"{chart} canvas").rect["y"]
