@@ -52,9 +52,7 @@ class RegularIntegrals:
         size, field = len(chosen), self._functions.field
         for columns in combinations(range(len(self._rows)), size):
             minor = [[self._factors[k][j] for j in columns] for k in chosen]
-            determinant = DomainMatrix(minor, (size, size), field).charpoly()[
-                -1
-            ]  # but for its sign
+            *_, determinant = DomainMatrix(minor, (size, size), field).charpoly()  # up to its sign
             if self._functions.is_never_zero(determinant):
                 return columns
         return None

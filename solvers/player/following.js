@@ -5,8 +5,7 @@ const FAR = 5;
 
 /** The visible points of a run at one time: the centre of the box around them, and its diagonal in m. */
 function configuration(track, time) {
-  const at = (axis) => (typeof axis === "number" ? axis : valueAt(track.t, axis, time));
-  const points = visiblePoints(track).map((point) => point.map(at));
+  const points = visiblePoints(track).map((point) => atTime(track, point, time));
   const edges = points[0].map((_, axis) => rangeOf(points.map((point) => point[axis])));
   return {
     centre: edges.map(([low, high]) => (low + high) / 2),

@@ -28,7 +28,11 @@ function valueAt(t, values, time) {
 /** Position of a mass or, after the masses, of another point in m; -1 is the pivot. */
 function positionAt(track, number, time) {
   if (number < 0) return track.positions[0].map(() => 0);
-  const point = track.positions[number] ?? track.points[number - track.positions.length];
+  return atTime(track, track.positions[number] ?? track.points[number - track.positions.length], time);
+}
+
+/** Components of a point at a time; one number of a component that is constant. */
+function atTime(track, point, time) {
   return point.map((axis) => (typeof axis === "number" ? axis : valueAt(track.t, axis, time)));
 }
 

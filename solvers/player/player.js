@@ -5,7 +5,8 @@ const KEY_STEP = 0.02;
 
 const element = (name) => document.getElementById(name);
 const [playButton, slider, speed, follow] = ["play", "time-slider", "speed", "follow"].map(element);
-const [box, size] = [boundingBox(), largestConfiguration()];
+const [box, largest] = [boundingBox(), largestConfiguration()];
+const canFollow = goesFar(box, largest);
 const panels = tracks.map((track, number) => new Panel(track, number, box, (time) => boxOf(track, time)));
 const energyChart = new EnergyChart(element("energy-chart"));
 const errors = tracks.map((track, number) => legendEntry(track.label, number));
@@ -28,7 +29,7 @@ function legendEntry(label, number) {
 
 /** The box that a run's panel shows at a time. */
 function boxOf(track, time) {
-  return goesFar(box, size) && follow.checked ? boxAround(track, time, size, box) : box;
+  return canFollow && follow.checked ? boxAround(track, time, largest, box) : box;
 }
 
 /** Request one frame, however many changes precede it. */
@@ -158,7 +159,7 @@ function addListeners() {
 }
 
 element("panels").append(...panels.map((panel) => panel.figure));
-follow.parentElement.hidden = !goesFar(box, size);
+follow.parentElement.hidden = !canFollow;
 element("turning").hidden = !panels[0].isInSpace;
 element("distance").hidden = tracks.length < 2;
 element("trace-seconds").textContent = String(TRACE_SECONDS);

@@ -1,5 +1,5 @@
-/* Integrals, and changes of a motion's components, in sums of two doubles, for extended_projection.h; all lanes are
-   equal. */
+/* Integrals, and changes of a motion's components, in sums of two doubles, for
+   extended_projection.h; all lanes are equal. */
 
 typedef double_double number;
 

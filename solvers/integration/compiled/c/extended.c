@@ -2,8 +2,8 @@
 
    Defined before this file: the motion of extended_motion.h; the types Stages and RefinedStages, with
    predict(), solve(), refine(), transform(), move() and derivative_at_start(); project(), which moves a
-   motion onto its constraints; keep_integrals(), which lets it keep their values; epsilon(); the indices COLUMN of components of an ordinary state;
-   ORDINARY, PARTS. */
+   motion onto its constraints; keep_integrals(), which lets it keep the values of its integrals;
+   epsilon(); the indices COLUMN of components of an ordinary state; ORDINARY, PARTS. */
 
 enum { STEPS_BETWEEN_CHECKS = 8 };
 
