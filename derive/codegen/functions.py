@@ -1,11 +1,11 @@
-"""The functions of generated modules: arguments, results, and when they exist."""
+"""The functions of a generated module, each with its operations."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from functools import cache
 
 from derive.codegen.equations_of_motion import EquationsOfMotion
-from derive.codegen.factorisation import LARGE
+from derive.codegen.function_specs import SPECS, Form, FunctionSpec, is_small
 from derive.codegen.hamiltonian_form import HamiltonianForm
 from derive.codegen.lagrangian_form import LagrangianForm
 from derive.codegen.lowering import Lowering
@@ -16,206 +16,6 @@ from derive.codegen.rational import with_fewest_calls
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
-
-Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "sensitivity", "parameters"]
-
-
-def _energy(derivation: Derivation) -> str:
-    if TIME in derivation.variables:
-        return "Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time"
-    return "Total energy T + V"
-
-
-def _equilibrium(derivation: Derivation) -> str:
-    return f"q = ({', '.join(map(str, derivation.equilibrium or ()))})"
-
-
-def _reactions(derivation: Derivation) -> str:
-    return ", ".join(symbol.name for symbol in derivation.system.reactions)
-
-
-def _outputs(derivation: Derivation) -> str:
-    return ", ".join(name for name, _ in derivation.system.measured)
-
-
-def _switches(derivation: Derivation) -> str:
-    return ", ".join(map(str, derivation.switching_functions))
-
-
-def _multipliers(derivation: Derivation) -> str:
-    return ", ".join(one.name for one in derivation.system.all_conditions)
-
-
-def _integrals(derivation: Derivation) -> str:
-    return ", ".join(map(str, derivation.integrals))
-
-
-def _redundant(derivation: Derivation) -> str:
-    return ", ".join(one.name for one in derivation.redundant)
-
-
-def _is_free(derivation: Derivation) -> bool:
-    return not derivation.system.conditions
-
-
-def _is_small(derivation: Derivation) -> bool:
-    # of a large system, n² entries of n terms each are too much text
-    return len(derivation.system.q) < LARGE
-
-
-@dataclass(frozen=True)
-class FunctionSpec:
-    """A function that a generated module may have; a property of a form gives its outputs."""
-
-    name: str  # also that of the property
-    form: Form  # of the state that it takes; of none if it takes parameters alone
-    shape: str  # names of the lengths of the result's axes; empty for a number
-    summary: str  # of its docstring; {} stands for the detail
-    returns: str
-    detail: Callable[[Derivation], str] = lambda derivation: ""
-    exists: Callable[[Derivation], bool] = lambda derivation: True  # if there is such a state
-
-
-SPECS = (
-    FunctionSpec("rhs", "lagrangian", "state",
-        "Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).",
-        "Time derivative of y: velocities, then accelerations from M qddot = f."),
-    FunctionSpec("jacobian", "lagrangian", "state state",
-        "Jacobian of `rhs`.",
-        "Entry [i][j] is the derivative of rhs[i] with respect to y[j]."),
-    FunctionSpec("input_jacobian", "lagrangian", "state inputs",
-        "Derivatives of `rhs` with respect to the inputs.",
-        "Entry [i][j] is the derivative of rhs[i] with respect to input j."),
-    FunctionSpec("parameter_jacobian", "lagrangian", "state parameters",
-        "Derivatives of `rhs` with respect to the parameters, without inputs.",
-        "Entry [i][j] is the derivative of rhs[i] with respect to parameter j.",
-        exists=_is_small),
-    FunctionSpec("outputs", "lagrangian", "outputs",
-        "Outputs {}.",
-        "One number for each.", _outputs),
-    FunctionSpec("outputs_jacobian", "lagrangian", "outputs state",
-        "Derivatives of `outputs` with respect to the state.",
-        "Entry [i][j] is the derivative of output i with respect to y[j]."),
-    FunctionSpec("outputs_parameter_jacobian", "lagrangian", "outputs params",
-        "Derivatives of `outputs` with respect to the parameters, with inputs.",
-        "Entry [i][j] is the derivative of output i with respect to params[j]."),
-    FunctionSpec("switches", "lagrangian", "2 switches",
-        "Switching functions {}, at whose zeros forces have kinks or jumps.",
-        "The functions, then their rates of change along the motion.",
-        _switches, lambda derivation: bool(derivation.switching_functions)),
-    FunctionSpec("switches_rational", "rational", "2 switches",
-        "`switches` of the rational state.",
-        "The functions, then their rates of change along the motion.",
-        exists=lambda derivation: bool(derivation.switching_functions)
-        and bool(EquationsOfMotion(derivation).angles)),
-    FunctionSpec("switches_variational", "variational", "4 switches",
-        "`switches` of the variational state, and their linear perturbations.",
-        "The functions, their rates of change along the motion, and the perturbations of both.",
-        exists=lambda derivation: bool(derivation.switching_functions)),
-    FunctionSpec("switches_sensitivity", "sensitivity", "4 switches",
-        "`switches_variational` with perturbed parameters, whose perturbations precede them.",
-        "The functions, their rates of change along the motion, and the perturbations of both.",
-        exists=lambda derivation: bool(derivation.switching_functions)
-        and bool(derivation.system.params) and _is_small(derivation)),
-    FunctionSpec("energy", "lagrangian", "",
-        "{}.",
-        "Energy in J.", _energy),
-    FunctionSpec("power", "lagrangian", "",
-        "Rate of change of `energy`: power of applied forces, friction and prescribed motion.",
-        "Power in W.",
-        exists=lambda derivation: derivation.power != 0 or any(derivation.constraint_drift)),
-    FunctionSpec("constraints", "lagrangian", "residuals",
-        "Residuals of the constraints, which are 0 along a motion.",
-        "Constraints of the coordinates, then rates of these and constraints of velocities."),
-    FunctionSpec("constraints_jacobian", "lagrangian", "residuals state",
-        "Derivatives of `constraints` with respect to the state.",
-        "Entry [i][j] is the derivative of residual i with respect to y[j]."),
-    FunctionSpec("integrals", "lagrangian", "integrals",
-        "Functions {} of the coordinates, which constraints of velocities keep constant.",
-        "One number for each.", _integrals),
-    FunctionSpec("integrals_rational", "rational", "integrals",
-        "`integrals` of the rational state.",
-        "One number for each."),
-    FunctionSpec("redundant_constraints", "lagrangian", "redundant",
-        "Residuals of the constraints {}, which follow from the others, with default parameters.",
-        "One for each; where it is not 0, the parameters are such that none follows.", _redundant),
-    FunctionSpec("multipliers", "lagrangian", "multipliers",
-        "Multipliers {} of the constraints: their reactions.",
-        "One for each constraint.", _multipliers),
-    FunctionSpec("correction", "lagrangian", "state",
-        "Changes of y that remove small residuals of the constraints, by one step of Newton's "
-        "method.",
-        "Changes of coordinates and of velocities, the smallest by the mass matrix.",
-        exists=lambda derivation: not _is_free(derivation)),
-    FunctionSpec("correction_rational", "rational", "state",
-        "`correction` of the rational state.",
-        "Changes of coordinates, angles among them, and of velocities.",
-        exists=lambda derivation: not _is_free(derivation)),
-    FunctionSpec("correction_variational", "variational", "4 q",
-        "`correction` of the motion, and changes that make its perturbation tangent to the "
-        "constraints.",
-        "Changes of coordinates, of velocities, and of the perturbations of both.",
-        exists=lambda derivation: not _is_free(derivation)),
-    FunctionSpec("correction_sensitivity", "sensitivity", "4 q",
-        "`correction_variational` with perturbed parameters, whose perturbations precede them.",
-        "Changes of coordinates, of velocities, and of the perturbations of both.",
-        exists=lambda derivation: not _is_free(derivation)
-        and bool(derivation.system.params) and _is_small(derivation)),
-    FunctionSpec("reactions", "lagrangian", "reactions",
-        "Forces that hold {} constant, by Lagrange's multipliers.",
-        "One for each: a rod's tension, positive where it pulls.",
-        _reactions, lambda derivation: bool(derivation.system.reactions)),
-    FunctionSpec("mass_matrix", "lagrangian", "q q",
-        "Mass matrix M(q): the kinetic energy is qdot M qdot / 2.",
-        "M, symmetric and positive definite, row by row."),
-    FunctionSpec("positions", "lagrangian", "masses axes",
-        "Positions of the masses.",
-        "One row a mass: its Cartesian components in m, the last one upwards."),
-    FunctionSpec("points", "lagrangian", "points axes",
-        "Points of `LINKS`, which pictures join.",
-        "One row a point: its Cartesian components in m, the last one upwards."),
-    FunctionSpec("angular_momentum", "lagrangian", "axes",
-        "Angular momentum about the origin.",
-        "Its Cartesian components in kg m^2/s.",
-        exists=lambda derivation: bool(derivation.bodies)),
-    FunctionSpec("hamiltonian_state", "lagrangian", "state",
-        "State (q, p) of the Hamiltonian form at y = (q, qdot).",
-        "Coordinates, then momenta p = M qdot.", exists=_is_free),
-    FunctionSpec("rhs_hamiltonian", "hamiltonian", "state",
-        "Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).",
-        "Time derivative of y: velocities from M qdot = p, then -dH/dq."),
-    FunctionSpec("jacobian_hamiltonian", "hamiltonian", "state state",
-        "Jacobian of `rhs_hamiltonian`.",
-        "Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].",
-        exists=_is_small),
-    FunctionSpec("energy_hamiltonian", "hamiltonian", "",
-        "Hamiltonian H(q, p): `energy` by momenta.",
-        "Energy in J."),
-    FunctionSpec("lagrangian_state", "hamiltonian", "state",
-        "State (q, qdot) of the Lagrangian form at y = (q, p).",
-        "Coordinates, then velocities from M qdot = p."),
-    FunctionSpec("rational_state", "lagrangian", "rational",
-        "State of the rational form at y = (q, qdot).",
-        "Sine and cosine of every angle, other coordinates, velocities."),
-    FunctionSpec("rhs_rational", "rational", "rational",
-        "Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.",
-        "Time derivative of y."),
-    FunctionSpec("rhs_variational", "variational", "variational",
-        "Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear "
-        "perturbation.",
-        "Time derivative of y: of the motion, then of the perturbation."),
-    FunctionSpec("rhs_sensitivity", "sensitivity", "sensitivity",
-        "`rhs_variational` with perturbed parameters, whose perturbations precede them.",
-        "Time derivative of y: of the motion, then of the perturbation.",
-        exists=lambda derivation: bool(derivation.system.params) and _is_small(derivation)),
-    FunctionSpec("equilibrium", "parameters", "q",
-        "Coordinates at the equilibrium.",
-        "{}.", _equilibrium, lambda derivation: derivation.equilibrium is not None),
-    FunctionSpec("linear", "parameters", "2 q q",
-        "Matrices of small displacements x from the equilibrium {}.",
-        "M0 and K of M0 xddot + K x = 0.", _equilibrium,
-        lambda derivation: derivation.equilibrium is not None and derivation.is_linearisable),
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -258,9 +58,10 @@ class Function:
 
 @dataclass(frozen=True)
 class Contents:
-    """The contents of the generated files of a system, in any language."""
+    """The contents of generated files of a system, in any language."""
 
     derivation: Derivation
+    names: tuple[str, ...]  # of the functions of the system, in these files or in others
     states: dict[Form, tuple[str, ...]]  # components of the state in each form that exists
     functions: tuple[Function, ...]
 
@@ -269,39 +70,95 @@ class Contents:
         """The system."""
         return self.derivation.system
 
+    @property
+    def forms(self) -> tuple[Form, ...]:
+        """Forms of the equations of motion: those that have a right-hand side."""
+        names = ((spec.name, spec.form) for spec in SPECS if spec.name in self.names)
+        forms = {form for name, form in names if name.startswith("rhs")}
+        return tuple(form for form in self.states if form in forms)
+
+
+class Functions:
+    """The functions that exist for a derivation; each is generated when it is first requested.
+
+    `names` are their names, in the order of generated files; `fastest` is that of the right-hand
+    side of fewest calls of functions.
+    """
+
+    def __init__(self, derivation: Derivation) -> None:
+        self._derivation, self._states = derivation, _states(derivation)
+        self._sizes = _sizes(derivation, self._states)
+        self._specs = {spec.name: spec for spec in SPECS if self._exists(spec)}
+        self.names = tuple(self._specs)
+        self.fastest = "rhs_rational" if "rhs_rational" in self.names else "rhs"
+        self._function = cache(self._generated)
+
+    def contents(self, only: Collection[str] | None = None) -> Contents:
+        """The contents of files of all functions, or of a system with `only` some."""
+        names = tuple(name for name in self.names if only is None or name in only)
+        return self._contents(names, names)
+
+    def part(self, names: Collection[str]) -> Contents:
+        """The contents of files of some functions of a system that has all."""
+        return self._contents(self.names, names)
+
+    def _contents(self, names: tuple[str, ...], generated: Collection[str]) -> Contents:
+        functions = tuple(self._function(name) for name in names if name in generated)
+        return Contents(self._derivation, names, self._states, functions)
+
+    def _exists(self, spec: FunctionSpec) -> bool:
+        has_state = spec.form == "parameters" or spec.form in self._states
+        return (
+            has_state and {*spec.shape.split()} <= {*self._sizes} and spec.exists(self._derivation)
+        )
+
+    def _generated(self, name: str) -> Function:
+        spec, derivation = self._specs[name], self._derivation
+        detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
+        values = derivation.integral_values if name.startswith("correction") else ()
+        return Function(
+            derivation.system,
+            name,
+            spec.summary.format(detail),
+            spec.returns.format(detail),
+            spec.form,
+            self._states.get(spec.form, ()),
+            tuple(self._sizes[axis] for axis in spec.shape.split()),
+            lowering,
+            takes_signs=bool(derivation.switching_functions),
+            constants=tuple(symbol.name for symbol in values),
+        )
+
 
 def contents(derivation: Derivation, only: Collection[str] | None = None) -> Contents:
     """Everything that is generated for a derivation, or `only` the functions of these names."""
-    system, states = derivation.system, _states(derivation)
-    sizes = {"q": len(system.q), "masses": len(system.masses), "axes": system.dimension}
-    sizes |= {"switches": len(derivation.switching_functions)}
-    sizes |= {"state": 2 * len(system.q), "reactions": len(system.reactions), "2": 2, "4": 4}
-    # a function whose result has an axis of no entries does not exist
-    constants = {"inputs": len(system.inputs), "parameters": len(system.parameters)}
-    constants |= {"outputs": len(system.measured), "params": len(system.params)}
-    constants |= {"points": len(system.points)}
-    constants |= {"multipliers": len(system.all_conditions)}
-    constants |= {"redundant": len(derivation.redundant), "integrals": len(derivation.integrals)}
-    constants |= {"residuals": len(system.conditions) + len(derivation.holonomic)}
-    sizes |= {name: count for name, count in constants.items() if count}
-    sizes |= {form: len(state) for form, state in states.items()}
-    functions = []
-    for spec in SPECS:
-        axes = spec.shape.split()
-        is_requested = only is None or spec.name in only
-        has_state = spec.form == "parameters" or spec.form in states
-        if is_requested and has_state and {*axes} <= {*sizes} and spec.exists(derivation):
-            detail, lowering = spec.detail(derivation), _lowering(spec, derivation)
-            texts = spec.summary.format(detail), spec.returns.format(detail)
-            state, shape = states.get(spec.form, ()), tuple(sizes[axis] for axis in axes)
-            takes_signs = bool(derivation.switching_functions)
-            values = derivation.integral_values if spec.name.startswith("correction") else ()
-            one = Function(
-                system, spec.name, *texts, spec.form, state, shape, lowering, takes_signs,
-                tuple(symbol.name for symbol in values),
-            )  # fmt: skip
-            functions.append(one)
-    return Contents(derivation, states, tuple(functions))
+    return Functions(derivation).contents(only)
+
+
+def _sizes(derivation: Derivation, states: Mapping[Form, tuple[str, ...]]) -> dict[str, int]:
+    """Lengths of axes by name; a function whose result has an axis of no entries does not exist."""
+    system = derivation.system
+    lengths = {
+        "q": len(system.q),
+        "state": 2 * len(system.q),
+        "2": 2,
+        "4": 4,
+        "axes": system.dimension,
+        "masses": len(system.masses),
+        "points": len(system.points),
+        "inputs": len(system.inputs),
+        "outputs": len(system.measured),
+        "parameters": len(system.parameters),
+        "params": len(system.params),
+        "reactions": len(system.reactions),
+        "switches": len(derivation.switching_functions),
+        "multipliers": len(system.all_conditions),
+        "residuals": len(system.conditions) + len(derivation.holonomic),
+        "redundant": len(derivation.redundant),
+        "integrals": len(derivation.integrals),
+    }
+    named = {name: length for name, length in lengths.items() if length}
+    return named | {form: len(state) for form, state in states.items()}
 
 
 def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
@@ -312,7 +169,7 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
         form = HamiltonianForm
     elif spec.name.startswith("outputs"):
         form = OutputForm
-    elif derivation.has_quaternions and _is_small(derivation):
+    elif derivation.has_quaternions and is_small(derivation):
         form = QuaternionForm
     elif spec.name.startswith("correction"):
         form = ProjectionForm

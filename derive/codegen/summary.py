@@ -5,7 +5,8 @@ from textwrap import indent
 
 import sympy as sp
 
-from derive.codegen.functions import Contents, Form
+from derive.codegen.function_specs import Form
+from derive.codegen.functions import Contents
 from derive.mechanics.derivation import Derivation
 from derive.system.system import System
 

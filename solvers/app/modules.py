@@ -5,8 +5,9 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
+from solvers.equations.lazy_module import LazyModule
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module_cache import cached_module
 from solvers.equations.specialise import (
@@ -35,7 +36,8 @@ def load(name: str) -> GeneratedModule:
     Returns
     -------
     module
-        As ``generated.double_pendulum``; modules that do not ship are built in the user's cache.
+        As ``generated.double_pendulum``; modules that do not ship are built in the user's cache,
+        each function when it is first used.
 
     Raises
     ------
@@ -96,7 +98,8 @@ def build(system: "System") -> GeneratedModule:
     Returns
     -------
     module
-        Its equations of motion as functions, with the C header beside the module.
+        Its equations of motion as functions. Each is generated when it is first used; ``__file__``
+        is a file of all functions, with the C header beside it.
 
     Raises
     ------
@@ -118,14 +121,25 @@ def build(system: "System") -> GeneratedModule:
     ('theta1', 'theta2', 'theta3', 'theta4')
     """
     from derive import Derivation, reduced
-    from derive.codegen.writing import texts
+    from derive.codegen.functions import Functions
+    from derive.codegen.writing import files
     from derive.system.system import as_system
 
     # symbols of one name may differ in their assumptions
     system = as_system(system)
     assumptions = [(s.name, sorted(s.assumptions0.items())) for s in (*system.q, *system.params)]
     key = f"{system!r}{assumptions}{generator_text()}"
-    module = cached_module(system.name, key, lambda: texts(Derivation(reduced(system))))
+    functions = cache(lambda: Functions(Derivation(reduced(system))))
+
+    @cache
+    def part(names: tuple[str, ...]) -> GeneratedModule:
+        def texts() -> dict[str, str]:
+            # the right-hand side first: it raises for unsupported functions
+            return files(functions().part(names or [functions().fastest]))
+
+        return cached_module(system.name, f"{key}{names}", texts)
+
+    module = cast("GeneratedModule", LazyModule(part))
     _systems[module.__name__] = system
     return module
 

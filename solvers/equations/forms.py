@@ -39,12 +39,11 @@ STEP = 1e-5
 class Form:
     """One form of a generated module's equations, with fixed parameters.
 
-    `params` may be arrays that differ between motions. `function` is the generated right-hand side;
-    `state` and `ordinary` are names of components, of the form's state and of an ordinary state.
-    `angle_columns` and `shared_columns` are pairs of indices, in an ordinary state and the form's:
-    of each angle and its sine, which its cosine follows; and of each component that both share.
-    In Lagrange's form `feedback` may be a function of time and state that returns the inputs, the
-    last parameters.
+    `params` may be arrays that differ between motions. `state` and `ordinary` are names of
+    components, of the form's state and of an ordinary state. `angle_columns` and `shared_columns`
+    are pairs of indices, in an ordinary state and the form's: of each angle and its sine, which its
+    cosine follows; and of each component that both share. In Lagrange's form `feedback` may be a
+    function of time and state that returns the inputs, the last parameters.
     """
 
     def __init__(
@@ -65,8 +64,6 @@ class Form:
         self.name, self.module, self.params = name, module, tuple(params)
         self.feedback, self.signs = feedback, tuple(signs)
         self.integrals: tuple[Any, ...] = ()  # their values, which are kept
-        self.function, jacobian = function(module, named("rhs", name)), named("jacobian", name)
-        self._jacobian = function(module, jacobian) if has_function(module, jacobian) else None
         self.state: tuple[str, ...] = module.STATES[name]
         self.ordinary = state_names(module, name)
         index = {part: i for i, part in enumerate(self.state)}
@@ -116,10 +113,19 @@ class Form:
             return True, angles.index(k)
         return (False, columns[k]) if k in columns else None
 
+    @cached_property
+    def function(self) -> Callable[..., Any]:
+        """The generated right-hand side."""
+        return function(self.module, named("rhs", self.name))
+
     @property
     def has_jacobian(self) -> bool:
         """Whether implicit methods can integrate this form."""
-        return self._jacobian is not None
+        return has_function(self.module, named("jacobian", self.name))
+
+    @cached_property
+    def _jacobian(self) -> Callable[..., Any]:
+        return function(self.module, named("jacobian", self.name))
 
     def rhs(self, t: float, z: Array) -> Array:
         """The right-hand side; `ArithmeticError` where it has no finite value."""
@@ -129,7 +135,6 @@ class Form:
 
     def jacobian(self, t: float, z: Array) -> Array:
         """Its Jacobian; `ArithmeticError` where it has no finite value."""
-        assert self._jacobian is not None
         if 0.0 in self.signs:
             return _differences(lambda y: self.rhs(t, y), z)
         params = self._params_at(t, z)

@@ -1,11 +1,13 @@
 """The contract between generated modules and solvers: what every generated module has."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import FunctionType
 from typing import Any, Protocol, cast
 
 from numpy.typing import ArrayLike, NDArray
+
+from solvers.equations.lazy_module import LazyModule
 
 Numbers = Iterable[float]
 Arrays = Sequence[Any] | NDArray[Any]
@@ -113,15 +115,25 @@ def equations_of_motion(module: GeneratedModule) -> tuple[str, ...]:
     return (*motion, *constraints) if motion else ()
 
 
+def functions(module: GeneratedModule) -> Collection[str]:
+    """Names of the functions of a generated module."""
+    return module.FUNCTIONS if isinstance(module, LazyModule) else module.OPERATIONS
+
+
+def part(module: GeneratedModule, *names: str) -> GeneratedModule:
+    """The module, or one of the same system with at least these functions."""
+    return module.part(names) if isinstance(module, LazyModule) else module
+
+
 def has_function(module: GeneratedModule, name: str) -> bool:
     """Whether a generated module has the function `name`, and so ``name_many``."""
-    return name in module.OPERATIONS
+    return name in functions(module)
 
 
 def function(module: GeneratedModule, name: str) -> Callable[..., Any]:
     """The function `name`, or ``name_many``, of a generated module; ValueError without it."""
     if not has_function(module, name.removesuffix("_many")):
-        known = ", ".join(module.OPERATIONS)
+        known = ", ".join(functions(module))
         raise ValueError(f"{module.SYSTEM} has no function {name!r}; it has {known}")
     return cast("Callable[..., Any]", getattr(module, name))
 
@@ -185,13 +197,13 @@ def links(module: GeneratedModule) -> Links:
 
 def operations_on_state(module: GeneratedModule, name: str) -> int:
     """Operations of a call, without those on parameters alone, which are done once a run."""
-    total, on_parameters = module.OPERATIONS[name]
+    total, on_parameters = part(module, name).OPERATIONS[name]
     return total - on_parameters
 
 
-def depends_on_time(module: GeneratedModule) -> bool:
-    """Whether the equations of motion do."""
-    return "rhs" in module.TIMED
+def depends_on_time(module: GeneratedModule, name: str = "rhs") -> bool:
+    """Whether a function does; by default the equations of motion."""
+    return name in part(module, name).TIMED
 
 
 def header(module: GeneratedModule) -> Path | None:
@@ -200,6 +212,11 @@ def header(module: GeneratedModule) -> Path | None:
         return None
     path = Path(module.__file__).with_suffix(".h")
     return path if path.is_file() else None
+
+
+def has_header(module: GeneratedModule) -> bool:
+    """Whether the functions of a generated module have C headers."""
+    return header(part(module)) is not None
 
 
 def has_perturbation(form: str) -> bool:

@@ -5,7 +5,7 @@ from threading import Thread
 from warnings import warn
 
 from solvers.equations.forms import fastest_form
-from solvers.equations.module import GeneratedModule, header
+from solvers.equations.module import GeneratedModule, has_header
 from solvers.integration.compiled.compilation import is_ahead
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
@@ -38,7 +38,7 @@ def obstacle(problem: Problem) -> str:
         )
     if len(problem.all_events) > MAX_EVENTS:
         return f"there are more than {MAX_EVENTS} events"
-    if header(problem.form.module) is None:
+    if not has_header(problem.form.module):
         return "there is no C header beside the module"
     count = problem.form.switching_count
     if count and problem.method.is_parallel:
@@ -98,7 +98,7 @@ def compile_ahead(module: GeneratedModule, form: str, method: str) -> None:
         with suppress(Exception):  # `loop` raises it again
             kernel(*arguments)
 
-    if arguments not in _threads and header(module) is not None:
+    if arguments not in _threads and has_header(module):
         _threads[arguments] = Thread(target=compile_loop, daemon=True)
         _threads[arguments].start()
 

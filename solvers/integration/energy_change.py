@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, has_function
+from solvers.equations.module import GeneratedModule, depends_on_time, has_function
 from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.solution import Array
 
@@ -21,7 +21,7 @@ class EnergyWarning(PredictabilityWarning):
 
 def conserves_energy(module: GeneratedModule) -> bool:
     """Whether the energy of every motion is constant."""
-    changes = has_function(module, "power") or "energy" in module.TIMED
+    changes = has_function(module, "power") or depends_on_time(module, "energy")
     return has_function(module, "energy") and not changes
 
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from solvers.equations.module import links
+from solvers.equations.module import depends_on_time, links
 from solvers.io.figures import COLOURS, panels
 from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
@@ -162,7 +162,8 @@ def label_axes(panel: Axes, picture: str, results: Sequence[SceneResult]) -> Non
         x, y = ("horizontal", "vertical, oblique view") if in_space else ("x", "y")
         panel.set(xlabel=f"{x} / m", ylabel=f"{y} / m")
         panel.set_aspect("equal", adjustable="datalim")
-        if "positions" not in module.TIMED and not links(module):  # else the pivot may move
+        pivot_may_move = depends_on_time(module, "positions") or links(module)
+        if not pivot_may_move:
             panel.plot(0, 0, "k+", markersize=8)
     elif picture == "energy":
         label = axis_label("energy error", energy_errors(results)[1])

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, depends_on_time
 from solvers.sweeps.axes import Array
 
 #: Part of the tolerance within which states must recur for a motion to have arrived.
@@ -36,7 +36,7 @@ class Attractor:
 
     def record(self, number: int, module: GeneratedModule) -> dict[str, Any]:
         """The attractor as JSON values, with its number in the map."""
-        is_equilibrium = self.period == 1 and not any(self.turns) and "rhs" not in module.TIMED
+        is_equilibrium = self.period == 1 and not any(self.turns) and not depends_on_time(module)
         return {
             "number": number,
             "kind": "equilibrium" if is_equilibrium else f"period {self.period}",

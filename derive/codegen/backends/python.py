@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
-from derive.codegen.assignments import Factorisation, Solution, Statement, Value
+from derive.codegen.assignments import Assignments, Factorisation, Solution, Statement, Value
 from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.functions import Contents, Function
 from derive.codegen.summary import broken_sum, summary, units
@@ -187,7 +187,9 @@ class PythonBackend(Backend):
         )
 
     def function(self, function: Function) -> str:
-        assigned = self.assignments(function)
+        return self._one(function, self.assignments(function))
+
+    def _one(self, function: Function, assigned: Assignments) -> str:
         return ONE.format(
             f=function,
             arguments=_arguments(function, "float", "Numbers"),
@@ -208,7 +210,7 @@ class PythonBackend(Backend):
             body="\n".join(self.body(function, self._inputs(function, "{0}"), assigned)),
             outputs=_stacked(function, assigned.outputs),
         )
-        return f"{self.function(function)}\n\n{many}"
+        return f"{self._one(function, assigned)}\n\n{many}"
 
     def _inputs(self, function: Function, value: str) -> Iterable[str]:
         """Lines that unpack the arguments, each converted to a `value`."""
@@ -248,9 +250,8 @@ def _constants(contents: Contents) -> str:
     system, functions = contents.system, contents.functions
     parameters = [symbol.name for symbol in system.params]
     switching, conditions = contents.derivation.switching_functions, system.all_conditions
-    integrals, names = contents.derivation.integrals, {f.name for f in functions}
-    with_rhs = {f.form for f in functions if f.name.startswith("rhs")}
-    forms = [form for form in contents.states if form in with_rhs]
+    integrals, names = contents.derivation.integrals, contents.names
+    forms = contents.forms
     used = {*parameters, *(name for state in contents.states.values() for name in state)}
     used |= {one.name for one in conditions}
     tables = {
@@ -269,6 +270,7 @@ def _constants(contents: Contents) -> str:
         **({"LINKS": _links(system)} if "points" in names else {}),
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         **({"INTEGRALS": _literal(map(str, integrals))} if integrals else {}),
+        **({"FUNCTIONS": _literal(names)} if len(names) > len(functions) else {}),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
-from solvers.equations.module import GeneratedModule, header, integrals
+from solvers.equations.module import GeneratedModule, has_header, integrals
 from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.double_double import DoubleDouble
 from solvers.integration.compiled.extended_source import (
@@ -61,7 +61,7 @@ class ExtendedKernel:
     def __init__(self, module: GeneratedModule, name: str) -> None:
         precision, form = PRECISIONS[name], Form(module, fastest_form(module), module.DEFAULTS)
         self.form = form
-        if header(module) is None:
+        if not has_header(module):
             raise NoCompilerError(f"there is no C header beside {module.SYSTEM}")
         source = equations(module, form.name)
         try:

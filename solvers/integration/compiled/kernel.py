@@ -42,7 +42,9 @@ class Kernel:
         reproducible: bool = False,
     ) -> None:
         tableau = load(method)
-        source = equations(module, form, switches=not tableau.is_parallel)
+        source = equations(
+            module, form, jacobian=tableau.needs_jacobian, switches=not tableau.is_parallel
+        )
         # lanes have sines of their own, whose bits are not those of single motions
         vectors = lanes and tableau.is_explicit and (source.vectorises or not reproducible)
         # a single motion is rescaled in Python instead

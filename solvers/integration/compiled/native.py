@@ -14,6 +14,7 @@ from solvers.equations.module import (
     parameter_names,
     switching_functions,
 )
+from solvers.equations.module import part as module_part
 from solvers.integration.compiled.compiler import Library, build
 from solvers.integration.compiled.equations_source import Equations
 
@@ -34,6 +35,10 @@ void probe(void)
 """
 
 
+#: Functions that convert states with momenta, and switching functions of converted states.
+MOMENTA = ("hamiltonian_state", "lagrangian_state", "switches")
+
+
 @dataclass(frozen=True)
 class NativeRhs:
     """``void rhs(double t, const double *y, double *dy, const double *params)``."""
@@ -43,8 +48,62 @@ class NativeRhs:
     library: Library
 
 
-def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> Equations:
-    """One form of a generated module in C; its switching functions have signs if `switches`."""
+def equations(
+    module: GeneratedModule, form: str, *, jacobian: bool = False, switches: bool = False
+) -> Equations:
+    """One form of a generated module in C, with its Jacobian if `jacobian`.
+
+    Its switching functions have signs if `switches`.
+    """
+    layout = Form(module, form, (0.0,) * len(parameter_names(module, form)))
+    kept, motion = integrals(module), form
+    if has_perturbation(form):  # which follows the motion in a state
+        motion = "rational" if layout.angle_columns else "lagrangian"
+    evaluated = [named("rhs", form), *([layout.correction] if layout.has_constraints else [])]
+    evaluated += [named("integrals", motion)] if kept else []
+    evaluated += [named("switches", form)] if switches else []
+    others = [named("jacobian", form)] if jacobian else []
+    others += MOMENTA if form == "hamiltonian" else []
+    part = module_part(module, *evaluated, *others)
+    system, text = _header(part)
+    from_ordinary = [f"z[{i}] = y[{k}];" for k, i in layout.shared_columns]
+    to_ordinary = [f"y[{k}] = z[{i}];" for k, i in layout.shared_columns]
+    for a, (k, i) in enumerate(layout.angle_columns):
+        wrapped = f"atan2(z[{i}], z[{i + 1}])"
+        from_ordinary.append(f"z[{i}] = sin(y[{k}]); z[{i + 1}] = cos(y[{k}]);")
+        from_ordinary.append(f"turns[{a}] = lane_round((y[{k}] - {wrapped})*(0.5/PI));")
+        to_ordinary.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
+    if form == "hamiltonian":
+        from_ordinary = [f"{system}_hamiltonian_state(t, y, params, z);"]
+        to_ordinary = [f"{system}_lagrangian_state(t, z, params, y);"]
+    corrected = []
+    if layout.has_constraints:
+        shared = layout.shared_columns
+        corrected = [f"add_to_component(state, {i}, change[{k}]);" for k, i in shared]
+        corrected += [f"turn(state, {i}, change[{k}]);" for k, i in layout.angle_columns]
+    return Equations(
+        text,
+        f"{system}_{named('rhs', form)}",
+        f"{system}_{named('jacobian', form)}",
+        state=len(layout.state),
+        parameters=len(layout.params) + len(kept),
+        ordinary=len(layout.ordinary),
+        angles=layout.angles,
+        from_ordinary=from_ordinary,
+        to_ordinary=to_ordinary,
+        vectorises=not {*evaluated} & {*part.CALLS_FUNCTIONS},
+        perturbed=layout.perturbed,
+        correction=f"{system}_{layout.correction}" if corrected else "",
+        corrected=corrected,
+        integrals=f"{system}_{named('integrals', motion)}" if kept else "",
+        kept=len(kept),
+        perturbed_parameters=len(layout.params) - len(module.PARAMETERS),
+        switches=len(switching_functions(module)) if switches else 0,
+    )
+
+
+def _header(module: GeneratedModule) -> tuple[str, str]:
+    """The prefix of names in a module's C header, and its text."""
     path, name = header(module), module.SYSTEM
     if path is None:
         raise ValueError(f"{name}.h is missing: write it with holonomic derive {name}")
@@ -54,48 +113,7 @@ def equations(module: GeneratedModule, form: str, *, switches: bool = False) -> 
             f"{path} and {module.__file__} are of different versions: write both with holonomic "
             f"derive {name}"
         )
-    rhs, jacobian = (f"{path.stem}_{named(stem, form)}" for stem in ("rhs", "jacobian"))
-    layout = Form(module, form, (0.0,) * len(parameter_names(module, form)))
-    from_ordinary = [f"z[{i}] = y[{k}];" for k, i in layout.shared_columns]
-    to_ordinary = [f"y[{k}] = z[{i}];" for k, i in layout.shared_columns]
-    for a, (k, i) in enumerate(layout.angle_columns):
-        wrapped = f"atan2(z[{i}], z[{i + 1}])"
-        from_ordinary.append(f"z[{i}] = sin(y[{k}]); z[{i + 1}] = cos(y[{k}]);")
-        from_ordinary.append(f"turns[{a}] = lane_round((y[{k}] - {wrapped})*(0.5/PI));")
-        to_ordinary.append(f"y[{k}] = {wrapped} + 2*PI*turns[{a}];")
-    if form == "hamiltonian":
-        from_ordinary = [f"{path.stem}_hamiltonian_state(t, y, params, z);"]
-        to_ordinary = [f"{path.stem}_lagrangian_state(t, z, params, y);"]
-    corrected = []
-    if layout.has_constraints:
-        shared = layout.shared_columns
-        corrected = [f"add_to_component(state, {i}, change[{k}]);" for k, i in shared]
-        corrected += [f"turn(state, {i}, change[{k}]);" for k, i in layout.angle_columns]
-    kept, motion = integrals(module), form
-    if has_perturbation(form):  # which follows the motion in a state
-        motion = "rational" if layout.angle_columns else "lagrangian"
-    called = [named("rhs", form), *([layout.correction] if corrected else [])]
-    called += [named("integrals", motion)] if kept else []
-    called += [named("switches", form)] if switches else []
-    return Equations(
-        text,
-        rhs,
-        jacobian,
-        state=len(layout.state),
-        parameters=len(layout.params) + len(kept),
-        ordinary=len(layout.ordinary),
-        angles=layout.angles,
-        from_ordinary=from_ordinary,
-        to_ordinary=to_ordinary,
-        vectorises=not {*called} & {*module.CALLS_FUNCTIONS},
-        perturbed=layout.perturbed,
-        correction=f"{path.stem}_{layout.correction}" if corrected else "",
-        corrected=corrected,
-        integrals=f"{path.stem}_{named('integrals', motion)}" if kept else "",
-        kept=len(kept),
-        perturbed_parameters=len(layout.params) - len(module.PARAMETERS),
-        switches=len(switching_functions(module)) if switches else 0,
-    )
+    return path.stem, text
 
 
 def native_rhs(
