@@ -49,7 +49,7 @@ Masses and their positions:
     m at (-x*sin(Omega*t) + (-y*sin(latitude) - sqrt(l**2 - x**2 - y**2)*cos(latitude))*cos(Omega*t), x*cos(Omega*t) + (-y*sin(latitude) - sqrt(l**2 - x**2 - y**2)*cos(latitude))*sin(Omega*t), y*cos(latitude) - sqrt(l**2 - x**2 - y**2)*sin(latitude))
 
 Lagrangian:
-    L = Omega**2*m*(l**2/2 + x**2/2 + y*sqrt(l**2 - x**2 - y**2)*sin(2*latitude) + (l**2 - x**2 - 2*y**2)*cos(2*latitude)/2)/2
+    L = Omega**2*m*(x**2*sin(latitude)**2 + x**2*cos(latitude)**2 + (y*sin(latitude) + sqrt(l**2 - x**2 - y**2)*cos(latitude))**2)/2
         + Omega*m*x*y_dot*(-y*cos(latitude)/sqrt(l**2 - x**2 - y**2) + sin(latitude))
         - Omega*m*x_dot*(y*sin(latitude) + (x**2/sqrt(l**2 - x**2 - y**2) + sqrt(l**2 - x**2 - y**2))*cos(latitude))
         + g*m*sqrt(l**2 - x**2 - y**2) + m*x*x_dot*y*y_dot/(l**2 - x**2 - y**2)
@@ -57,8 +57,8 @@ Lagrangian:
         + m*y_dot**2*(y**2/(l**2 - x**2 - y**2) + 1)/2
 
 Equations of motion:
-    Omega**2*m*x*y*sin(2*latitude)/(2*sqrt(l**2 - x**2 - y**2))
-        - Omega**2*m*x*(-cos(2*latitude) + 1)/2
+    Omega**2*m*x*y*sin(latitude)*cos(latitude)/sqrt(l**2 - x**2 - y**2)
+        - Omega**2*m*x*sin(latitude)**2
         + 2*Omega*m*x**2*y*y_dot*cos(latitude)/(2*l**2*sqrt(l**2 - x**2 - y**2) - 2*x**2*sqrt(l**2 - x**2 - y**2) - 2*y**2*sqrt(l**2 - x**2 - y**2))
         - Omega*m*x**2*y*y_dot*cos(latitude)/(l**2*sqrt(l**2 - x**2 - y**2) - x**2*sqrt(l**2 - x**2 - y**2) - y**2*sqrt(l**2 - x**2 - y**2))
         + 2*Omega*m*y*y_dot*cos(latitude)/sqrt(l**2 - x**2 - y**2)
@@ -69,9 +69,9 @@ Equations of motion:
         + m*x*y**2*y_dot**2/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
         + m*x*y*y_ddot/(l**2 - x**2 - y**2) + m*x*y_dot**2/(l**2 - x**2 - y**2)
         + m*x_ddot*(x**2/(l**2 - x**2 - y**2) + 1) = 0
-    Omega**2*m*y**2*sin(2*latitude)/(2*sqrt(l**2 - x**2 - y**2))
-        + Omega**2*m*y*cos(2*latitude)
-        - Omega**2*m*sqrt(l**2 - x**2 - y**2)*sin(2*latitude)/2
+    Omega**2*m*y**2*sin(latitude)*cos(latitude)/sqrt(l**2 - x**2 - y**2)
+        - Omega**2*m*y*(sin(latitude)**2 - cos(latitude)**2)
+        - Omega**2*m*sqrt(l**2 - x**2 - y**2)*sin(latitude)*cos(latitude)
         - 2*Omega*m*x**2*x_dot*y*cos(latitude)/(2*l**2*sqrt(l**2 - x**2 - y**2) - 2*x**2*sqrt(l**2 - x**2 - y**2) - 2*y**2*sqrt(l**2 - x**2 - y**2))
         + Omega*m*x**2*x_dot*y*cos(latitude)/(l**2*sqrt(l**2 - x**2 - y**2) - x**2*sqrt(l**2 - x**2 - y**2) - y**2*sqrt(l**2 - x**2 - y**2))
         - 2*Omega*m*x_dot*y*cos(latitude)/sqrt(l**2 - x**2 - y**2)
@@ -107,7 +107,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "1c9ed949b9045328"
+DIGEST = "cdf6e39392a269ee"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -154,19 +154,19 @@ CALLS_FUNCTIONS = (
     "rhs_sensitivity",
 )
 OPERATIONS = {
-    "rhs": (122, 8),
-    "jacobian": (395, 10),
-    "parameter_jacobian": (286, 12),
-    "energy": (41, 5),
+    "rhs": (116, 7),
+    "jacobian": (388, 9),
+    "parameter_jacobian": (288, 11),
+    "energy": (41, 6),
     "mass_matrix": (15, 1),
     "positions": (25, 3),
     "hamiltonian_state": (38, 3),
-    "rhs_hamiltonian": (134, 10),
-    "jacobian_hamiltonian": (394, 11),
-    "energy_hamiltonian": (69, 8),
+    "rhs_hamiltonian": (127, 9),
+    "jacobian_hamiltonian": (391, 10),
+    "energy_hamiltonian": (67, 7),
     "lagrangian_state": (45, 4),
-    "rhs_variational": (369, 10),
-    "rhs_sensitivity": (499, 12),
+    "rhs_variational": (362, 9),
+    "rhs_sensitivity": (495, 11),
 }
 UNITS = {
     "m": "kg",
@@ -208,7 +208,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    122 operations, 8 of them on parameters alone.
+    116 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -232,10 +232,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
     c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
@@ -247,27 +244,29 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x7 = y_*x6
     x8 = cos_latitude*y_
     x9 = sqrt(-x2)
-    x10 = x*x6
-    x11 = x9*x9
-    x12 = x9*x11
-    x13 = sin_latitude - x8/x9 - cos_latitude*x10/x12
-    x14 = Omega*y_dot
-    x15 = sin_latitude - x8*(x11 - x0)/x12
-    x16 = x_dot*y_dot
-    x17 = (
-        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x13*x14 + x15*x14 - 0.5*c1*x*(c3 + sin_c2*y_/x9)
-        - 2.0*x10*x16/x4 - x*(2.0*x1 - x2)*x5/x4
-    )
-    x18 = Omega*x_dot
+    x10 = sin_latitude - x8/x9
+    x11 = x*x6
+    x12 = x9*x9
+    x13 = x9*x12
+    x14 = x10 - cos_latitude*x11/x13
+    x15 = Omega*y_dot
+    x16 = sin_latitude*y_ + cos_latitude*x9
+    x17 = sin_latitude - x8*(x12 - x0)/x13
+    x18 = x_dot*y_dot
     x19 = (
-        x15*x18 + 0.5*c1*(2.0*cos_c2*y_ - sin_c2*(x9 - x1/x9)) + 2.0*x16*x7/x4 + x13*x18
-        - x10*x3/x4 - y_*(x2 - x1)*x5/x4 - y_*(x2 - 2.0*x0)*x3/x4
+        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x14*x15 + c1*x*(c2 - cos_latitude*x16/x9) + x17*x15
+        - 2.0*x11*x18/x4 - x*(2.0*x1 - x2)*x5/x4
     )
-    x20 = x19 + g*y_/x9
-    x21 = m*(1.0/(m*(1.0 - x1/x2)))
-    x22 = m*(x17 - g*x/x9 - x20*x6*x21/x2)/(m*(1.0 - x0/x2 - y_*x10*x21/x4))
+    x20 = Omega*x_dot
+    x21 = (
+        x11*x3/x4 + y_*(x2 - x1)*x5/x4 + c1*x10*x16 + y_*(x2 - 2.0*x0)*x3/x4 - x17*x20
+        - 2.0*x18*x7/x4 - x14*x20
+    )
+    x22 = x21 - g*y_/x9
+    x23 = m*(1.0/(m*(1.0 - x1/x2)))
+    x24 = m*(x19 - g*x/x9 + x22*x6*x23/x2)/(m*(1.0 - x0/x2 - y_*x11*x23/x4))
     # outputs
-    return (x_dot, y_dot, x22, -(x20 - x22*x6/x2)*x21)
+    return (x_dot, y_dot, x24, (x22 + x24*x6/x2)*x23)
 
 
 def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -282,10 +281,7 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
     c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
@@ -297,33 +293,35 @@ def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x7 = y_*x6
     x8 = cos_latitude*y_
     x9 = sqrt(-x2)
-    x10 = x*x6
-    x11 = x9*x9
-    x12 = x9*x11
-    x13 = sin_latitude - x8/x9 - cos_latitude*x10/x12
-    x14 = Omega*y_dot
-    x15 = sin_latitude - x8*(x11 - x0)/x12
-    x16 = x_dot*y_dot
-    x17 = (
-        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x13*x14 + x15*x14 - 0.5*c1*x*(c3 + sin_c2*y_/x9)
-        - 2.0*x10*x16/x4 - x*(2.0*x1 - x2)*x5/x4
-    )
-    x18 = Omega*x_dot
+    x10 = sin_latitude - x8/x9
+    x11 = x*x6
+    x12 = x9*x9
+    x13 = x9*x12
+    x14 = x10 - cos_latitude*x11/x13
+    x15 = Omega*y_dot
+    x16 = sin_latitude*y_ + cos_latitude*x9
+    x17 = sin_latitude - x8*(x12 - x0)/x13
+    x18 = x_dot*y_dot
     x19 = (
-        x15*x18 + 0.5*c1*(2.0*cos_c2*y_ - sin_c2*(x9 - x1/x9)) + 2.0*x16*x7/x4 + x13*x18
-        - x10*x3/x4 - y_*(x2 - x1)*x5/x4 - y_*(x2 - 2.0*x0)*x3/x4
+        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x14*x15 + c1*x*(c2 - cos_latitude*x16/x9) + x17*x15
+        - 2.0*x11*x18/x4 - x*(2.0*x1 - x2)*x5/x4
     )
-    x20 = x19 + g*y_/x9
-    x21 = m*(1.0/(m*(1.0 - x1/x2)))
-    x22 = m*(x17 - g*x/x9 - x20*x6*x21/x2)/(m*(1.0 - x0/x2 - y_*x10*x21/x4))
+    x20 = Omega*x_dot
+    x21 = (
+        x11*x3/x4 + y_*(x2 - x1)*x5/x4 + c1*x10*x16 + y_*(x2 - 2.0*x0)*x3/x4 - x17*x20
+        - 2.0*x18*x7/x4 - x14*x20
+    )
+    x22 = x21 - g*y_/x9
+    x23 = m*(1.0/(m*(1.0 - x1/x2)))
+    x24 = m*(x19 - g*x/x9 + x22*x6*x23/x2)/(m*(1.0 - x0/x2 - y_*x11*x23/x4))
     # outputs
-    return _stacked((4,), y[0], x_dot, y_dot, x22, -(x20 - x22*x6/x2)*x21)
+    return _stacked((4,), y[0], x_dot, y_dot, x24, (x22 + x24*x6/x2)*x23)
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    395 operations, 10 of them on parameters alone.
+    388 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -344,15 +342,12 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = l*l
+    c1 = Omega*Omega
     cos_latitude = cos(latitude)
-    c1 = Omega*cos_latitude
-    c2 = Omega*Omega
-    c3 = 2.0*latitude
-    cos_c3 = cos(c3)
-    c4 = cos_c3 - 1.0
-    sin_c3 = sin(c3)
     sin_latitude = sin(latitude)
-    c5 = sin_c3*c2
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c3 = Omega*cos_latitude
+    c4 = cos_latitude*c1
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
@@ -365,100 +360,98 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x8 = x2*x7
     x9 = y_dot*y_dot
     x10 = x1*x3
-    x11 = x1 - 0.5*x2
-    x12 = 2.0*x11
-    x13 = sqrt(-x2)
-    x14 = x13*x13
-    x15 = x14 - x0
-    x16 = 4.0*x14 - 3.0*x15
-    x17 = x*y_
-    x18 = c1*y_dot
-    x19 = x17*x18
-    x20 = x13*x14
-    x21 = x14*x20
-    x22 = x14 + (3.0*x0 + 2.0*x14)
-    x23 = sin_c3*y_
-    x24 = c4 + x23/x13
-    x25 = x*x17
-    x26 = x0 - 0.5*x2
-    x27 = -2.0*x26
-    x28 = x_dot*x17
-    x29 = y_dot*x28
-    x30 = (
-        x3*x6/x8 + x9*x10/x8 + (4.0*x0*x12 + 2.0*x0*x2 - x2*x12)*x9/x8 + x16*x19/x21
-        - x22*x19/x21 - 0.5*c2*(x24 + sin_c3*x25/x20) - 4.0*x27*x29/x8
+    x11 = sqrt(-x2)
+    x12 = cos_latitude*x11
+    x13 = sin_latitude*y_ + x12
+    x14 = cos_latitude*x13
+    x15 = c2 - x14/x11
+    x16 = x11*x11
+    x17 = x11*x16
+    x18 = x1 - 0.5*x2
+    x19 = 2.0*x18
+    x20 = x16 - x0
+    x21 = 4.0*x16 - 3.0*x20
+    x22 = x*y_
+    x23 = c3*y_dot
+    x24 = x22*x23
+    x25 = x16*x17
+    x26 = x16 + (3.0*x0 + 2.0*x16)
+    x27 = x0 - 0.5*x2
+    x28 = -2.0*x27
+    x29 = x_dot*x22
+    x30 = y_dot*x29
+    x31 = (
+        x3*x6/x8 + x9*x10/x8 + c1*(x15 - cos_latitude*x0*(x13 - x12)/x17)
+        + (4.0*x0*x19 + 2.0*x0*x2 - x2*x19)*x9/x8 + x21*x24/x25 - x26*x24/x25
+        - 4.0*x28*x30/x8
     )
-    x31 = y_*x17
-    x32 = cos_latitude*y_
-    x33 = Omega*(sin_latitude - x32/x13 - cos_latitude*x25/x20)
-    x34 = Omega*(sin_latitude - x15*x32/x20)
-    x35 = x*x12
-    x36 = (
-        x*x6/x7 + x9*x31/x7 + y_dot*x33 + y_dot*x34 - 0.5*c2*x*x24 - 2.0*x*x29/x7
-        - x9*x35/x7
+    x32 = y_*x22
+    x33 = cos_latitude*y_
+    x34 = sin_latitude - x33/x11
+    x35 = Omega*(x34 - cos_latitude*x*x22/x17)
+    x36 = Omega*(sin_latitude - x20*x33/x17)
+    x37 = x*x19
+    x38 = x*x6/x7 + x9*x32/x7 + y_dot*x35 + c1*x*x15 + y_dot*x36 - 2.0*x*x30/x7 - x9*x37/x7
+    x39 = x_dot*x29
+    x40 = x2 - x1
+    x41 = y_*x40
+    x42 = y_*x28
+    x43 = (
+        x*x39/x7 + x9*x41/x7 + c1*x13*x34 + x5*x42/x7 - x_dot*x36 - 2.0*y_*x30/x7
+        - x_dot*x35
     )
-    x37 = x_dot*x28
-    x38 = x2 - x1
-    x39 = y_*x38
-    x40 = y_*x27
-    x41 = (
-        x_dot*x34 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x13 - x1/x13)) + 2.0*y_*x29/x7
-        + x_dot*x33 - x*x37/x7 - x9*x39/x7 - x5*x40/x7
+    x44 = x43 - g*y_/x11
+    x45 = m*(1.0/(m*(1.0 - x1/x2)))
+    x46 = x22*x45
+    x47 = x45*x32
+    x48 = m*(1.0 - x0/x2 - x*x47/x7)
+    x49 = m*(x38 - g*x/x11 + x44*x46/x2)/x48
+    x50 = x*x49
+    x51 = (x44 + x49*x22/x2)*x45
+    x52 = y_*(2.0*x27)
+    x53 = x31 - g*(x0 + x16)/x17 + 2.0*x4*x50/x7 - x51*x52/x7
+    x54 = c3*x29
+    x55 = c4*x*(y_*x13 + x16*x34)/x17
+    x56 = x22*x9
+    x57 = x_dot*y_dot
+    x58 = (2.0*x40 - x2)*x56/x8 + (x2 + 2.0*x28)*x39/x8 + x10*x57/x8 - x28*x39/x8
+    x59 = g*x22/x17
+    x60 = x21*x54/x25 + x55 + 2.0*x58 - x26*x54/x25 + x59 + x49*x52/x7 + 2.0*x51*x32/x7
+    x61 = m*(x53 - x60*x46/x2)/x48
+    x62 = x1 + x16
+    x63 = x16*x62 + x0*(3.0*x1 + x16)
+    x64 = x16*x20 + 3.0*x1*x20 - 2.0*x1*x16
+    x65 = -2.0*x18
+    x66 = x1 - 0.25*x2
+    x67 = (x2 - 2.0*x19)*x56/x8 - (x2 - 2.0*x4)*x39/x8 - x65*x56/x8 - x0*(4.0*x66)*x57/x8
+    x68 = x59 + (x55 + x63*x23/x25 + x64*x23/x25 + 2.0*x67)
+    x69 = -4.0*x66
+    x70 = c3*x_dot
+    x71 = (
+        x0*x69*x5/x8 + x64*x70/x25 + x40*x69*x9/x8 + (x2*x28 + 2.0*x1*x2 - 4.0*x1*x28)*x5/x8
+        + x63*x70/x25 - c1*(x14*x62/x17 - x34*x34) - 4.0*x65*x30/x8
     )
-    x42 = x41 + g*y_/x13
-    x43 = m*(1.0/(m*(1.0 - x1/x2)))
-    x44 = x17*x43
-    x45 = x43*x31
-    x46 = m*(1.0 - x0/x2 - x*x45/x7)
-    x47 = m*(x36 - g*x/x13 - x42*x44/x2)/x46
-    x48 = x*x47
-    x49 = (x42 - x47*x17/x2)*x43
-    x50 = y_*(2.0*x26)
-    x51 = x30 - g*(x0 + x14)/x20 + 2.0*x4*x48/x7 + x49*x50/x7
-    x52 = c1*x28
-    x53 = x1 + x14
-    x54 = c5*x*x53/x20
-    x55 = x17*x9
-    x56 = x_dot*y_dot
-    x57 = (2.0*x38 - x2)*x55/x8 + (x2 + 2.0*x27)*x37/x8 + x10*x56/x8 - x27*x37/x8
-    x58 = g*x17/x20
-    x59 = x16*x52/x21 + 0.5*x54 + 2.0*x57 - x22*x52/x21 + x58
-    x60 = x59 + x47*x50/x7 - 2.0*x49*x31/x7
-    x61 = m*(x51 - x60*x44/x2)/x46
-    x62 = x14*x53 + x0*(3.0*x1 + x14)
-    x63 = x14*x15 + 3.0*x1*x15 - 2.0*x1*x14
-    x64 = -2.0*x11
-    x65 = x1 - 0.25*x2
-    x66 = (x2 - 2.0*x12)*x55/x8 - (x2 - 2.0*x4)*x37/x8 - x64*x55/x8 - x0*(4.0*x65)*x56/x8
-    x67 = x58 + (0.5*x54 + x62*x18/x21 + x63*x18/x21 + 2.0*x66)
-    x68 = -4.0*x65
-    x69 = c1*x_dot
-    x70 = (
-        x0*x68*x5/x8 + x63*x69/x21 + x38*x68*x9/x8 + (x2*x27 + 2.0*x1*x2 - 4.0*x1*x27)*x5/x8
-        + x62*x69/x21 - 0.5*c2*(2.0*cos_c3 + x23*(x14 + (x1 + 2.0*x14))/x20)
-        - 4.0*x64*x29/x8
-    )
-    x71 = x70 - g*x53/x20 + x64*x48/x7 - 2.0*x49*x39/x7
-    x72 = m*(x67 + 2.0*x17*x48/x7 + x*x49*x64/x7 - x71*x44/x2)
-    x73 = x72/x46
-    x74 = x*x28/x7 - y_dot*x31/x7
-    x75 = x34 + x33
-    x76 = 2.0*(-(x_dot*x40/x7 + x74)) + x75
-    x77 = y_*x43
-    x78 = m*x*(2.0*(x_dot*x4 - y_dot*x17) - x2*x76*x77)/(x7*x46)
-    x79 = y_dot*x38 - x28
-    x80 = 2.0*(-(y_dot*x35/x7 + x74)) + x75 + 2.0*x79*x45/x8
-    x81 = m*x80/x46
+    x72 = x71 - g*x62/x17 + x65*x50/x7 + 2.0*x51*x41/x7
+    x73 = m*(x68 + 2.0*x22*x50/x7 - x*x51*x65/x7 - x72*x46/x2)
+    x74 = x73/x48
+    x75 = x*x29/x7 - y_dot*x32/x7
+    x76 = x36 + x35
+    x77 = 2.0*(-(x_dot*x42/x7 + x75)) + x76
+    x78 = y_*x45
+    x79 = m*x*(2.0*(x_dot*x4 - y_dot*x22) - x2*x77*x78)/(x7*x48)
+    x80 = y_dot*x40 - x29
+    x81 = 2.0*(-(y_dot*x37/x7 + x75)) + x76 + 2.0*x80*x47/x8
+    x82 = m*x81/x48
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
-        (x61, -x73, x78, x81),
+        (x61, -x74, x79, x82),
         (
-            -(x60 - x61*x17/x2)*x43,
-            (x71 - x73*x17/x2)*x43,
-            -(x76 - x78*x17/x2)*x43,
-            (2.0*x79 + x*x2*x81)*x77/x7,
+            -(x60 - x61*x22/x2)*x45,
+            (x72 - x74*x22/x2)*x45,
+            -(x77 - x79*x22/x2)*x45,
+            (2.0*x80 + x*x2*x82)*x78/x7,
         ),
     )
 
@@ -472,15 +465,12 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, l, g, Omega, latitude = params
     # terms of the parameters alone
     c0 = l*l
+    c1 = Omega*Omega
     cos_latitude = cos(latitude)
-    c1 = Omega*cos_latitude
-    c2 = Omega*Omega
-    c3 = 2.0*latitude
-    cos_c3 = cos(c3)
-    c4 = cos_c3 - 1.0
-    sin_c3 = sin(c3)
     sin_latitude = sin(latitude)
-    c5 = sin_c3*c2
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c3 = Omega*cos_latitude
+    c4 = cos_latitude*c1
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
@@ -493,90 +483,88 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x8 = x2*x7
     x9 = y_dot*y_dot
     x10 = x1*x3
-    x11 = x1 - 0.5*x2
-    x12 = 2.0*x11
-    x13 = sqrt(-x2)
-    x14 = x13*x13
-    x15 = x14 - x0
-    x16 = 4.0*x14 - 3.0*x15
-    x17 = x*y_
-    x18 = c1*y_dot
-    x19 = x17*x18
-    x20 = x13*x14
-    x21 = x14*x20
-    x22 = x14 + (3.0*x0 + 2.0*x14)
-    x23 = sin_c3*y_
-    x24 = c4 + x23/x13
-    x25 = x*x17
-    x26 = x0 - 0.5*x2
-    x27 = -2.0*x26
-    x28 = x_dot*x17
-    x29 = y_dot*x28
-    x30 = (
-        x3*x6/x8 + x9*x10/x8 + (4.0*x0*x12 + 2.0*x0*x2 - x2*x12)*x9/x8 + x16*x19/x21
-        - x22*x19/x21 - 0.5*c2*(x24 + sin_c3*x25/x20) - 4.0*x27*x29/x8
+    x11 = sqrt(-x2)
+    x12 = cos_latitude*x11
+    x13 = sin_latitude*y_ + x12
+    x14 = cos_latitude*x13
+    x15 = c2 - x14/x11
+    x16 = x11*x11
+    x17 = x11*x16
+    x18 = x1 - 0.5*x2
+    x19 = 2.0*x18
+    x20 = x16 - x0
+    x21 = 4.0*x16 - 3.0*x20
+    x22 = x*y_
+    x23 = c3*y_dot
+    x24 = x22*x23
+    x25 = x16*x17
+    x26 = x16 + (3.0*x0 + 2.0*x16)
+    x27 = x0 - 0.5*x2
+    x28 = -2.0*x27
+    x29 = x_dot*x22
+    x30 = y_dot*x29
+    x31 = (
+        x3*x6/x8 + x9*x10/x8 + c1*(x15 - cos_latitude*x0*(x13 - x12)/x17)
+        + (4.0*x0*x19 + 2.0*x0*x2 - x2*x19)*x9/x8 + x21*x24/x25 - x26*x24/x25
+        - 4.0*x28*x30/x8
     )
-    x31 = y_*x17
-    x32 = cos_latitude*y_
-    x33 = Omega*(sin_latitude - x32/x13 - cos_latitude*x25/x20)
-    x34 = Omega*(sin_latitude - x15*x32/x20)
-    x35 = x*x12
-    x36 = (
-        x*x6/x7 + x9*x31/x7 + y_dot*x33 + y_dot*x34 - 0.5*c2*x*x24 - 2.0*x*x29/x7
-        - x9*x35/x7
+    x32 = y_*x22
+    x33 = cos_latitude*y_
+    x34 = sin_latitude - x33/x11
+    x35 = Omega*(x34 - cos_latitude*x*x22/x17)
+    x36 = Omega*(sin_latitude - x20*x33/x17)
+    x37 = x*x19
+    x38 = x*x6/x7 + x9*x32/x7 + y_dot*x35 + c1*x*x15 + y_dot*x36 - 2.0*x*x30/x7 - x9*x37/x7
+    x39 = x_dot*x29
+    x40 = x2 - x1
+    x41 = y_*x40
+    x42 = y_*x28
+    x43 = (
+        x*x39/x7 + x9*x41/x7 + c1*x13*x34 + x5*x42/x7 - x_dot*x36 - 2.0*y_*x30/x7
+        - x_dot*x35
     )
-    x37 = x_dot*x28
-    x38 = x2 - x1
-    x39 = y_*x38
-    x40 = y_*x27
-    x41 = (
-        x_dot*x34 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x13 - x1/x13)) + 2.0*y_*x29/x7
-        + x_dot*x33 - x*x37/x7 - x9*x39/x7 - x5*x40/x7
+    x44 = x43 - g*y_/x11
+    x45 = m*(1.0/(m*(1.0 - x1/x2)))
+    x46 = x22*x45
+    x47 = x45*x32
+    x48 = m*(1.0 - x0/x2 - x*x47/x7)
+    x49 = m*(x38 - g*x/x11 + x44*x46/x2)/x48
+    x50 = x*x49
+    x51 = (x44 + x49*x22/x2)*x45
+    x52 = y_*(2.0*x27)
+    x53 = x31 - g*(x0 + x16)/x17 + 2.0*x4*x50/x7 - x51*x52/x7
+    x54 = c3*x29
+    x55 = c4*x*(y_*x13 + x16*x34)/x17
+    x56 = x22*x9
+    x57 = x_dot*y_dot
+    x58 = (2.0*x40 - x2)*x56/x8 + (x2 + 2.0*x28)*x39/x8 + x10*x57/x8 - x28*x39/x8
+    x59 = g*x22/x17
+    x60 = x21*x54/x25 + x55 + 2.0*x58 - x26*x54/x25 + x59 + x49*x52/x7 + 2.0*x51*x32/x7
+    x61 = m*(x53 - x60*x46/x2)/x48
+    x62 = x1 + x16
+    x63 = x16*x62 + x0*(3.0*x1 + x16)
+    x64 = x16*x20 + 3.0*x1*x20 - 2.0*x1*x16
+    x65 = -2.0*x18
+    x66 = x1 - 0.25*x2
+    x67 = (x2 - 2.0*x19)*x56/x8 - (x2 - 2.0*x4)*x39/x8 - x65*x56/x8 - x0*(4.0*x66)*x57/x8
+    x68 = x59 + (x55 + x63*x23/x25 + x64*x23/x25 + 2.0*x67)
+    x69 = -4.0*x66
+    x70 = c3*x_dot
+    x71 = (
+        x0*x69*x5/x8 + x64*x70/x25 + x40*x69*x9/x8 + (x2*x28 + 2.0*x1*x2 - 4.0*x1*x28)*x5/x8
+        + x63*x70/x25 - c1*(x14*x62/x17 - x34*x34) - 4.0*x65*x30/x8
     )
-    x42 = x41 + g*y_/x13
-    x43 = m*(1.0/(m*(1.0 - x1/x2)))
-    x44 = x17*x43
-    x45 = x43*x31
-    x46 = m*(1.0 - x0/x2 - x*x45/x7)
-    x47 = m*(x36 - g*x/x13 - x42*x44/x2)/x46
-    x48 = x*x47
-    x49 = (x42 - x47*x17/x2)*x43
-    x50 = y_*(2.0*x26)
-    x51 = x30 - g*(x0 + x14)/x20 + 2.0*x4*x48/x7 + x49*x50/x7
-    x52 = c1*x28
-    x53 = x1 + x14
-    x54 = c5*x*x53/x20
-    x55 = x17*x9
-    x56 = x_dot*y_dot
-    x57 = (2.0*x38 - x2)*x55/x8 + (x2 + 2.0*x27)*x37/x8 + x10*x56/x8 - x27*x37/x8
-    x58 = g*x17/x20
-    x59 = x16*x52/x21 + 0.5*x54 + 2.0*x57 - x22*x52/x21 + x58
-    x60 = x59 + x47*x50/x7 - 2.0*x49*x31/x7
-    x61 = m*(x51 - x60*x44/x2)/x46
-    x62 = x14*x53 + x0*(3.0*x1 + x14)
-    x63 = x14*x15 + 3.0*x1*x15 - 2.0*x1*x14
-    x64 = -2.0*x11
-    x65 = x1 - 0.25*x2
-    x66 = (x2 - 2.0*x12)*x55/x8 - (x2 - 2.0*x4)*x37/x8 - x64*x55/x8 - x0*(4.0*x65)*x56/x8
-    x67 = x58 + (0.5*x54 + x62*x18/x21 + x63*x18/x21 + 2.0*x66)
-    x68 = -4.0*x65
-    x69 = c1*x_dot
-    x70 = (
-        x0*x68*x5/x8 + x63*x69/x21 + x38*x68*x9/x8 + (x2*x27 + 2.0*x1*x2 - 4.0*x1*x27)*x5/x8
-        + x62*x69/x21 - 0.5*c2*(2.0*cos_c3 + x23*(x14 + (x1 + 2.0*x14))/x20)
-        - 4.0*x64*x29/x8
-    )
-    x71 = x70 - g*x53/x20 + x64*x48/x7 - 2.0*x49*x39/x7
-    x72 = m*(x67 + 2.0*x17*x48/x7 + x*x49*x64/x7 - x71*x44/x2)
-    x73 = x72/x46
-    x74 = x*x28/x7 - y_dot*x31/x7
-    x75 = x34 + x33
-    x76 = 2.0*(-(x_dot*x40/x7 + x74)) + x75
-    x77 = y_*x43
-    x78 = m*x*(2.0*(x_dot*x4 - y_dot*x17) - x2*x76*x77)/(x7*x46)
-    x79 = y_dot*x38 - x28
-    x80 = 2.0*(-(y_dot*x35/x7 + x74)) + x75 + 2.0*x79*x45/x8
-    x81 = m*x80/x46
+    x72 = x71 - g*x62/x17 + x65*x50/x7 + 2.0*x51*x41/x7
+    x73 = m*(x68 + 2.0*x22*x50/x7 - x*x51*x65/x7 - x72*x46/x2)
+    x74 = x73/x48
+    x75 = x*x29/x7 - y_dot*x32/x7
+    x76 = x36 + x35
+    x77 = 2.0*(-(x_dot*x42/x7 + x75)) + x76
+    x78 = y_*x45
+    x79 = m*x*(2.0*(x_dot*x4 - y_dot*x22) - x2*x77*x78)/(x7*x48)
+    x80 = y_dot*x40 - x29
+    x81 = 2.0*(-(y_dot*x37/x7 + x75)) + x76 + 2.0*x80*x47/x8
+    x82 = m*x81/x48
     # outputs
     return _stacked(
         (4, 4),
@@ -590,20 +578,20 @@ def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         1.0,
         x61,
-        -x73,
-        x78,
-        x81,
-        -(x60 - x61*x17/x2)*x43,
-        (x71 - x73*x17/x2)*x43,
-        -(x76 - x78*x17/x2)*x43,
-        (2.0*x79 + x*x2*x81)*x77/x7,
+        -x74,
+        x79,
+        x82,
+        -(x60 - x61*x22/x2)*x45,
+        (x72 - x74*x22/x2)*x45,
+        -(x77 - x79*x22/x2)*x45,
+        (2.0*x80 + x*x2*x82)*x78/x7,
     )
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    286 operations, 12 of them on parameters alone.
+    288 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -627,14 +615,11 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c1 = l*l
     cos_latitude = cos(latitude)
     c2 = Omega*cos_latitude
-    c3 = 2.0*latitude
-    sin_c3 = sin(c3)
-    c4 = Omega*Omega
-    c5 = sin_c3*c4
+    c3 = Omega*Omega
+    c4 = cos_latitude*c3
     sin_latitude = sin(latitude)
-    cos_c3 = cos(c3)
-    c6 = cos_c3 - 1.0
-    c7 = m*Omega
+    c5 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c6 = m*Omega
     # intermediate terms
     x0 = x*y_
     x1 = y_*y_dot
@@ -650,75 +635,78 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x11 = c2*(3.0*x4 + x10)
     x12 = x9*x10
     x13 = x10*x12
-    x14 = x6 - x4
-    x15 = x_dot*x_dot
-    x16 = x*x15
-    x17 = 2.0*x5 - x6
-    x18 = y_dot*(x*y_dot)
-    x19 = x*x0
-    x20 = x_dot*y_dot*x19
-    x21 = x10 - x4
-    x22 = c2*(2.0*x10 - 3.0*x21)
-    x23 = (
-        4.0*x3/x8 + x1*x11/x13 + 0.5*c5*x0/x12
-        + 2.0*((2.0*x14 - x6)*x16/x8 - (x6 + 2.0*x17)*x18/x8) - 8.0*x20/x8 - x1*x22/x13
+    x14 = cos_latitude*x9
+    x15 = sin_latitude*y_
+    x16 = x14 + x15
+    x17 = x6 - x4
+    x18 = x_dot*x_dot
+    x19 = x*x18
+    x20 = 2.0*x5 - x6
+    x21 = y_dot*(x*y_dot)
+    x22 = x*x0
+    x23 = x_dot*y_dot*x22
+    x24 = x10 - x4
+    x25 = c2*(2.0*x10 - 3.0*x24)
+    x26 = (
+        4.0*x3/x8 + x1*x11/x13 + c4*x*(x16 - x14)/x12
+        + 2.0*((2.0*x17 - x6)*x19/x8 - (x6 + 2.0*x20)*x21/x8) - 8.0*x23/x8 - x1*x25/x13
     )
-    x24 = g*x
-    x25 = cos_latitude*y_
-    x26 = sin_latitude - x25/x9 - cos_latitude*x19/x12
-    x27 = Omega*y_dot
-    x28 = sin_latitude - x21*x25/x12
-    x29 = sin_c3*y_
-    x30 = c6 + x29/x9
-    x31 = x14*x16/x7 + x3/x7 + x26*x27 + x28*x27 - 0.5*c4*x*x30 - 2.0*x20/x7 - x17*x18/x7
-    x32 = Omega*x_dot
-    x33 = cos_c3*y_
-    x34 = x9 - x5/x9
-    x35 = 2.0*x33 - sin_c3*x34
-    x36 = x_dot*x0*x1
-    x37 = x19*x15
-    x38 = x6 - x5
-    x39 = x6 - 2.0*x4
-    x40 = y_*x15
-    x41 = x28*x32 + 0.5*c4*x35 + 2.0*x36/x7 + x26*x32 - x37/x7 - x38*x2/x7 - x39*x40/x7
-    x42 = g*y_
-    x43 = x41 + x42/x9
-    x44 = m*(1.0/(m*(1.0 - x5/x6)))
-    x45 = x0*x44
-    x46 = y_*x44
-    x47 = m*(1.0 - x4/x6 - x19*x46/x7)
-    x48 = m*(x31 - x24/x9 - x43*x45/x6)/x47
-    x49 = x48*x0
-    x50 = (x43 - x49/x6)*x44
-    x51 = y_*x_dot
-    x52 = (
-        4.0*x37/x8 + x51*x22/x13 + 0.5*c5*(x5 + x10)/x12
-        + 2.0*((2.0*x38 - x6)*x2/x8 + (2.0*x39 - x6)*x40/x8) - 8.0*x36/x8 - x51*x11/x13
+    x27 = g*x
+    x28 = cos_latitude*y_
+    x29 = sin_latitude - x28/x9
+    x30 = x29 - cos_latitude*x22/x12
+    x31 = Omega*y_dot
+    x32 = c5 - cos_latitude*x16/x9
+    x33 = sin_latitude - x24*x28/x12
+    x34 = x17*x19/x7 + x3/x7 + x30*x31 + c3*x*x32 + x33*x31 - 2.0*x23/x7 - x20*x21/x7
+    x35 = x22*x18
+    x36 = x6 - x5
+    x37 = x16*x29
+    x38 = x6 - 2.0*x4
+    x39 = y_*x18
+    x40 = Omega*x_dot
+    x41 = x_dot*x0*x1
+    x42 = x35/x7 + x36*x2/x7 + c3*x37 + x38*x39/x7 - x33*x40 - 2.0*x41/x7 - x30*x40
+    x43 = g*y_
+    x44 = x42 - x43/x9
+    x45 = m*(1.0/(m*(1.0 - x5/x6)))
+    x46 = x0*x45
+    x47 = y_*x45
+    x48 = m*(1.0 - x4/x6 - x22*x47/x7)
+    x49 = m*(x34 - x27/x9 + x44*x46/x6)/x48
+    x50 = x49*x0
+    x51 = (x44 + x50/x6)*x45
+    x52 = y_*x_dot
+    x53 = (
+        4.0*x35/x8 + x52*x25/x13 + c4*(y_*x16 + x10*x29)/x12
+        + 2.0*((2.0*x36 - x6)*x2/x8 + (2.0*x38 - x6)*x39/x8) - 8.0*x41/x8 - x52*x11/x13
     )
-    x53 = x52 + x42/x12 + 2.0*(x49/x7 - x5*x50/x7)
-    x54 = x23 + x24/x12 + 2.0*(x4*x48/x7 - x50*x0/x7) + x53*x45/x6
-    x55 = c0*x54/x47
-    x56 = m*x*(1.0 + x5*x44/x6)/(x47*x9)
-    x57 = Omega*x
-    x58 = x_dot*x28 + Omega*x35 + x_dot*x26
-    x59 = m*(y_dot*x26 + y_dot*x28 - x30*x57 - x58*x45/x6)/x47
-    x60 = sin_latitude*y_
-    x61 = cos_latitude + x60/x9 + sin_latitude*x19/x12
-    x62 = cos_latitude + x21*x60/x12
-    x63 = x_dot*x62 + x_dot*x61 - Omega*(2.0*x29 + cos_c3*x34)
-    x64 = y_dot*x61 + (sin_c3 - x33/x9)*x57 + y_dot*x62 - x63*x45/x6
-    x65 = c7*x64/x47
+    x54 = x53 + x43/x12 + 2.0*(x50/x7 + x5*x51/x7)
+    x55 = x26 + x27/x12 + 2.0*(x4*x49/x7 + x51*x0/x7) + x54*x46/x6
+    x56 = c0*x55/x48
+    x57 = m*x*(1.0 + x5*x45/x6)/(x48*x9)
+    x58 = Omega*x
+    x59 = x_dot*x33 + x_dot*x30 - 2.0*Omega*x37
+    x60 = m*(y_dot*x30 + 2.0*x32*x58 + y_dot*x33 - x59*x46/x6)
+    x61 = x60/x48
+    x62 = cos_latitude + x15/x9
+    x63 = x62 + sin_latitude*x22/x12
+    x64 = x28 - sin_latitude*x9
+    x65 = cos_latitude + x15*x24/x12
+    x66 = y_dot*x63 + (sin_latitude*x16 - cos_latitude*x64)*x58/x9 + y_dot*x65
+    x67 = x_dot*x65 + x_dot*x63 - Omega*(x16*x62 + x29*x64)
+    x68 = c6*(x66 - x67*x46/x6)/x48
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, x55, -x56, x59, x65),
+        (0.0, x56, -x57, x61, x68),
         (
             0.0,
-            (l*x53 + x55*x0/x6)*x44,
-            -(1.0/x9 + x*x56/x6)*x46,
-            -(x58 - x59*x0/x6)*x44,
-            -(Omega*x63 - x65*x0/x6)*x44,
+            (l*x54 + x56*x0/x6)*x45,
+            -(1.0/x9 + x*x57/x6)*x47,
+            -(x59 - x61*x0/x6)*x45,
+            -(Omega*x67 - x68*x0/x6)*x45,
         ),
     )
 
@@ -735,14 +723,11 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c1 = l*l
     cos_latitude = cos(latitude)
     c2 = Omega*cos_latitude
-    c3 = 2.0*latitude
-    sin_c3 = sin(c3)
-    c4 = Omega*Omega
-    c5 = sin_c3*c4
+    c3 = Omega*Omega
+    c4 = cos_latitude*c3
     sin_latitude = sin(latitude)
-    cos_c3 = cos(c3)
-    c6 = cos_c3 - 1.0
-    c7 = m*Omega
+    c5 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c6 = m*Omega
     # intermediate terms
     x0 = x*y_
     x1 = y_*y_dot
@@ -758,64 +743,67 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x11 = c2*(3.0*x4 + x10)
     x12 = x9*x10
     x13 = x10*x12
-    x14 = x6 - x4
-    x15 = x_dot*x_dot
-    x16 = x*x15
-    x17 = 2.0*x5 - x6
-    x18 = y_dot*(x*y_dot)
-    x19 = x*x0
-    x20 = x_dot*y_dot*x19
-    x21 = x10 - x4
-    x22 = c2*(2.0*x10 - 3.0*x21)
-    x23 = (
-        4.0*x3/x8 + x1*x11/x13 + 0.5*c5*x0/x12
-        + 2.0*((2.0*x14 - x6)*x16/x8 - (x6 + 2.0*x17)*x18/x8) - 8.0*x20/x8 - x1*x22/x13
+    x14 = cos_latitude*x9
+    x15 = sin_latitude*y_
+    x16 = x14 + x15
+    x17 = x6 - x4
+    x18 = x_dot*x_dot
+    x19 = x*x18
+    x20 = 2.0*x5 - x6
+    x21 = y_dot*(x*y_dot)
+    x22 = x*x0
+    x23 = x_dot*y_dot*x22
+    x24 = x10 - x4
+    x25 = c2*(2.0*x10 - 3.0*x24)
+    x26 = (
+        4.0*x3/x8 + x1*x11/x13 + c4*x*(x16 - x14)/x12
+        + 2.0*((2.0*x17 - x6)*x19/x8 - (x6 + 2.0*x20)*x21/x8) - 8.0*x23/x8 - x1*x25/x13
     )
-    x24 = g*x
-    x25 = cos_latitude*y_
-    x26 = sin_latitude - x25/x9 - cos_latitude*x19/x12
-    x27 = Omega*y_dot
-    x28 = sin_latitude - x21*x25/x12
-    x29 = sin_c3*y_
-    x30 = c6 + x29/x9
-    x31 = x14*x16/x7 + x3/x7 + x26*x27 + x28*x27 - 0.5*c4*x*x30 - 2.0*x20/x7 - x17*x18/x7
-    x32 = Omega*x_dot
-    x33 = cos_c3*y_
-    x34 = x9 - x5/x9
-    x35 = 2.0*x33 - sin_c3*x34
-    x36 = x_dot*x0*x1
-    x37 = x19*x15
-    x38 = x6 - x5
-    x39 = x6 - 2.0*x4
-    x40 = y_*x15
-    x41 = x28*x32 + 0.5*c4*x35 + 2.0*x36/x7 + x26*x32 - x37/x7 - x38*x2/x7 - x39*x40/x7
-    x42 = g*y_
-    x43 = x41 + x42/x9
-    x44 = m*(1.0/(m*(1.0 - x5/x6)))
-    x45 = x0*x44
-    x46 = y_*x44
-    x47 = m*(1.0 - x4/x6 - x19*x46/x7)
-    x48 = m*(x31 - x24/x9 - x43*x45/x6)/x47
-    x49 = x48*x0
-    x50 = (x43 - x49/x6)*x44
-    x51 = y_*x_dot
-    x52 = (
-        4.0*x37/x8 + x51*x22/x13 + 0.5*c5*(x5 + x10)/x12
-        + 2.0*((2.0*x38 - x6)*x2/x8 + (2.0*x39 - x6)*x40/x8) - 8.0*x36/x8 - x51*x11/x13
+    x27 = g*x
+    x28 = cos_latitude*y_
+    x29 = sin_latitude - x28/x9
+    x30 = x29 - cos_latitude*x22/x12
+    x31 = Omega*y_dot
+    x32 = c5 - cos_latitude*x16/x9
+    x33 = sin_latitude - x24*x28/x12
+    x34 = x17*x19/x7 + x3/x7 + x30*x31 + c3*x*x32 + x33*x31 - 2.0*x23/x7 - x20*x21/x7
+    x35 = x22*x18
+    x36 = x6 - x5
+    x37 = x16*x29
+    x38 = x6 - 2.0*x4
+    x39 = y_*x18
+    x40 = Omega*x_dot
+    x41 = x_dot*x0*x1
+    x42 = x35/x7 + x36*x2/x7 + c3*x37 + x38*x39/x7 - x33*x40 - 2.0*x41/x7 - x30*x40
+    x43 = g*y_
+    x44 = x42 - x43/x9
+    x45 = m*(1.0/(m*(1.0 - x5/x6)))
+    x46 = x0*x45
+    x47 = y_*x45
+    x48 = m*(1.0 - x4/x6 - x22*x47/x7)
+    x49 = m*(x34 - x27/x9 + x44*x46/x6)/x48
+    x50 = x49*x0
+    x51 = (x44 + x50/x6)*x45
+    x52 = y_*x_dot
+    x53 = (
+        4.0*x35/x8 + x52*x25/x13 + c4*(y_*x16 + x10*x29)/x12
+        + 2.0*((2.0*x36 - x6)*x2/x8 + (2.0*x38 - x6)*x39/x8) - 8.0*x41/x8 - x52*x11/x13
     )
-    x53 = x52 + x42/x12 + 2.0*(x49/x7 - x5*x50/x7)
-    x54 = x23 + x24/x12 + 2.0*(x4*x48/x7 - x50*x0/x7) + x53*x45/x6
-    x55 = c0*x54/x47
-    x56 = m*x*(1.0 + x5*x44/x6)/(x47*x9)
-    x57 = Omega*x
-    x58 = x_dot*x28 + Omega*x35 + x_dot*x26
-    x59 = m*(y_dot*x26 + y_dot*x28 - x30*x57 - x58*x45/x6)/x47
-    x60 = sin_latitude*y_
-    x61 = cos_latitude + x60/x9 + sin_latitude*x19/x12
-    x62 = cos_latitude + x21*x60/x12
-    x63 = x_dot*x62 + x_dot*x61 - Omega*(2.0*x29 + cos_c3*x34)
-    x64 = y_dot*x61 + (sin_c3 - x33/x9)*x57 + y_dot*x62 - x63*x45/x6
-    x65 = c7*x64/x47
+    x54 = x53 + x43/x12 + 2.0*(x50/x7 + x5*x51/x7)
+    x55 = x26 + x27/x12 + 2.0*(x4*x49/x7 + x51*x0/x7) + x54*x46/x6
+    x56 = c0*x55/x48
+    x57 = m*x*(1.0 + x5*x45/x6)/(x48*x9)
+    x58 = Omega*x
+    x59 = x_dot*x33 + x_dot*x30 - 2.0*Omega*x37
+    x60 = m*(y_dot*x30 + 2.0*x32*x58 + y_dot*x33 - x59*x46/x6)
+    x61 = x60/x48
+    x62 = cos_latitude + x15/x9
+    x63 = x62 + sin_latitude*x22/x12
+    x64 = x28 - sin_latitude*x9
+    x65 = cos_latitude + x15*x24/x12
+    x66 = y_dot*x63 + (sin_latitude*x16 - cos_latitude*x64)*x58/x9 + y_dot*x65
+    x67 = x_dot*x65 + x_dot*x63 - Omega*(x16*x62 + x29*x64)
+    x68 = c6*(x66 - x67*x46/x6)/x48
     # outputs
     return _stacked(
         (4, 5),
@@ -831,22 +819,22 @@ def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         0.0,
         0.0,
-        x55,
-        -x56,
-        x59,
-        x65,
+        x56,
+        -x57,
+        x61,
+        x68,
         0.0,
-        (l*x53 + x55*x0/x6)*x44,
-        -(1.0/x9 + x*x56/x6)*x46,
-        -(x58 - x59*x0/x6)*x44,
-        -(Omega*x63 - x65*x0/x6)*x44,
+        (l*x54 + x56*x0/x6)*x45,
+        -(1.0/x9 + x*x57/x6)*x47,
+        -(x59 - x61*x0/x6)*x45,
+        -(Omega*x67 - x68*x0/x6)*x45,
     )
 
 
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
 
-    41 operations, 5 of them on parameters alone.
+    41 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -868,19 +856,19 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # terms of the parameters alone
     c0 = l*l
     c1 = Omega*Omega
-    c2 = 2.0*latitude
-    sin_c2 = sin(c2)
-    cos_c2 = cos(c2)
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c2 = cos_latitude*cos_latitude
+    c3 = sin_latitude*sin_latitude
     # intermediate terms
-    x0 = y_*y_
-    x1 = x*x
-    x2 = x1 - c0
-    x3 = x0 + x2
-    x4 = sqrt(-x3)
-    x5 = sin_c2*y_*x4 + 0.5*(c0 + x1 - cos_c2*(2.0*x0 + x2))
-    x6 = c1*x5 - x_dot*x_dot*(1.0 - x1/x3) - y_dot*y_dot*(1.0 - x0/x3)
+    x0 = x*x
+    x1 = y_*y_
+    x2 = x0 + x1 - c0
+    x3 = sqrt(-x2)
+    x4 = sin_latitude*y_ + cos_latitude*x3
+    x5 = c1*(x4*x4 + c2*x0 + c3*x0) - x_dot*x_dot*(1.0 - x0/x2) - y_dot*y_dot*(1.0 - x1/x2)
     # outputs
-    return -m*(g*x4 + x_dot*x*y_*y_dot/x3 + 0.5*x6)
+    return -m*(g*x3 + x_dot*x*y_*y_dot/x2 + 0.5*x5)
 
 
 def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -893,19 +881,19 @@ def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     # terms of the parameters alone
     c0 = l*l
     c1 = Omega*Omega
-    c2 = 2.0*latitude
-    sin_c2 = sin(c2)
-    cos_c2 = cos(c2)
+    sin_latitude = sin(latitude)
+    cos_latitude = cos(latitude)
+    c2 = cos_latitude*cos_latitude
+    c3 = sin_latitude*sin_latitude
     # intermediate terms
-    x0 = y_*y_
-    x1 = x*x
-    x2 = x1 - c0
-    x3 = x0 + x2
-    x4 = sqrt(-x3)
-    x5 = sin_c2*y_*x4 + 0.5*(c0 + x1 - cos_c2*(2.0*x0 + x2))
-    x6 = c1*x5 - x_dot*x_dot*(1.0 - x1/x3) - y_dot*y_dot*(1.0 - x0/x3)
+    x0 = x*x
+    x1 = y_*y_
+    x2 = x0 + x1 - c0
+    x3 = sqrt(-x2)
+    x4 = sin_latitude*y_ + cos_latitude*x3
+    x5 = c1*(x4*x4 + c2*x0 + c3*x0) - x_dot*x_dot*(1.0 - x0/x2) - y_dot*y_dot*(1.0 - x1/x2)
     # outputs
-    return -m*(g*x4 + x_dot*x*y_*y_dot/x3 + 0.5*x6)
+    return -m*(g*x3 + x_dot*x*y_*y_dot/x2 + 0.5*x5)
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -1097,7 +1085,7 @@ def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    134 operations, 10 of them on parameters alone.
+    127 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -1122,45 +1110,43 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     cos_latitude = cos(latitude)
     c1 = l*l
     c2 = Omega*Omega
-    c3 = 2.0*latitude
-    cos_c3 = cos(c3)
-    c4 = cos_c3 - 1.0
-    sin_c3 = sin(c3)
-    c5 = Omega*cos_latitude
+    c3 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c4 = Omega*cos_latitude
     # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c1
-    x3 = sqrt(-x2)
-    x4 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x3 + x0/x3))
+    x0 = sin_latitude*y_
+    x1 = x*x
+    x2 = y_*y_
+    x3 = x1 + x2 - c1
+    x4 = sqrt(-x3)
     x5 = cos_latitude*y_
-    x6 = sin_latitude - x5/x3
+    x6 = sin_latitude - x5/x4
     x7 = p_y - c0*x*x6
-    x8 = 1.0/(m*(1.0 - x1/x2))
+    x8 = 1.0/(m*(1.0 - x2/x3))
     x9 = x*y_
     x10 = m*x9
     x11 = x8*x10
-    x12 = x2*x2
-    x13 = (x4 + x7*x11/x2)/(m*(1.0 - x0/x2 - x9*x11/x12))
-    x14 = x8*(x7 + x13*x10/x2)
-    x15 = x*x13
-    x16 = x13*x15
-    x17 = y_*x14
-    x18 = x3*x3
-    x19 = x3*x18
-    x20 = x14*x17
-    x21 = (
-        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y_/x3) + (x2 - x0)*x16/x12
-        + x13*(x2 - 2.0*x0)*x17/x12 - c5*(x18 - (x0 + 2.0*x18))*x15/x19 - x9*x20/x12
-        - Omega*x14*(x6 - cos_latitude*x*x9/x19)
+    x12 = p_x + c0*(x0 + cos_latitude*(x4 + x1/x4)) + x7*x11/x3
+    x13 = x3*x3
+    x14 = x12/(m*(1.0 - x1/x3 - x9*x11/x13))
+    x15 = x8*(x7 + x14*x10/x3)
+    x16 = x0 + cos_latitude*x4
+    x17 = x4*x4
+    x18 = x*x14
+    x19 = x4*x17
+    x20 = y_*x15
+    x21 = x15*x20
+    x22 = x14*x18
+    x23 = (
+        c2*x*(c3 - cos_latitude*x16/x4) + c4*(x17 - (x1 + 2.0*x17))*x18/x19 + x9*x21/x13
+        + Omega*x15*(x6 - cos_latitude*x*x9/x19) - g*x/x4 - (x3 - x1)*x22/x13
+        - x14*(x3 - 2.0*x1)*x20/x13
     )
-    x22 = (
-        g*y_/x3 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x3 - x1/x3))
-        + Omega*x13*(sin_latitude - x5*(x18 - x0)/x19) + (x2 - x1)*x20/x12
-        + c5*x*x14*(x1 + x18)/x19 - x9*x16/x12 - x14*(2.0*x1 - x2)*x15/x12
+    x24 = (
+        g*y_/x4 + Omega*x14*(sin_latitude - x5*(x17 - x1)/x19) + (x3 - x2)*x21/x13
+        + c4*x*x15*(x2 + x17)/x19 - c2*x6*x16 - x9*x22/x13 - x15*(2.0*x2 - x3)*x18/x13
     )
     # outputs
-    return (x13, x14, -m*x21, -m*x22)
+    return (x14, x15, m*x23, -m*x24)
 
 
 def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -1176,51 +1162,49 @@ def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     cos_latitude = cos(latitude)
     c1 = l*l
     c2 = Omega*Omega
-    c3 = 2.0*latitude
-    cos_c3 = cos(c3)
-    c4 = cos_c3 - 1.0
-    sin_c3 = sin(c3)
-    c5 = Omega*cos_latitude
+    c3 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c4 = Omega*cos_latitude
     # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c1
-    x3 = sqrt(-x2)
-    x4 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x3 + x0/x3))
+    x0 = sin_latitude*y_
+    x1 = x*x
+    x2 = y_*y_
+    x3 = x1 + x2 - c1
+    x4 = sqrt(-x3)
     x5 = cos_latitude*y_
-    x6 = sin_latitude - x5/x3
+    x6 = sin_latitude - x5/x4
     x7 = p_y - c0*x*x6
-    x8 = 1.0/(m*(1.0 - x1/x2))
+    x8 = 1.0/(m*(1.0 - x2/x3))
     x9 = x*y_
     x10 = m*x9
     x11 = x8*x10
-    x12 = x2*x2
-    x13 = (x4 + x7*x11/x2)/(m*(1.0 - x0/x2 - x9*x11/x12))
-    x14 = x8*(x7 + x13*x10/x2)
-    x15 = x*x13
-    x16 = x13*x15
-    x17 = y_*x14
-    x18 = x3*x3
-    x19 = x3*x18
-    x20 = x14*x17
-    x21 = (
-        g*x/x3 + 0.5*c2*x*(c4 + sin_c3*y_/x3) + (x2 - x0)*x16/x12
-        + x13*(x2 - 2.0*x0)*x17/x12 - c5*(x18 - (x0 + 2.0*x18))*x15/x19 - x9*x20/x12
-        - Omega*x14*(x6 - cos_latitude*x*x9/x19)
+    x12 = p_x + c0*(x0 + cos_latitude*(x4 + x1/x4)) + x7*x11/x3
+    x13 = x3*x3
+    x14 = x12/(m*(1.0 - x1/x3 - x9*x11/x13))
+    x15 = x8*(x7 + x14*x10/x3)
+    x16 = x0 + cos_latitude*x4
+    x17 = x4*x4
+    x18 = x*x14
+    x19 = x4*x17
+    x20 = y_*x15
+    x21 = x15*x20
+    x22 = x14*x18
+    x23 = (
+        c2*x*(c3 - cos_latitude*x16/x4) + c4*(x17 - (x1 + 2.0*x17))*x18/x19 + x9*x21/x13
+        + Omega*x15*(x6 - cos_latitude*x*x9/x19) - g*x/x4 - (x3 - x1)*x22/x13
+        - x14*(x3 - 2.0*x1)*x20/x13
     )
-    x22 = (
-        g*y_/x3 + 0.5*c2*(2.0*cos_c3*y_ - sin_c3*(x3 - x1/x3))
-        + Omega*x13*(sin_latitude - x5*(x18 - x0)/x19) + (x2 - x1)*x20/x12
-        + c5*x*x14*(x1 + x18)/x19 - x9*x16/x12 - x14*(2.0*x1 - x2)*x15/x12
+    x24 = (
+        g*y_/x4 + Omega*x14*(sin_latitude - x5*(x17 - x1)/x19) + (x3 - x2)*x21/x13
+        + c4*x*x15*(x2 + x17)/x19 - c2*x6*x16 - x9*x22/x13 - x15*(2.0*x2 - x3)*x18/x13
     )
     # outputs
-    return _stacked((4,), y[0], x13, x14, -m*x21, -m*x22)
+    return _stacked((4,), y[0], x14, x15, m*x23, -m*x24)
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    394 operations, 11 of them on parameters alone.
+    391 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -1246,112 +1230,111 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     cos_latitude = cos(latitude)
     c2 = Omega*cos_latitude
     c3 = Omega*Omega
-    c4 = 2.0*latitude
-    cos_c4 = cos(c4)
-    c5 = cos_c4 - 1.0
-    sin_c4 = sin(c4)
-    c6 = sin_c4*c3
+    c4 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c5 = cos_latitude*c3
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
     x2 = x0 + x1 - c0
     x3 = x2 - x0
-    x4 = sqrt(-x2)
-    x5 = p_x + c1*(sin_latitude*y_ + cos_latitude*(x4 + x0/x4))
+    x4 = sin_latitude*y_
+    x5 = sqrt(-x2)
     x6 = cos_latitude*y_
-    x7 = sin_latitude - x6/x4
+    x7 = sin_latitude - x6/x5
     x8 = p_y - c1*x*x7
     x9 = x*y_
     x10 = 1.0/(m*(1.0 - x1/x2))
     x11 = m*x10
     x12 = x9*x11
-    x13 = x2*x2
-    x14 = m*(1.0 - x0/x2 - x12*x9/x13)
-    x15 = (x5 + x8*x12/x2)/x14
-    x16 = x*x15
-    x17 = x3*x16
-    x18 = x2 - 2.0*x0
-    x19 = x15*x9
-    x20 = x10*(x8 + m*x19/x2)
-    x21 = y_*x20
-    x22 = x18*x21
-    x23 = x4*x4
-    x24 = x23 - (x0 + 2.0*x23)
-    x25 = c2*x
-    x26 = x24*x25
-    x27 = x4*x23
-    x28 = x15*x18
-    x29 = x20*x9
-    x30 = x*x9
-    x31 = Omega*(x7 - cos_latitude*x30/x27)
-    x32 = y_*(x28 - 2.0*x29)/x13 - x31
-    x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x12/x2)/x14
+    x13 = p_x + c1*(x4 + cos_latitude*(x5 + x0/x5)) + x8*x12/x2
+    x14 = x2*x2
+    x15 = m*(1.0 - x0/x2 - x12*x9/x14)
+    x16 = x13/x15
+    x17 = x*x16
+    x18 = x3*x17
+    x19 = x2 - 2.0*x0
+    x20 = x16*x9
+    x21 = x10*(x8 + m*x20/x2)
+    x22 = y_*x21
+    x23 = x19*x22
+    x24 = x5*x5
+    x25 = x24 - (x0 + 2.0*x24)
+    x26 = c2*x
+    x27 = x25*x26
+    x28 = x5*x24
+    x29 = x16*x19
+    x30 = x21*x9
+    x31 = Omega*(x7 - cos_latitude*x*x9/x28)
+    x32 = y_*(x29 - 2.0*x30)/x14 - x31
+    x33 = m*((2.0*x18 + x23)/x14 - x27/x28 + x32*x12/x2)/x15
     x34 = x1 - 0.5*x2
     x35 = 2.0*x34
-    x36 = x20*x35
-    x37 = x23 - x0
-    x38 = Omega*(sin_latitude - x6*x37/x27)
-    x39 = x35*x16
+    x36 = x21*x35
+    x37 = x24 - x0
+    x38 = Omega*(sin_latitude - x6*x37/x28)
+    x39 = x35*x17
     x40 = x2 - x1
-    x41 = x40*x21
-    x42 = x1 + x23
-    x43 = x42*x25
-    x44 = (x39 - 2.0*x41)/x13 - x43/x27
-    x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x12/x2)/x14
-    x46 = 1.0/x14
-    x47 = x12/(x2*x14)
+    x41 = x40*x22
+    x42 = x1 + x24
+    x43 = x42*x26
+    x44 = (x39 - 2.0*x41)/x14 - x43/x28
+    x45 = m*(x*(2.0*x20 + x36)/x14 - x38 + x44*x12/x2)/x15
+    x46 = 1.0/x15
+    x47 = x12/(x2*x15)
     x48 = (x32 + x33*x9/x2)*x11
     x49 = (x44 + x45*x9/x2)*x11
-    x50 = sin_c4*y_
-    x51 = x2 - 4.0*x0
-    x52 = x15*x15
-    x53 = x2*x13
-    x54 = c2*x29
-    x55 = x23*x27
-    x56 = y_*x28
-    x57 = x20*x19
-    x58 = x9*x21
-    x59 = x17*x33/x13 - (x2 + 2.0*x18)*x57/x53 - x48*x58/x13
-    x60 = c2*x15
-    x61 = (
-        0.5*c3*(c5 + x50/x4 + sin_c4*x30/x27) + x3*x51*x52/x53
-        + (x23 + (3.0*x0 + 2.0*x23))*x54/x55 + x22*x33/x13 + x48*x56/x13 + g*(x0 + x23)/x27
-        + 2.0*x59 - x24*(3.0*x0 + x23)*x60/x55 - x51*x21*x21/x53 - x26*x33/x27 - x31*x48
+    x50 = cos_latitude*x5
+    x51 = x4 + x50
+    x52 = cos_latitude*x51
+    x53 = c3*(c4 - x52/x5 - cos_latitude*x0*(x51 - x50)/x28)
+    x54 = c2*x16
+    x55 = x24*x28
+    x56 = x2 - 4.0*x0
+    x57 = x2*x14
+    x58 = x21*x20
+    x59 = x9*x22
+    x60 = (x2 + 2.0*x19)*x58/x57 + x48*x59/x14 - x18*x33/x14
+    x61 = x16*x16
+    x62 = c2*x30
+    x63 = y_*x29
+    x64 = (
+        x53 + x25*(3.0*x0 + x24)*x54/x55 + x56*x22*x22/x57 + x27*x33/x28 + x31*x48 + 2.0*x60
+        - x3*x56*x61/x57 - (x24 + (3.0*x0 + 2.0*x24))*x62/x55 - x23*x33/x14 - x48*x63/x14
+        - g*(x0 + x24)/x28
     )
-    x62 = x15*x20
-    x63 = x23*x42
-    x64 = c2*x20
-    x65 = x20*x29
-    x66 = x15*x19*(x2 - 2.0*x3)/x53 + x49*x58/x13 - (-2.0*x34)*x65/x53 - x17*x45/x13
-    x67 = c6*x*x42/x27 + 2.0*g*x9/x27
-    x68 = c2*x19
-    x69 = (
-        (2.0*x1*x2 + x2*x18 - 4.0*x1*x18)*x62/x53 + (x63 + x0*(3.0*x1 + x23))*x64/x55
-        + x26*x45/x27 + x31*x49 + 2.0*x66 + 0.5*x67 - (2.0*x23 + 3.0*x24)*x68/x55
-        - x22*x45/x13 - x49*x56/x13
-    )
-    x70 = x*x33
-    x71 = (x2 - 2.0*x40)*x65/x53 + x41*x48/x13 - x28*x19/x53 - x19*x70/x13
+    x65 = x16*x21
+    x66 = x24*x42
+    x67 = c2*x21
+    x68 = x21*x30
+    x69 = x16*x20*(x2 - 2.0*x3)/x57 + x49*x59/x14 - (-2.0*x34)*x68/x57 - x18*x45/x14
+    x70 = c5*x*(y_*x51 + x7*x24)/x28 + g*x9/x28
+    x71 = c2*x20
     x72 = (
-        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x62/x53 + (4.0*x23 - 3.0*x37)*x68/x55
-        + (x63 + 3.0*x0*x42 - 2.0*x0*x23)*x64/x55 + x33*x38 + x43*x48/x27 + 2.0*x71
-        + 0.5*x67 - x36*x70/x13 - x39*x48/x13
+        (2.0*x1*x2 + x2*x19 - 4.0*x1*x19)*x65/x57 + (x66 + x0*(3.0*x1 + x24))*x67/x55
+        + x27*x45/x28 + x31*x49 + 2.0*x69 + x70 - (2.0*x24 + 3.0*x25)*x71/x55 - x23*x45/x14
+        - x49*x63/x14
     )
-    x73 = x1 - 0.25*x2
-    x74 = x*x45
-    x75 = x19*x74/x13 - (x2 - 2.0*x35)*x57/x53 - x41*x49/x13
-    x76 = (
-        0.5*c3*(2.0*cos_c4 + x50*(x23 + (x1 + 2.0*x23))/x27) + x0*(4.0*x73)*x52/x53
-        + x20*x20*x40*(-4.0*x73)/x53 + 3.0*x42*x54/x55 + x36*x74/x13 + x39*x49/x13
-        + g*x42/x27 + 2.0*x75 - (x23*x37 + 3.0*x1*x37 - 2.0*x1*x23)*x60/x55 - x38*x45
-        - x43*x49/x27
+    x73 = x*x33
+    x74 = (x2 - 2.0*x40)*x68/x57 + x41*x48/x14 - x29*x20/x57 - x20*x73/x14
+    x75 = (
+        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x65/x57 + (4.0*x24 - 3.0*x37)*x71/x55
+        + (x66 + 3.0*x0*x42 - 2.0*x0*x24)*x67/x55 + x33*x38 + x43*x48/x28 + 2.0*x74 + x70
+        - x36*x73/x14 - x39*x48/x14
+    )
+    x76 = x1 - 0.25*x2
+    x77 = x*x45
+    x78 = x20*x77/x14 - (x2 - 2.0*x35)*x58/x57 - x41*x49/x14
+    x79 = (
+        c3*(x42*x52/x28 - x7*x7) + x0*(4.0*x76)*x61/x57 + x21*x21*x40*(-4.0*x76)/x57
+        + 3.0*x42*x62/x55 + x36*x77/x14 + x39*x49/x14 + g*x42/x28 + 2.0*x78
+        - (x24*x37 + 3.0*x1*x37 - 2.0*x1*x24)*x54/x55 - x38*x45 - x43*x49/x28
     )
     # outputs
     return (
         (x33, -x45, x46, x47),
         (x48, -x49, x46*x12/x2, x10*(1.0 + m*x47*x9/x2)),
-        (-m*x61, -m*x69, -x33, -x48),
-        (-m*x72, -m*x76, x45, x49),
+        (m*x64, -m*x72, -x33, -x48),
+        (-m*x75, -m*x79, x45, x49),
     )
 
 
@@ -1369,105 +1352,104 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     cos_latitude = cos(latitude)
     c2 = Omega*cos_latitude
     c3 = Omega*Omega
-    c4 = 2.0*latitude
-    cos_c4 = cos(c4)
-    c5 = cos_c4 - 1.0
-    sin_c4 = sin(c4)
-    c6 = sin_c4*c3
+    c4 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c5 = cos_latitude*c3
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
     x2 = x0 + x1 - c0
     x3 = x2 - x0
-    x4 = sqrt(-x2)
-    x5 = p_x + c1*(sin_latitude*y_ + cos_latitude*(x4 + x0/x4))
+    x4 = sin_latitude*y_
+    x5 = sqrt(-x2)
     x6 = cos_latitude*y_
-    x7 = sin_latitude - x6/x4
+    x7 = sin_latitude - x6/x5
     x8 = p_y - c1*x*x7
     x9 = x*y_
     x10 = 1.0/(m*(1.0 - x1/x2))
     x11 = m*x10
     x12 = x9*x11
-    x13 = x2*x2
-    x14 = m*(1.0 - x0/x2 - x12*x9/x13)
-    x15 = (x5 + x8*x12/x2)/x14
-    x16 = x*x15
-    x17 = x3*x16
-    x18 = x2 - 2.0*x0
-    x19 = x15*x9
-    x20 = x10*(x8 + m*x19/x2)
-    x21 = y_*x20
-    x22 = x18*x21
-    x23 = x4*x4
-    x24 = x23 - (x0 + 2.0*x23)
-    x25 = c2*x
-    x26 = x24*x25
-    x27 = x4*x23
-    x28 = x15*x18
-    x29 = x20*x9
-    x30 = x*x9
-    x31 = Omega*(x7 - cos_latitude*x30/x27)
-    x32 = y_*(x28 - 2.0*x29)/x13 - x31
-    x33 = m*((2.0*x17 + x22)/x13 - x26/x27 + x32*x12/x2)/x14
+    x13 = p_x + c1*(x4 + cos_latitude*(x5 + x0/x5)) + x8*x12/x2
+    x14 = x2*x2
+    x15 = m*(1.0 - x0/x2 - x12*x9/x14)
+    x16 = x13/x15
+    x17 = x*x16
+    x18 = x3*x17
+    x19 = x2 - 2.0*x0
+    x20 = x16*x9
+    x21 = x10*(x8 + m*x20/x2)
+    x22 = y_*x21
+    x23 = x19*x22
+    x24 = x5*x5
+    x25 = x24 - (x0 + 2.0*x24)
+    x26 = c2*x
+    x27 = x25*x26
+    x28 = x5*x24
+    x29 = x16*x19
+    x30 = x21*x9
+    x31 = Omega*(x7 - cos_latitude*x*x9/x28)
+    x32 = y_*(x29 - 2.0*x30)/x14 - x31
+    x33 = m*((2.0*x18 + x23)/x14 - x27/x28 + x32*x12/x2)/x15
     x34 = x1 - 0.5*x2
     x35 = 2.0*x34
-    x36 = x20*x35
-    x37 = x23 - x0
-    x38 = Omega*(sin_latitude - x6*x37/x27)
-    x39 = x35*x16
+    x36 = x21*x35
+    x37 = x24 - x0
+    x38 = Omega*(sin_latitude - x6*x37/x28)
+    x39 = x35*x17
     x40 = x2 - x1
-    x41 = x40*x21
-    x42 = x1 + x23
-    x43 = x42*x25
-    x44 = (x39 - 2.0*x41)/x13 - x43/x27
-    x45 = m*(x*(2.0*x19 + x36)/x13 - x38 + x44*x12/x2)/x14
-    x46 = 1.0/x14
-    x47 = x12/(x2*x14)
+    x41 = x40*x22
+    x42 = x1 + x24
+    x43 = x42*x26
+    x44 = (x39 - 2.0*x41)/x14 - x43/x28
+    x45 = m*(x*(2.0*x20 + x36)/x14 - x38 + x44*x12/x2)/x15
+    x46 = 1.0/x15
+    x47 = x12/(x2*x15)
     x48 = (x32 + x33*x9/x2)*x11
     x49 = (x44 + x45*x9/x2)*x11
-    x50 = sin_c4*y_
-    x51 = x2 - 4.0*x0
-    x52 = x15*x15
-    x53 = x2*x13
-    x54 = c2*x29
-    x55 = x23*x27
-    x56 = y_*x28
-    x57 = x20*x19
-    x58 = x9*x21
-    x59 = x17*x33/x13 - (x2 + 2.0*x18)*x57/x53 - x48*x58/x13
-    x60 = c2*x15
-    x61 = (
-        0.5*c3*(c5 + x50/x4 + sin_c4*x30/x27) + x3*x51*x52/x53
-        + (x23 + (3.0*x0 + 2.0*x23))*x54/x55 + x22*x33/x13 + x48*x56/x13 + g*(x0 + x23)/x27
-        + 2.0*x59 - x24*(3.0*x0 + x23)*x60/x55 - x51*x21*x21/x53 - x26*x33/x27 - x31*x48
+    x50 = cos_latitude*x5
+    x51 = x4 + x50
+    x52 = cos_latitude*x51
+    x53 = c3*(c4 - x52/x5 - cos_latitude*x0*(x51 - x50)/x28)
+    x54 = c2*x16
+    x55 = x24*x28
+    x56 = x2 - 4.0*x0
+    x57 = x2*x14
+    x58 = x21*x20
+    x59 = x9*x22
+    x60 = (x2 + 2.0*x19)*x58/x57 + x48*x59/x14 - x18*x33/x14
+    x61 = x16*x16
+    x62 = c2*x30
+    x63 = y_*x29
+    x64 = (
+        x53 + x25*(3.0*x0 + x24)*x54/x55 + x56*x22*x22/x57 + x27*x33/x28 + x31*x48 + 2.0*x60
+        - x3*x56*x61/x57 - (x24 + (3.0*x0 + 2.0*x24))*x62/x55 - x23*x33/x14 - x48*x63/x14
+        - g*(x0 + x24)/x28
     )
-    x62 = x15*x20
-    x63 = x23*x42
-    x64 = c2*x20
-    x65 = x20*x29
-    x66 = x15*x19*(x2 - 2.0*x3)/x53 + x49*x58/x13 - (-2.0*x34)*x65/x53 - x17*x45/x13
-    x67 = c6*x*x42/x27 + 2.0*g*x9/x27
-    x68 = c2*x19
-    x69 = (
-        (2.0*x1*x2 + x2*x18 - 4.0*x1*x18)*x62/x53 + (x63 + x0*(3.0*x1 + x23))*x64/x55
-        + x26*x45/x27 + x31*x49 + 2.0*x66 + 0.5*x67 - (2.0*x23 + 3.0*x24)*x68/x55
-        - x22*x45/x13 - x49*x56/x13
-    )
-    x70 = x*x33
-    x71 = (x2 - 2.0*x40)*x65/x53 + x41*x48/x13 - x28*x19/x53 - x19*x70/x13
+    x65 = x16*x21
+    x66 = x24*x42
+    x67 = c2*x21
+    x68 = x21*x30
+    x69 = x16*x20*(x2 - 2.0*x3)/x57 + x49*x59/x14 - (-2.0*x34)*x68/x57 - x18*x45/x14
+    x70 = c5*x*(y_*x51 + x7*x24)/x28 + g*x9/x28
+    x71 = c2*x20
     x72 = (
-        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x62/x53 + (4.0*x23 - 3.0*x37)*x68/x55
-        + (x63 + 3.0*x0*x42 - 2.0*x0*x23)*x64/x55 + x33*x38 + x43*x48/x27 + 2.0*x71
-        + 0.5*x67 - x36*x70/x13 - x39*x48/x13
+        (2.0*x1*x2 + x2*x19 - 4.0*x1*x19)*x65/x57 + (x66 + x0*(3.0*x1 + x24))*x67/x55
+        + x27*x45/x28 + x31*x49 + 2.0*x69 + x70 - (2.0*x24 + 3.0*x25)*x71/x55 - x23*x45/x14
+        - x49*x63/x14
     )
-    x73 = x1 - 0.25*x2
-    x74 = x*x45
-    x75 = x19*x74/x13 - (x2 - 2.0*x35)*x57/x53 - x41*x49/x13
-    x76 = (
-        0.5*c3*(2.0*cos_c4 + x50*(x23 + (x1 + 2.0*x23))/x27) + x0*(4.0*x73)*x52/x53
-        + x20*x20*x40*(-4.0*x73)/x53 + 3.0*x42*x54/x55 + x36*x74/x13 + x39*x49/x13
-        + g*x42/x27 + 2.0*x75 - (x23*x37 + 3.0*x1*x37 - 2.0*x1*x23)*x60/x55 - x38*x45
-        - x43*x49/x27
+    x73 = x*x33
+    x74 = (x2 - 2.0*x40)*x68/x57 + x41*x48/x14 - x29*x20/x57 - x20*x73/x14
+    x75 = (
+        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x65/x57 + (4.0*x24 - 3.0*x37)*x71/x55
+        + (x66 + 3.0*x0*x42 - 2.0*x0*x24)*x67/x55 + x33*x38 + x43*x48/x28 + 2.0*x74 + x70
+        - x36*x73/x14 - x39*x48/x14
+    )
+    x76 = x1 - 0.25*x2
+    x77 = x*x45
+    x78 = x20*x77/x14 - (x2 - 2.0*x35)*x58/x57 - x41*x49/x14
+    x79 = (
+        c3*(x42*x52/x28 - x7*x7) + x0*(4.0*x76)*x61/x57 + x21*x21*x40*(-4.0*x76)/x57
+        + 3.0*x42*x62/x55 + x36*x77/x14 + x39*x49/x14 + g*x42/x28 + 2.0*x78
+        - (x24*x37 + 3.0*x1*x37 - 2.0*x1*x24)*x54/x55 - x38*x45 - x43*x49/x28
     )
     # outputs
     return _stacked(
@@ -1481,12 +1463,12 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         -x49,
         x46*x12/x2,
         x10*(1.0 + m*x47*x9/x2),
-        -m*x61,
-        -m*x69,
+        m*x64,
+        -m*x72,
         -x33,
         -x48,
-        -m*x72,
-        -m*x76,
+        -m*x75,
+        -m*x79,
         x45,
         x49,
     )
@@ -1495,7 +1477,7 @@ def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    69 operations, 8 of them on parameters alone.
+    67 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -1520,23 +1502,25 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     cos_latitude = cos(latitude)
     c1 = l*l
     c2 = Omega*Omega
-    c3 = 2.0*latitude
-    sin_c3 = sin(c3)
-    cos_c3 = cos(c3)
+    c3 = cos_latitude*cos_latitude
+    c4 = sin_latitude*sin_latitude
     # intermediate terms
-    x0 = y_*y_
+    x0 = sin_latitude*y_
     x1 = x*x
-    x2 = c1 - x1
-    x3 = x0 - x2
+    x2 = y_*y_
+    x3 = x1 + x2 - c1
     x4 = sqrt(-x3)
-    x5 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x4 + x1/x4))
-    x6 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
-    x7 = 1.0/(m*(1.0 - x0/x3))
-    x8 = x*(m*y_)
-    x9 = x7*x8
-    x10 = (x5 + x6*x9/x3)/(m*(1.0 - x1/x3 - y_*x*x9/(x3*x3)))
-    x11 = sin_c3*y_*x4 + 0.5*(c1 + x1 - cos_c3*(2.0*x0 - x2))
-    x12 = 0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4)
+    x5 = p_x + c0*(x0 + cos_latitude*(x4 + x1/x4))
+    x6 = 1.0/(m*(1.0 - x2/x3))
+    x7 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
+    x8 = m*y_
+    x9 = x*x8
+    x10 = (x5 + x6*x7*x9/x3)/(m*(1.0 - x1/x3 - y_*x1*x6*x8/(x3*x3)))
+    x11 = x0 + cos_latitude*x4
+    x12 = (
+        0.5*(x5*x10 + x7*(x6*(x7 + x10*x9/x3)))
+        - m*(0.5*c2*(x11*x11 + c3*x1 + c4*x1) + g*x4)
+    )
     # outputs
     return x12
 
@@ -1554,23 +1538,25 @@ def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     cos_latitude = cos(latitude)
     c1 = l*l
     c2 = Omega*Omega
-    c3 = 2.0*latitude
-    sin_c3 = sin(c3)
-    cos_c3 = cos(c3)
+    c3 = cos_latitude*cos_latitude
+    c4 = sin_latitude*sin_latitude
     # intermediate terms
-    x0 = y_*y_
+    x0 = sin_latitude*y_
     x1 = x*x
-    x2 = c1 - x1
-    x3 = x0 - x2
+    x2 = y_*y_
+    x3 = x1 + x2 - c1
     x4 = sqrt(-x3)
-    x5 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x4 + x1/x4))
-    x6 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
-    x7 = 1.0/(m*(1.0 - x0/x3))
-    x8 = x*(m*y_)
-    x9 = x7*x8
-    x10 = (x5 + x6*x9/x3)/(m*(1.0 - x1/x3 - y_*x*x9/(x3*x3)))
-    x11 = sin_c3*y_*x4 + 0.5*(c1 + x1 - cos_c3*(2.0*x0 - x2))
-    x12 = 0.5*(x5*x10 + x6*(x7*(x6 + x10*x8/x3))) - m*(0.5*c2*x11 + g*x4)
+    x5 = p_x + c0*(x0 + cos_latitude*(x4 + x1/x4))
+    x6 = 1.0/(m*(1.0 - x2/x3))
+    x7 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
+    x8 = m*y_
+    x9 = x*x8
+    x10 = (x5 + x6*x7*x9/x3)/(m*(1.0 - x1/x3 - y_*x1*x6*x8/(x3*x3)))
+    x11 = x0 + cos_latitude*x4
+    x12 = (
+        0.5*(x5*x10 + x7*(x6*(x7 + x10*x9/x3)))
+        - m*(0.5*c2*(x11*x11 + c3*x1 + c4*x1) + g*x4)
+    )
     # outputs
     return x12
 
@@ -1649,7 +1635,7 @@ def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    369 operations, 10 of them on parameters alone.
+    362 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -1671,116 +1657,113 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = l*l
-    c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
-    c4 = Omega*cos_latitude
-    c5 = sin_c2*c1
+    c1 = Omega*Omega
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c3 = Omega*cos_latitude
+    c4 = cos_latitude*c1
     # intermediate terms
-    x0 = x_dot*x_dot
-    x1 = x*x
-    x2 = y_*y_
-    x3 = x1 + x2 - c0
-    x4 = x1 - x3
-    x5 = x*x4
-    x6 = x3*x3
-    x7 = sin_c2*y_
-    x8 = sqrt(-x3)
-    x9 = c3 + x7/x8
-    x10 = x*y_
-    x11 = x_dot*x10
-    x12 = y_dot*x11
-    x13 = y_dot*y_dot
-    x14 = 2.0*x2 - x3
-    x15 = x*x14
-    x16 = x10*x13
-    x17 = cos_latitude*y_
-    x18 = x*x10
-    x19 = x8*x8
-    x20 = x8*x19
-    x21 = Omega*(sin_latitude - x17/x8 - cos_latitude*x18/x20)
-    x22 = x1 - x19
-    x23 = Omega*(sin_latitude + x17*x22/x20)
-    x24 = (
-        x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x*x12/x6 + x13*x15/x6 - y_*x16/x6 - y_dot*x21
-        - y_dot*x23
+    x0 = y_dot*y_dot
+    x1 = x*y_
+    x2 = y_*x1
+    x3 = x*x
+    x4 = y_*y_
+    x5 = x3 + x4 - c0
+    x6 = x5*x5
+    x7 = cos_latitude*y_
+    x8 = sqrt(-x5)
+    x9 = sin_latitude - x7/x8
+    x10 = x*x1
+    x11 = x8*x8
+    x12 = x8*x11
+    x13 = Omega*(x9 - cos_latitude*x10/x12)
+    x14 = cos_latitude*x8
+    x15 = sin_latitude*y_ + x14
+    x16 = cos_latitude*x15
+    x17 = c2 - x16/x8
+    x18 = x3 - x11
+    x19 = Omega*(sin_latitude + x7*x18/x12)
+    x20 = x_dot*x_dot
+    x21 = x3 - x5
+    x22 = x*x21
+    x23 = x_dot*x1
+    x24 = y_dot*x23
+    x25 = 2.0*x4 - x5
+    x26 = x*x25
+    x27 = (
+        x0*x2/x6 + y_dot*x13 + c1*x*x17 + y_dot*x19 - x20*x22/x6 - 2.0*x*x24/x6 - x0*x26/x6
     )
-    x25 = x2 - x3
-    x26 = y_*x25
-    x27 = 2.0*x1 - x3
-    x28 = y_*x27
-    x29 = x_dot*x11
-    x30 = (
-        x_dot*x23 + x13*x26/x6 + 0.5*c1*(2.0*cos_c2*y_ - sin_c2*(x8 - x2/x8)) + x0*x28/x6
-        + 2.0*y_*x12/x6 + x_dot*x21 - x*x29/x6
+    x28 = x4 - x5
+    x29 = y_*x28
+    x30 = 2.0*x3 - x5
+    x31 = y_*x30
+    x32 = x_dot*x23
+    x33 = (
+        x_dot*x19 + x0*x29/x6 + x20*x31/x6 + 2.0*y_*x24/x6 + x_dot*x13 - x*x32/x6
+        - c1*x9*x15
     )
-    x31 = x30 + g*y_/x8
-    x32 = m*(1.0/(m*(1.0 - x2/x3)))
-    x33 = x10*x32
-    x34 = m*(1.0 - x1/x3 - y_*x32*x18/x6)
-    x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34
-    x36 = (x31 + x35*x10/x3)*x32
-    x37 = 4.0*x1 - x3
-    x38 = x3*x6
-    x39 = 4.0*x19 + 3.0*x22
-    x40 = c4*y_dot
-    x41 = x10*x40
-    x42 = x20*x19
-    x43 = x2*x37
-    x44 = x19 + (3.0*x1 + 2.0*x19)
-    x45 = (
-        x4*x37*x0/x38 + 4.0*x27*x12/x38 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x38
-        + x39*x41/x42 - x13*x43/x38 - x44*x41/x42 - 0.5*c1*(x9 + sin_c2*x18/x20)
+    x34 = x33 + g*y_/x8
+    x35 = m*(1.0/(m*(1.0 - x4/x5)))
+    x36 = x1*x35
+    x37 = m*(1.0 - x3/x5 - x*x35*x2/x6)
+    x38 = m*(x27 - g*x/x8 - x34*x36/x5)/x37
+    x39 = (x34 - x38*x1/x5)*x35
+    x40 = 4.0*x3 - x5
+    x41 = x5*x6
+    x42 = 4.0*x11 + 3.0*x18
+    x43 = c3*y_dot
+    x44 = x1*x43
+    x45 = x12*x11
+    x46 = x4*x40
+    x47 = x11 + (3.0*x3 + 2.0*x11)
+    x48 = (
+        x21*x40*x20/x41 + c1*(x17 + cos_latitude*x3*(x14 - x15)/x12) + 4.0*x30*x24/x41
+        + (4.0*x3*x25 + 2.0*x3*x5 - x5*x25)*x0/x41 + x42*x44/x45 - x0*x46/x41 - x47*x44/x45
     )
-    x46 = x45 - g*(x1 + x19)/x20 + 2.0*x35*x5/x6 + x36*x28/x6
-    x47 = x2 + x19
-    x48 = x19*x47 + x1*(3.0*x2 + x19)
-    x49 = c5*x*x47/x20
-    x50 = x_dot*y_dot
-    x51 = 4.0*x2 - x3
-    x52 = x1*x51
-    x53 = x14*x16/x38 + (x3 - 2.0*x14)*x16/x38 - (x3 + 2.0*x4)*x29/x38 - x50*x52/x38
-    x54 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
-    x55 = g*x10/x20
-    x56 = x48*x40/x42 + 0.5*x49 + 2.0*x53 - x54*x40/x42 + x55
-    x57 = y_dot*x10
-    x58 = y_*x57/x6 - x*x11/x6
-    x59 = x21 + x23
-    x60 = (
-        delta_x*x46 + delta_y*(2.0*x35*x18/x6 + x36*x15/x6 - x56)
-        + delta_y_dot*(2.0*(x58 - y_dot*x15/x6) + x59)
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x57)/x6
+    x49 = x48 - g*(x3 + x11)/x12 + x39*x31/x6 - 2.0*x38*x22/x6
+    x50 = y_dot*x2/x6 - x*x23/x6
+    x51 = x13 + x19
+    x52 = x4 + x11
+    x53 = x11*x52 + x3*(3.0*x4 + x11)
+    x54 = c4*x*(y_*x15 + x9*x11)/x12
+    x55 = x1*x0
+    x56 = x_dot*y_dot
+    x57 = 4.0*x4 - x5
+    x58 = x3*x57
+    x59 = x25*x55/x41 + (x5 - 2.0*x25)*x55/x41 - (x5 + 2.0*x21)*x32/x41 - x56*x58/x41
+    x60 = 2.0*x4*x11 + x11*x18 + 3.0*x4*x18
+    x61 = g*x1/x12
+    x62 = x53*x43/x45 + x54 + 2.0*x59 - x60*x43/x45 + x61 + 2.0*x38*x10/x6 - x39*x26/x6
+    x63 = (
+        delta_x*x49 + delta_y_dot*(2.0*(x50 - y_dot*x26/x6) + x51) - delta_y*x62
+        - 2.0*x*delta_x_dot*(x_dot*x21 + y_dot*x1)/x6
     )
-    x61 = c4*x11
-    x62 = x27*x29/x38 + (x3 - 2.0*x27)*x29/x38 - (x3 + 2.0*x25)*x16/x38 - x50*x43/x38
-    x63 = x55 + (0.5*x49 + x39*x61/x42 + 2.0*x62 - x44*x61/x42)
-    x64 = c4*x_dot
-    x65 = (
-        x25*x51*x13/x38 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x38 + 4.0*x14*x12/x38
-        + x48*x64/x42 - x0*x52/x38 - x54*x64/x42
-        - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20)
+    x64 = c3*x23
+    x65 = x30*x32/x41 + (x5 - 2.0*x30)*x32/x41 - (x5 + 2.0*x28)*x55/x41 - x56*x46/x41
+    x66 = x61 + (x54 + x42*x64/x45 + 2.0*x65 - x47*x64/x45)
+    x67 = c3*x_dot
+    x68 = (
+        x28*x57*x0/x41 + (4.0*x4*x30 + 2.0*x4*x5 - x5*x30)*x20/x41 + 4.0*x25*x24/x41
+        + x53*x67/x45 - x20*x58/x41 - x60*x67/x45 - c1*(x16*x52/x12 - x9*x9)
     )
-    x66 = delta_y*(x65 - g*x47/x20 + x35*x15/x6 + 2.0*x36*x26/x6)
-    x67 = (
-        delta_x*(x35*x28/x6 + 2.0*y_*x36*x10/x6 - x63) + x66
-        - delta_x_dot*(2.0*(x_dot*x28/x6 + x58) + x59)
-        - 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6
+    x69 = delta_y*(x68 - g*x52/x12 + 2.0*x39*x29/x6 - x38*x26/x6)
+    x70 = (
+        delta_x*(x66 + x38*x31/x6 - 2.0*x39*x2/x6)
+        + delta_x_dot*(2.0*(x_dot*x31/x6 + x50) + x51)
+        + 2.0*y_*delta_y_dot*(y_dot*x28 + x23)/x6 - x69
     )
-    x68 = m*(x60 + x67*x33/x3)/x34
+    x71 = m*(x63 - x70*x36/x5)/x37
     # outputs
     return (
         x_dot,
         y_dot,
-        -x35,
-        -x36,
+        x38,
+        -x39,
         delta_x_dot,
         delta_y_dot,
-        x68,
-        (x67 + x68*x10/x3)*x32,
+        x71,
+        -(x70 - x71*x1/x5)*x35,
     )
 
 
@@ -1793,125 +1776,122 @@ def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     m, l, g, Omega, latitude = params
     # terms of the parameters alone
     c0 = l*l
-    c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
-    c4 = Omega*cos_latitude
-    c5 = sin_c2*c1
+    c1 = Omega*Omega
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c3 = Omega*cos_latitude
+    c4 = cos_latitude*c1
     # intermediate terms
-    x0 = x_dot*x_dot
-    x1 = x*x
-    x2 = y_*y_
-    x3 = x1 + x2 - c0
-    x4 = x1 - x3
-    x5 = x*x4
-    x6 = x3*x3
-    x7 = sin_c2*y_
-    x8 = sqrt(-x3)
-    x9 = c3 + x7/x8
-    x10 = x*y_
-    x11 = x_dot*x10
-    x12 = y_dot*x11
-    x13 = y_dot*y_dot
-    x14 = 2.0*x2 - x3
-    x15 = x*x14
-    x16 = x10*x13
-    x17 = cos_latitude*y_
-    x18 = x*x10
-    x19 = x8*x8
-    x20 = x8*x19
-    x21 = Omega*(sin_latitude - x17/x8 - cos_latitude*x18/x20)
-    x22 = x1 - x19
-    x23 = Omega*(sin_latitude + x17*x22/x20)
-    x24 = (
-        x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x*x12/x6 + x13*x15/x6 - y_*x16/x6 - y_dot*x21
-        - y_dot*x23
+    x0 = y_dot*y_dot
+    x1 = x*y_
+    x2 = y_*x1
+    x3 = x*x
+    x4 = y_*y_
+    x5 = x3 + x4 - c0
+    x6 = x5*x5
+    x7 = cos_latitude*y_
+    x8 = sqrt(-x5)
+    x9 = sin_latitude - x7/x8
+    x10 = x*x1
+    x11 = x8*x8
+    x12 = x8*x11
+    x13 = Omega*(x9 - cos_latitude*x10/x12)
+    x14 = cos_latitude*x8
+    x15 = sin_latitude*y_ + x14
+    x16 = cos_latitude*x15
+    x17 = c2 - x16/x8
+    x18 = x3 - x11
+    x19 = Omega*(sin_latitude + x7*x18/x12)
+    x20 = x_dot*x_dot
+    x21 = x3 - x5
+    x22 = x*x21
+    x23 = x_dot*x1
+    x24 = y_dot*x23
+    x25 = 2.0*x4 - x5
+    x26 = x*x25
+    x27 = (
+        x0*x2/x6 + y_dot*x13 + c1*x*x17 + y_dot*x19 - x20*x22/x6 - 2.0*x*x24/x6 - x0*x26/x6
     )
-    x25 = x2 - x3
-    x26 = y_*x25
-    x27 = 2.0*x1 - x3
-    x28 = y_*x27
-    x29 = x_dot*x11
-    x30 = (
-        x_dot*x23 + x13*x26/x6 + 0.5*c1*(2.0*cos_c2*y_ - sin_c2*(x8 - x2/x8)) + x0*x28/x6
-        + 2.0*y_*x12/x6 + x_dot*x21 - x*x29/x6
+    x28 = x4 - x5
+    x29 = y_*x28
+    x30 = 2.0*x3 - x5
+    x31 = y_*x30
+    x32 = x_dot*x23
+    x33 = (
+        x_dot*x19 + x0*x29/x6 + x20*x31/x6 + 2.0*y_*x24/x6 + x_dot*x13 - x*x32/x6
+        - c1*x9*x15
     )
-    x31 = x30 + g*y_/x8
-    x32 = m*(1.0/(m*(1.0 - x2/x3)))
-    x33 = x10*x32
-    x34 = m*(1.0 - x1/x3 - y_*x32*x18/x6)
-    x35 = m*(x24 + g*x/x8 + x31*x33/x3)/x34
-    x36 = (x31 + x35*x10/x3)*x32
-    x37 = 4.0*x1 - x3
-    x38 = x3*x6
-    x39 = 4.0*x19 + 3.0*x22
-    x40 = c4*y_dot
-    x41 = x10*x40
-    x42 = x20*x19
-    x43 = x2*x37
-    x44 = x19 + (3.0*x1 + 2.0*x19)
-    x45 = (
-        x4*x37*x0/x38 + 4.0*x27*x12/x38 + (4.0*x1*x14 + 2.0*x1*x3 - x3*x14)*x13/x38
-        + x39*x41/x42 - x13*x43/x38 - x44*x41/x42 - 0.5*c1*(x9 + sin_c2*x18/x20)
+    x34 = x33 + g*y_/x8
+    x35 = m*(1.0/(m*(1.0 - x4/x5)))
+    x36 = x1*x35
+    x37 = m*(1.0 - x3/x5 - x*x35*x2/x6)
+    x38 = m*(x27 - g*x/x8 - x34*x36/x5)/x37
+    x39 = (x34 - x38*x1/x5)*x35
+    x40 = 4.0*x3 - x5
+    x41 = x5*x6
+    x42 = 4.0*x11 + 3.0*x18
+    x43 = c3*y_dot
+    x44 = x1*x43
+    x45 = x12*x11
+    x46 = x4*x40
+    x47 = x11 + (3.0*x3 + 2.0*x11)
+    x48 = (
+        x21*x40*x20/x41 + c1*(x17 + cos_latitude*x3*(x14 - x15)/x12) + 4.0*x30*x24/x41
+        + (4.0*x3*x25 + 2.0*x3*x5 - x5*x25)*x0/x41 + x42*x44/x45 - x0*x46/x41 - x47*x44/x45
     )
-    x46 = x45 - g*(x1 + x19)/x20 + 2.0*x35*x5/x6 + x36*x28/x6
-    x47 = x2 + x19
-    x48 = x19*x47 + x1*(3.0*x2 + x19)
-    x49 = c5*x*x47/x20
-    x50 = x_dot*y_dot
-    x51 = 4.0*x2 - x3
-    x52 = x1*x51
-    x53 = x14*x16/x38 + (x3 - 2.0*x14)*x16/x38 - (x3 + 2.0*x4)*x29/x38 - x50*x52/x38
-    x54 = 2.0*x2*x19 + x19*x22 + 3.0*x2*x22
-    x55 = g*x10/x20
-    x56 = x48*x40/x42 + 0.5*x49 + 2.0*x53 - x54*x40/x42 + x55
-    x57 = y_dot*x10
-    x58 = y_*x57/x6 - x*x11/x6
-    x59 = x21 + x23
-    x60 = (
-        delta_x*x46 + delta_y*(2.0*x35*x18/x6 + x36*x15/x6 - x56)
-        + delta_y_dot*(2.0*(x58 - y_dot*x15/x6) + x59)
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x57)/x6
+    x49 = x48 - g*(x3 + x11)/x12 + x39*x31/x6 - 2.0*x38*x22/x6
+    x50 = y_dot*x2/x6 - x*x23/x6
+    x51 = x13 + x19
+    x52 = x4 + x11
+    x53 = x11*x52 + x3*(3.0*x4 + x11)
+    x54 = c4*x*(y_*x15 + x9*x11)/x12
+    x55 = x1*x0
+    x56 = x_dot*y_dot
+    x57 = 4.0*x4 - x5
+    x58 = x3*x57
+    x59 = x25*x55/x41 + (x5 - 2.0*x25)*x55/x41 - (x5 + 2.0*x21)*x32/x41 - x56*x58/x41
+    x60 = 2.0*x4*x11 + x11*x18 + 3.0*x4*x18
+    x61 = g*x1/x12
+    x62 = x53*x43/x45 + x54 + 2.0*x59 - x60*x43/x45 + x61 + 2.0*x38*x10/x6 - x39*x26/x6
+    x63 = (
+        delta_x*x49 + delta_y_dot*(2.0*(x50 - y_dot*x26/x6) + x51) - delta_y*x62
+        - 2.0*x*delta_x_dot*(x_dot*x21 + y_dot*x1)/x6
     )
-    x61 = c4*x11
-    x62 = x27*x29/x38 + (x3 - 2.0*x27)*x29/x38 - (x3 + 2.0*x25)*x16/x38 - x50*x43/x38
-    x63 = x55 + (0.5*x49 + x39*x61/x42 + 2.0*x62 - x44*x61/x42)
-    x64 = c4*x_dot
-    x65 = (
-        x25*x51*x13/x38 + (4.0*x2*x27 + 2.0*x2*x3 - x3*x27)*x0/x38 + 4.0*x14*x12/x38
-        + x48*x64/x42 - x0*x52/x38 - x54*x64/x42
-        - 0.5*c1*(2.0*cos_c2 + x7*(x19 + (x2 + 2.0*x19))/x20)
+    x64 = c3*x23
+    x65 = x30*x32/x41 + (x5 - 2.0*x30)*x32/x41 - (x5 + 2.0*x28)*x55/x41 - x56*x46/x41
+    x66 = x61 + (x54 + x42*x64/x45 + 2.0*x65 - x47*x64/x45)
+    x67 = c3*x_dot
+    x68 = (
+        x28*x57*x0/x41 + (4.0*x4*x30 + 2.0*x4*x5 - x5*x30)*x20/x41 + 4.0*x25*x24/x41
+        + x53*x67/x45 - x20*x58/x41 - x60*x67/x45 - c1*(x16*x52/x12 - x9*x9)
     )
-    x66 = delta_y*(x65 - g*x47/x20 + x35*x15/x6 + 2.0*x36*x26/x6)
-    x67 = (
-        delta_x*(x35*x28/x6 + 2.0*y_*x36*x10/x6 - x63) + x66
-        - delta_x_dot*(2.0*(x_dot*x28/x6 + x58) + x59)
-        - 2.0*y_*delta_y_dot*(y_dot*x25 + x11)/x6
+    x69 = delta_y*(x68 - g*x52/x12 + 2.0*x39*x29/x6 - x38*x26/x6)
+    x70 = (
+        delta_x*(x66 + x38*x31/x6 - 2.0*x39*x2/x6)
+        + delta_x_dot*(2.0*(x_dot*x31/x6 + x50) + x51)
+        + 2.0*y_*delta_y_dot*(y_dot*x28 + x23)/x6 - x69
     )
-    x68 = m*(x60 + x67*x33/x3)/x34
+    x71 = m*(x63 - x70*x36/x5)/x37
     # outputs
     return _stacked(
         (8,),
         y[0],
         x_dot,
         y_dot,
-        -x35,
-        -x36,
+        x38,
+        -x39,
         delta_x_dot,
         delta_y_dot,
-        x68,
-        (x67 + x68*x10/x3)*x32,
+        x71,
+        -(x70 - x71*x1/x5)*x35,
     )
 
 
 def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     """`rhs_variational` with perturbed parameters, whose perturbations precede them.
 
-    499 operations, 12 of them on parameters alone.
+    495 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -1934,148 +1914,148 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = l*l
-    c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
-    c4 = Omega*cos_latitude
-    c5 = sin_c2*c1
-    c6 = Omega*delta_latitude
-    c7 = l*delta_l
+    c1 = Omega*Omega
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c3 = Omega*cos_latitude
+    c4 = Omega*delta_latitude
+    c5 = cos_latitude*c1
+    c6 = l*delta_l
     # intermediate terms
-    x0 = x_dot*x_dot
-    x1 = x*x
-    x2 = y_*y_
-    x3 = x1 + x2 - c0
-    x4 = x1 - x3
-    x5 = x*x4
-    x6 = x3*x3
-    x7 = sin_c2*y_
-    x8 = sqrt(-x3)
-    x9 = c3 + x7/x8
-    x10 = x*y_
-    x11 = x_dot*x10
-    x12 = y_dot*x11
-    x13 = x*x12
-    x14 = y_dot*y_dot
-    x15 = 2.0*x2 - x3
-    x16 = x*x15
-    x17 = x10*x14
-    x18 = y_*x17
-    x19 = cos_latitude*y_
-    x20 = x*x10
-    x21 = x8*x8
-    x22 = x8*x21
-    x23 = sin_latitude - x19/x8 - cos_latitude*x20/x22
-    x24 = Omega*x23
-    x25 = x1 - x21
-    x26 = sin_latitude + x19*x25/x22
-    x27 = Omega*x26
-    x28 = x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x13/x6 + x14*x16/x6 - x18/x6 - y_dot*x24 - y_dot*x27
-    x29 = g*x
-    x30 = x2 - x3
-    x31 = y_*x30
-    x32 = cos_c2*y_
-    x33 = x8 - x2/x8
-    x34 = 2.0*x32 - sin_c2*x33
-    x35 = 2.0*x1 - x3
-    x36 = y_*x35
-    x37 = y_*x12
-    x38 = x_dot*x11
-    x39 = x*x38
-    x40 = x_dot*x27 + x14*x31/x6 + 0.5*c1*x34 + x0*x36/x6 + 2.0*x37/x6 + x_dot*x24 - x39/x6
-    x41 = g*y_
-    x42 = x40 + x41/x8
-    x43 = m*(1.0/(m*(1.0 - x2/x3)))
-    x44 = x10*x43
-    x45 = m*(1.0 - x1/x3 - y_*x43*x20/x6)
-    x46 = m*(x28 + x29/x8 + x42*x44/x3)/x45
-    x47 = x46*x10
-    x48 = (x42 + x47/x3)*x43
-    x49 = 4.0*x1 - x3
-    x50 = x3*x6
-    x51 = 4.0*x21 + 3.0*x25
-    x52 = c4*y_dot
-    x53 = x10*x52
-    x54 = x22*x21
-    x55 = x2*x49
-    x56 = x21 + (3.0*x1 + 2.0*x21)
-    x57 = (
-        x4*x49*x0/x50 + 4.0*x35*x12/x50 + (4.0*x1*x15 + 2.0*x1*x3 - x3*x15)*x14/x50
-        + x51*x53/x54 - x14*x55/x50 - x56*x53/x54 - 0.5*c1*(x9 + sin_c2*x20/x22)
+    x0 = x*y_
+    x1 = y_dot*y_dot
+    x2 = x0*x1
+    x3 = y_*x2
+    x4 = x*x
+    x5 = y_*y_
+    x6 = x4 + x5 - c0
+    x7 = x6*x6
+    x8 = cos_latitude*y_
+    x9 = sqrt(-x6)
+    x10 = sin_latitude - x8/x9
+    x11 = x*x0
+    x12 = x9*x9
+    x13 = x9*x12
+    x14 = x10 - cos_latitude*x11/x13
+    x15 = Omega*x14
+    x16 = sin_latitude*y_
+    x17 = cos_latitude*x9
+    x18 = x16 + x17
+    x19 = cos_latitude*x18
+    x20 = c2 - x19/x9
+    x21 = x4 - x12
+    x22 = sin_latitude + x8*x21/x13
+    x23 = Omega*x22
+    x24 = x_dot*x_dot
+    x25 = x4 - x6
+    x26 = x*x25
+    x27 = x_dot*x0
+    x28 = y_dot*x27
+    x29 = x*x28
+    x30 = 2.0*x5 - x6
+    x31 = x*x30
+    x32 = x3/x7 + y_dot*x15 + c1*x*x20 + y_dot*x23 - x24*x26/x7 - 2.0*x29/x7 - x1*x31/x7
+    x33 = g*x
+    x34 = x5 - x6
+    x35 = y_*x34
+    x36 = 2.0*x4 - x6
+    x37 = y_*x36
+    x38 = y_*x28
+    x39 = x_dot*x27
+    x40 = x*x39
+    x41 = x10*x18
+    x42 = x_dot*x23 + x1*x35/x7 + x24*x37/x7 + 2.0*x38/x7 + x_dot*x15 - x40/x7 - c1*x41
+    x43 = g*y_
+    x44 = x42 + x43/x9
+    x45 = m*(1.0/(m*(1.0 - x5/x6)))
+    x46 = x0*x45
+    x47 = m*(1.0 - x4/x6 - y_*x45*x11/x7)
+    x48 = m*(x32 - x33/x9 - x44*x46/x6)/x47
+    x49 = x48*x0
+    x50 = (x44 - x49/x6)*x45
+    x51 = 4.0*x4 - x6
+    x52 = x6*x7
+    x53 = x17 - x18
+    x54 = 4.0*x12 + 3.0*x21
+    x55 = c3*y_dot
+    x56 = x0*x55
+    x57 = x13*x12
+    x58 = x5*x51
+    x59 = x12 + (3.0*x4 + 2.0*x12)
+    x60 = (
+        x25*x51*x24/x52 + c1*(x20 + cos_latitude*x4*x53/x13) + 4.0*x36*x28/x52
+        + (4.0*x4*x30 + 2.0*x4*x6 - x6*x30)*x1/x52 + x54*x56/x57 - x1*x58/x52 - x59*x56/x57
     )
-    x58 = x57 - g*(x1 + x21)/x22 + 2.0*x46*x5/x6 + x48*x36/x6
-    x59 = x2 + x21
-    x60 = x21*x59 + x1*(3.0*x2 + x21)
-    x61 = c5*x59
-    x62 = x*x61/x22
-    x63 = x3 + 2.0*x4
-    x64 = x_dot*y_dot
-    x65 = 4.0*x2 - x3
-    x66 = x1*x65
-    x67 = x15*x17/x50 + (x3 - 2.0*x15)*x17/x50 - x63*x38/x50 - x64*x66/x50
-    x68 = 2.0*x2*x21 + x21*x25 + 3.0*x2*x25
-    x69 = g*x10/x22
-    x70 = x60*x52/x54 + 0.5*x62 + 2.0*x67 - x68*x52/x54 + x69
-    x71 = y_dot*x10
-    x72 = y_*x71/x6 - x*x11/x6
-    x73 = x24 + x27
-    x74 = Omega*x
-    x75 = sin_latitude*y_
-    x76 = cos_latitude + x75/x8 + sin_latitude*x20/x22
-    x77 = cos_latitude - x25*x75/x22
-    x78 = c6*(y_dot*x76 + (sin_c2 - x32/x8)*x74 + y_dot*x77)
-    x79 = y_*(2.0*x21 + 3.0*x25)
-    x80 = y_*(3.0*x1 + x21)
-    x81 = (
-        8.0*x13/x50 + x52*x79/x54 + 2.0*(x*x63*x0/x50 + x*(x3 + 2.0*x15)*x14/x50)
-        - 4.0*x18/x50 - x52*x80/x54 - 0.5*c5*x10/x22
+    x61 = x60 - g*(x4 + x12)/x13 + x50*x37/x7 - 2.0*x48*x26/x7
+    x62 = y_dot*x0
+    x63 = y_*x62/x7 - x*x27/x7
+    x64 = x15 + x23
+    x65 = Omega*x
+    x66 = delta_Omega*(y_dot*x14 + 2.0*x20*x65 + y_dot*x22)
+    x67 = cos_latitude + x16/x9
+    x68 = x67 + sin_latitude*x11/x13
+    x69 = x8 - sin_latitude*x9
+    x70 = cos_latitude - x16*x21/x13
+    x71 = y_dot*x68 + (sin_latitude*x18 - cos_latitude*x69)*x65/x9 + y_dot*x70
+    x72 = x5 + x12
+    x73 = x12*x72 + x4*(3.0*x5 + x12)
+    x74 = y_*x18 + x10*x12
+    x75 = c5*x
+    x76 = x74*x75/x13
+    x77 = x6 + 2.0*x25
+    x78 = x_dot*y_dot
+    x79 = 4.0*x5 - x6
+    x80 = x4*x79
+    x81 = x30*x2/x52 + (x6 - 2.0*x30)*x2/x52 - x77*x39/x52 - x78*x80/x52
+    x82 = 2.0*x5*x12 + x12*x21 + 3.0*x5*x21
+    x83 = g*x0/x13
+    x84 = x73*x55/x57 + x76 + 2.0*x81 - x82*x55/x57 + x83 + 2.0*x48*x11/x7 - x50*x31/x7
+    x85 = y_*(2.0*x12 + 3.0*x21)
+    x86 = y_*(3.0*x4 + x12)
+    x87 = (
+        x53*x75/x13 + 8.0*x29/x52 + x55*x85/x57
+        + 2.0*(x*x77*x24/x52 + x*(x6 + 2.0*x30)*x1/x52) - 4.0*x3/x52 - x55*x86/x57
     )
-    x82 = x48*x10
-    x83 = (
-        delta_x*x58 + delta_y*(2.0*x46*x20/x6 + x48*x16/x6 - x70)
-        + delta_y_dot*(2.0*(x72 - y_dot*x16/x6) + x73)
-        + delta_Omega*(y_dot*x23 + y_dot*x26 - x9*x74) + x78
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x71)/x6
-        - c7*(x81 - x29/x22 + 2.0*(x1*x46/x6 + x82/x6)) - delta_g*x/x8
+    x88 = x50*x0
+    x89 = (
+        delta_x*x61 + delta_y_dot*(2.0*(x63 - y_dot*x31/x7) + x64) + x66 + c4*x71
+        - delta_y*x84 - 2.0*x*delta_x_dot*(x_dot*x25 + x62)/x7
+        - c6*(x87 - x33/x13 + 2.0*(x88/x7 - x4*x48/x7)) - delta_g*x/x9
     )
-    x84 = c4*x_dot
-    x85 = x3 + 2.0*x30
-    x86 = (
-        8.0*x37/x50 + x84*x80/x54 + 2.0*(y_*x85*x14/x50 + y_*(x3 + 2.0*x35)*x0/x50)
-        - 4.0*x39/x50 - x84*x79/x54 - 0.5*x61/x22
+    x90 = c3*x27
+    x91 = x6 + 2.0*x34
+    x92 = x36*x39/x52 + (x6 - 2.0*x36)*x39/x52 - x91*x2/x52 - x78*x58/x52
+    x93 = x83 + (x76 + x54*x90/x57 + 2.0*x92 - x59*x90/x57)
+    x94 = c3*x_dot
+    x95 = (
+        8.0*x38/x52 + x94*x86/x57 + 2.0*(y_*x91*x1/x52 + y_*(x6 + 2.0*x36)*x24/x52)
+        - 4.0*x40/x52 - x94*x85/x57 - c5*x74/x13
     )
-    x87 = x_dot*x77 + x_dot*x76 - Omega*(2.0*x7 + cos_c2*x33)
-    x88 = c4*x11
-    x89 = x35*x38/x50 + (x3 - 2.0*x35)*x38/x50 - x85*x17/x50 - x64*x55/x50
-    x90 = x69 + (0.5*x62 + x51*x88/x54 + 2.0*x89 - x56*x88/x54)
-    x91 = (
-        x30*x65*x14/x50 + (4.0*x2*x35 + 2.0*x2*x3 - x3*x35)*x0/x50 + 4.0*x15*x12/x50
-        + x60*x84/x54 - x0*x66/x50 - x68*x84/x54
-        - 0.5*c1*(2.0*cos_c2 + x7*(x21 + (x2 + 2.0*x21))/x22)
+    x96 = delta_Omega*(x_dot*x22 + x_dot*x14 - 2.0*Omega*x41)
+    x97 = x_dot*x70 + x_dot*x68 - Omega*(x18*x67 + x10*x69)
+    x98 = (
+        x34*x79*x1/x52 + (4.0*x5*x36 + 2.0*x5*x6 - x6*x36)*x24/x52 + 4.0*x30*x28/x52
+        + x73*x94/x57 - x24*x80/x52 - x82*x94/x57 - c1*(x19*x72/x13 - x10*x10)
     )
-    x92 = delta_y*(x91 - g*x59/x22 + x46*x16/x6 + 2.0*x48*x31/x6)
-    x93 = (
-        delta_x_dot*(2.0*(x_dot*x36/x6 + x72) + x73)
-        + 2.0*y_*delta_y_dot*(y_dot*x30 + x11)/x6
-        + c7*(x86 - x41/x22 + 2.0*(x47/x6 + x2*x48/x6)) + delta_g*y_/x8
-        + delta_Omega*(x_dot*x26 + Omega*x34 + x_dot*x23) + c6*x87
-        - delta_x*(x46*x36/x6 + 2.0*y_*x82/x6 - x90) - x92
+    x99 = delta_y*(x98 - g*x72/x13 + 2.0*x50*x35/x7 - x48*x31/x7)
+    x100 = (
+        delta_x*(x93 + x48*x37/x7 - 2.0*y_*x88/x7)
+        + delta_x_dot*(2.0*(x_dot*x37/x7 + x63) + x64)
+        + 2.0*y_*delta_y_dot*(y_dot*x34 + x27)/x7
+        + c6*(x95 - x43/x13 + 2.0*(x5*x50/x7 - x49/x7)) + delta_g*y_/x9 + x96 + c4*x97 - x99
     )
-    x94 = m*(x83 - x93*x44/x3)/x45
+    x101 = m*(x89 - x100*x46/x6)/x47
     # outputs
     return (
         x_dot,
         y_dot,
-        -x46,
-        -x48,
+        x48,
+        -x50,
         delta_x_dot,
         delta_y_dot,
-        x94,
-        -(x93 - x94*x10/x3)*x43,
+        x101,
+        -(x100 - x101*x0/x6)*x45,
     )
 
 
@@ -2088,150 +2068,150 @@ def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params
     # terms of the parameters alone
     c0 = l*l
-    c1 = Omega*Omega
-    c2 = 2.0*latitude
-    cos_c2 = cos(c2)
-    c3 = cos_c2 - 1.0
-    sin_c2 = sin(c2)
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
-    c4 = Omega*cos_latitude
-    c5 = sin_c2*c1
-    c6 = Omega*delta_latitude
-    c7 = l*delta_l
+    c1 = Omega*Omega
+    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    c3 = Omega*cos_latitude
+    c4 = Omega*delta_latitude
+    c5 = cos_latitude*c1
+    c6 = l*delta_l
     # intermediate terms
-    x0 = x_dot*x_dot
-    x1 = x*x
-    x2 = y_*y_
-    x3 = x1 + x2 - c0
-    x4 = x1 - x3
-    x5 = x*x4
-    x6 = x3*x3
-    x7 = sin_c2*y_
-    x8 = sqrt(-x3)
-    x9 = c3 + x7/x8
-    x10 = x*y_
-    x11 = x_dot*x10
-    x12 = y_dot*x11
-    x13 = x*x12
-    x14 = y_dot*y_dot
-    x15 = 2.0*x2 - x3
-    x16 = x*x15
-    x17 = x10*x14
-    x18 = y_*x17
-    x19 = cos_latitude*y_
-    x20 = x*x10
-    x21 = x8*x8
-    x22 = x8*x21
-    x23 = sin_latitude - x19/x8 - cos_latitude*x20/x22
-    x24 = Omega*x23
-    x25 = x1 - x21
-    x26 = sin_latitude + x19*x25/x22
-    x27 = Omega*x26
-    x28 = x0*x5/x6 + 0.5*c1*x*x9 + 2.0*x13/x6 + x14*x16/x6 - x18/x6 - y_dot*x24 - y_dot*x27
-    x29 = g*x
-    x30 = x2 - x3
-    x31 = y_*x30
-    x32 = cos_c2*y_
-    x33 = x8 - x2/x8
-    x34 = 2.0*x32 - sin_c2*x33
-    x35 = 2.0*x1 - x3
-    x36 = y_*x35
-    x37 = y_*x12
-    x38 = x_dot*x11
-    x39 = x*x38
-    x40 = x_dot*x27 + x14*x31/x6 + 0.5*c1*x34 + x0*x36/x6 + 2.0*x37/x6 + x_dot*x24 - x39/x6
-    x41 = g*y_
-    x42 = x40 + x41/x8
-    x43 = m*(1.0/(m*(1.0 - x2/x3)))
-    x44 = x10*x43
-    x45 = m*(1.0 - x1/x3 - y_*x43*x20/x6)
-    x46 = m*(x28 + x29/x8 + x42*x44/x3)/x45
-    x47 = x46*x10
-    x48 = (x42 + x47/x3)*x43
-    x49 = 4.0*x1 - x3
-    x50 = x3*x6
-    x51 = 4.0*x21 + 3.0*x25
-    x52 = c4*y_dot
-    x53 = x10*x52
-    x54 = x22*x21
-    x55 = x2*x49
-    x56 = x21 + (3.0*x1 + 2.0*x21)
-    x57 = (
-        x4*x49*x0/x50 + 4.0*x35*x12/x50 + (4.0*x1*x15 + 2.0*x1*x3 - x3*x15)*x14/x50
-        + x51*x53/x54 - x14*x55/x50 - x56*x53/x54 - 0.5*c1*(x9 + sin_c2*x20/x22)
+    x0 = x*y_
+    x1 = y_dot*y_dot
+    x2 = x0*x1
+    x3 = y_*x2
+    x4 = x*x
+    x5 = y_*y_
+    x6 = x4 + x5 - c0
+    x7 = x6*x6
+    x8 = cos_latitude*y_
+    x9 = sqrt(-x6)
+    x10 = sin_latitude - x8/x9
+    x11 = x*x0
+    x12 = x9*x9
+    x13 = x9*x12
+    x14 = x10 - cos_latitude*x11/x13
+    x15 = Omega*x14
+    x16 = sin_latitude*y_
+    x17 = cos_latitude*x9
+    x18 = x16 + x17
+    x19 = cos_latitude*x18
+    x20 = c2 - x19/x9
+    x21 = x4 - x12
+    x22 = sin_latitude + x8*x21/x13
+    x23 = Omega*x22
+    x24 = x_dot*x_dot
+    x25 = x4 - x6
+    x26 = x*x25
+    x27 = x_dot*x0
+    x28 = y_dot*x27
+    x29 = x*x28
+    x30 = 2.0*x5 - x6
+    x31 = x*x30
+    x32 = x3/x7 + y_dot*x15 + c1*x*x20 + y_dot*x23 - x24*x26/x7 - 2.0*x29/x7 - x1*x31/x7
+    x33 = g*x
+    x34 = x5 - x6
+    x35 = y_*x34
+    x36 = 2.0*x4 - x6
+    x37 = y_*x36
+    x38 = y_*x28
+    x39 = x_dot*x27
+    x40 = x*x39
+    x41 = x10*x18
+    x42 = x_dot*x23 + x1*x35/x7 + x24*x37/x7 + 2.0*x38/x7 + x_dot*x15 - x40/x7 - c1*x41
+    x43 = g*y_
+    x44 = x42 + x43/x9
+    x45 = m*(1.0/(m*(1.0 - x5/x6)))
+    x46 = x0*x45
+    x47 = m*(1.0 - x4/x6 - y_*x45*x11/x7)
+    x48 = m*(x32 - x33/x9 - x44*x46/x6)/x47
+    x49 = x48*x0
+    x50 = (x44 - x49/x6)*x45
+    x51 = 4.0*x4 - x6
+    x52 = x6*x7
+    x53 = x17 - x18
+    x54 = 4.0*x12 + 3.0*x21
+    x55 = c3*y_dot
+    x56 = x0*x55
+    x57 = x13*x12
+    x58 = x5*x51
+    x59 = x12 + (3.0*x4 + 2.0*x12)
+    x60 = (
+        x25*x51*x24/x52 + c1*(x20 + cos_latitude*x4*x53/x13) + 4.0*x36*x28/x52
+        + (4.0*x4*x30 + 2.0*x4*x6 - x6*x30)*x1/x52 + x54*x56/x57 - x1*x58/x52 - x59*x56/x57
     )
-    x58 = x57 - g*(x1 + x21)/x22 + 2.0*x46*x5/x6 + x48*x36/x6
-    x59 = x2 + x21
-    x60 = x21*x59 + x1*(3.0*x2 + x21)
-    x61 = c5*x59
-    x62 = x*x61/x22
-    x63 = x3 + 2.0*x4
-    x64 = x_dot*y_dot
-    x65 = 4.0*x2 - x3
-    x66 = x1*x65
-    x67 = x15*x17/x50 + (x3 - 2.0*x15)*x17/x50 - x63*x38/x50 - x64*x66/x50
-    x68 = 2.0*x2*x21 + x21*x25 + 3.0*x2*x25
-    x69 = g*x10/x22
-    x70 = x60*x52/x54 + 0.5*x62 + 2.0*x67 - x68*x52/x54 + x69
-    x71 = y_dot*x10
-    x72 = y_*x71/x6 - x*x11/x6
-    x73 = x24 + x27
-    x74 = Omega*x
-    x75 = sin_latitude*y_
-    x76 = cos_latitude + x75/x8 + sin_latitude*x20/x22
-    x77 = cos_latitude - x25*x75/x22
-    x78 = c6*(y_dot*x76 + (sin_c2 - x32/x8)*x74 + y_dot*x77)
-    x79 = y_*(2.0*x21 + 3.0*x25)
-    x80 = y_*(3.0*x1 + x21)
-    x81 = (
-        8.0*x13/x50 + x52*x79/x54 + 2.0*(x*x63*x0/x50 + x*(x3 + 2.0*x15)*x14/x50)
-        - 4.0*x18/x50 - x52*x80/x54 - 0.5*c5*x10/x22
+    x61 = x60 - g*(x4 + x12)/x13 + x50*x37/x7 - 2.0*x48*x26/x7
+    x62 = y_dot*x0
+    x63 = y_*x62/x7 - x*x27/x7
+    x64 = x15 + x23
+    x65 = Omega*x
+    x66 = delta_Omega*(y_dot*x14 + 2.0*x20*x65 + y_dot*x22)
+    x67 = cos_latitude + x16/x9
+    x68 = x67 + sin_latitude*x11/x13
+    x69 = x8 - sin_latitude*x9
+    x70 = cos_latitude - x16*x21/x13
+    x71 = y_dot*x68 + (sin_latitude*x18 - cos_latitude*x69)*x65/x9 + y_dot*x70
+    x72 = x5 + x12
+    x73 = x12*x72 + x4*(3.0*x5 + x12)
+    x74 = y_*x18 + x10*x12
+    x75 = c5*x
+    x76 = x74*x75/x13
+    x77 = x6 + 2.0*x25
+    x78 = x_dot*y_dot
+    x79 = 4.0*x5 - x6
+    x80 = x4*x79
+    x81 = x30*x2/x52 + (x6 - 2.0*x30)*x2/x52 - x77*x39/x52 - x78*x80/x52
+    x82 = 2.0*x5*x12 + x12*x21 + 3.0*x5*x21
+    x83 = g*x0/x13
+    x84 = x73*x55/x57 + x76 + 2.0*x81 - x82*x55/x57 + x83 + 2.0*x48*x11/x7 - x50*x31/x7
+    x85 = y_*(2.0*x12 + 3.0*x21)
+    x86 = y_*(3.0*x4 + x12)
+    x87 = (
+        x53*x75/x13 + 8.0*x29/x52 + x55*x85/x57
+        + 2.0*(x*x77*x24/x52 + x*(x6 + 2.0*x30)*x1/x52) - 4.0*x3/x52 - x55*x86/x57
     )
-    x82 = x48*x10
-    x83 = (
-        delta_x*x58 + delta_y*(2.0*x46*x20/x6 + x48*x16/x6 - x70)
-        + delta_y_dot*(2.0*(x72 - y_dot*x16/x6) + x73)
-        + delta_Omega*(y_dot*x23 + y_dot*x26 - x9*x74) + x78
-        - 2.0*x*delta_x_dot*(x_dot*x4 + x71)/x6
-        - c7*(x81 - x29/x22 + 2.0*(x1*x46/x6 + x82/x6)) - delta_g*x/x8
+    x88 = x50*x0
+    x89 = (
+        delta_x*x61 + delta_y_dot*(2.0*(x63 - y_dot*x31/x7) + x64) + x66 + c4*x71
+        - delta_y*x84 - 2.0*x*delta_x_dot*(x_dot*x25 + x62)/x7
+        - c6*(x87 - x33/x13 + 2.0*(x88/x7 - x4*x48/x7)) - delta_g*x/x9
     )
-    x84 = c4*x_dot
-    x85 = x3 + 2.0*x30
-    x86 = (
-        8.0*x37/x50 + x84*x80/x54 + 2.0*(y_*x85*x14/x50 + y_*(x3 + 2.0*x35)*x0/x50)
-        - 4.0*x39/x50 - x84*x79/x54 - 0.5*x61/x22
+    x90 = c3*x27
+    x91 = x6 + 2.0*x34
+    x92 = x36*x39/x52 + (x6 - 2.0*x36)*x39/x52 - x91*x2/x52 - x78*x58/x52
+    x93 = x83 + (x76 + x54*x90/x57 + 2.0*x92 - x59*x90/x57)
+    x94 = c3*x_dot
+    x95 = (
+        8.0*x38/x52 + x94*x86/x57 + 2.0*(y_*x91*x1/x52 + y_*(x6 + 2.0*x36)*x24/x52)
+        - 4.0*x40/x52 - x94*x85/x57 - c5*x74/x13
     )
-    x87 = x_dot*x77 + x_dot*x76 - Omega*(2.0*x7 + cos_c2*x33)
-    x88 = c4*x11
-    x89 = x35*x38/x50 + (x3 - 2.0*x35)*x38/x50 - x85*x17/x50 - x64*x55/x50
-    x90 = x69 + (0.5*x62 + x51*x88/x54 + 2.0*x89 - x56*x88/x54)
-    x91 = (
-        x30*x65*x14/x50 + (4.0*x2*x35 + 2.0*x2*x3 - x3*x35)*x0/x50 + 4.0*x15*x12/x50
-        + x60*x84/x54 - x0*x66/x50 - x68*x84/x54
-        - 0.5*c1*(2.0*cos_c2 + x7*(x21 + (x2 + 2.0*x21))/x22)
+    x96 = delta_Omega*(x_dot*x22 + x_dot*x14 - 2.0*Omega*x41)
+    x97 = x_dot*x70 + x_dot*x68 - Omega*(x18*x67 + x10*x69)
+    x98 = (
+        x34*x79*x1/x52 + (4.0*x5*x36 + 2.0*x5*x6 - x6*x36)*x24/x52 + 4.0*x30*x28/x52
+        + x73*x94/x57 - x24*x80/x52 - x82*x94/x57 - c1*(x19*x72/x13 - x10*x10)
     )
-    x92 = delta_y*(x91 - g*x59/x22 + x46*x16/x6 + 2.0*x48*x31/x6)
-    x93 = (
-        delta_x_dot*(2.0*(x_dot*x36/x6 + x72) + x73)
-        + 2.0*y_*delta_y_dot*(y_dot*x30 + x11)/x6
-        + c7*(x86 - x41/x22 + 2.0*(x47/x6 + x2*x48/x6)) + delta_g*y_/x8
-        + delta_Omega*(x_dot*x26 + Omega*x34 + x_dot*x23) + c6*x87
-        - delta_x*(x46*x36/x6 + 2.0*y_*x82/x6 - x90) - x92
+    x99 = delta_y*(x98 - g*x72/x13 + 2.0*x50*x35/x7 - x48*x31/x7)
+    x100 = (
+        delta_x*(x93 + x48*x37/x7 - 2.0*y_*x88/x7)
+        + delta_x_dot*(2.0*(x_dot*x37/x7 + x63) + x64)
+        + 2.0*y_*delta_y_dot*(y_dot*x34 + x27)/x7
+        + c6*(x95 - x43/x13 + 2.0*(x5*x50/x7 - x49/x7)) + delta_g*y_/x9 + x96 + c4*x97 - x99
     )
-    x94 = m*(x83 - x93*x44/x3)/x45
+    x101 = m*(x89 - x100*x46/x6)/x47
     # outputs
     return _stacked(
         (8,),
         y[0],
         x_dot,
         y_dot,
-        -x46,
-        -x48,
+        x48,
+        -x50,
         delta_x_dot,
         delta_y_dot,
-        x94,
-        -(x93 - x94*x10/x3)*x43,
+        x101,
+        -(x100 - x101*x0/x6)*x45,
     )
 
 

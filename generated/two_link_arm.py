@@ -73,15 +73,15 @@ Masses and their positions:
 Lagrangian:
     L = -c2*g*m2*sin(q1 + q2) - g*(c1*m1 + l1*m2)*sin(q1)
         + q1_dot**2*(I1 + I2 + c1**2*m1 + m2*(c2**2 + 2*c2*l1*cos(q2) + l1**2))/2
-        + q1_dot*q2_dot*(I2 + c2*m2*(c2 + l1*cos(q2))) + q2_dot**2*(I2 + c2**2*m2)/2
+        + q1_dot*q2_dot*(I2 + m2*(c2**2 + c2*l1*cos(q2))) + q2_dot**2*(I2 + c2**2*m2)/2
 
 Equations of motion:
     c2*g*m2*cos(q1 + q2) - 2*c2*l1*m2*q1_dot*q2_dot*sin(q2) - c2*l1*m2*q2_dot**2*sin(q2)
         + g*(c1*m1 + l1*m2)*cos(q1)
         + q1_ddot*(I1 + I2 + c1**2*m1 + m2*(c2**2 + 2*c2*l1*cos(q2) + l1**2))
-        + q2_ddot*(I2 + c2*m2*(c2 + l1*cos(q2))) - tau1 = 0
+        + q2_ddot*(I2 + m2*(c2**2 + c2*l1*cos(q2))) - tau1 = 0
     c2*g*m2*cos(q1 + q2) + c2*l1*m2*q1_dot**2*sin(q2)
-        + q1_ddot*(I2 + c2*m2*(c2 + l1*cos(q2))) + q2_ddot*(I2 + c2**2*m2) - tau2 = 0
+        + q1_ddot*(I2 + m2*(c2**2 + c2*l1*cos(q2))) + q2_ddot*(I2 + c2**2*m2) - tau2 = 0
 
 Each function takes one state as plain numbers and returns plain numbers, which is fastest for
 one state. Its variant ``_many`` takes NumPy arrays, with the state along the first axis: y of
@@ -107,7 +107,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "6b153492a2507b31"
+DIGEST = "05307f1cee9c9f5d"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -1159,18 +1159,17 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     q1, q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
     l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = c2*m2
+    c0 = m2*c2
     c3 = I2 + I1 + m1*c1*c1
-    c4 = c2*c2
-    c5 = c4 + l1*l1
-    c6 = c2*l1
-    c7 = I2 + m2*c4
+    c4 = c2*c2 + l1*l1
+    c5 = c2*l1
+    c6 = I2 + c2*c0
     # intermediate terms
     cos_q2 = cos(q2)
     x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = q2_dot*x0 + q1_dot*(c3 + m2*(c5 + 2.0*c6*cos_q2))
+    x1 = q2_dot*x0 + q1_dot*(c3 + m2*(c4 + 2.0*c5*cos_q2))
     # outputs
-    return (q1, q2, x1, c7*q2_dot + x0*q1_dot)
+    return (q1, q2, x1, c6*q2_dot + x0*q1_dot)
 
 
 def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
@@ -1181,18 +1180,17 @@ def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     q1, q2, q1_dot, q2_dot = y
     l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params
     # terms of the parameters alone
-    c0 = c2*m2
+    c0 = m2*c2
     c3 = I2 + I1 + m1*c1*c1
-    c4 = c2*c2
-    c5 = c4 + l1*l1
-    c6 = c2*l1
-    c7 = I2 + m2*c4
+    c4 = c2*c2 + l1*l1
+    c5 = c2*l1
+    c6 = I2 + c2*c0
     # intermediate terms
     cos_q2 = cos(q2)
     x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = q2_dot*x0 + q1_dot*(c3 + m2*(c5 + 2.0*c6*cos_q2))
+    x1 = q2_dot*x0 + q1_dot*(c3 + m2*(c4 + 2.0*c5*cos_q2))
     # outputs
-    return _stacked((4,), y[0], q1, q2, x1, c7*q2_dot + x0*q1_dot)
+    return _stacked((4,), y[0], q1, q2, x1, c6*q2_dot + x0*q1_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:

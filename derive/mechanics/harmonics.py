@@ -7,6 +7,7 @@ terms that cancel never become SymPy expressions.
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property, reduce
+from itertools import starmap
 from operator import add
 from typing import Any, TypeAlias
 
@@ -43,7 +44,7 @@ class Harmonics:
     def fewest_operations(self) -> int:
         """A lower bound for the operations of the sum, also with squares for doubled angles."""
         waves = {(is_sine, multiples) for is_sine, multiples, _ in self._terms if any(multiples)}
-        return 2 * len(waves) - 1  # one function each, and the additions
+        return len(waves) + len(self._terms) - 1 + sum(starmap(_products, self._terms.items()))
 
     @cached_property
     def _leaves(self) -> tuple[dict[sp.Expr, int], dict[sp.Expr, int]]:
@@ -108,6 +109,13 @@ class Harmonics:
         row = [*powers]
         row[self._leaves[1][base]] = _number(exponent)
         return {(is_sine, multiples, tuple(row)): sp.QQ(1)}
+
+
+def _products(key: Key, number: Any) -> int:
+    """The multiplications in a term without those by its wave, at least."""
+    _, multiples, powers = key
+    factors = len(powers) - powers.count(0)
+    return max(factors - 1, 0) + (abs(number) != 1 and (factors > 0 or any(multiples)))
 
 
 def _is_product(one: sp.Expr) -> bool:

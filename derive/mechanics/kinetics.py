@@ -10,6 +10,7 @@ import sympy as sp
 from derive.formulas.expansion import is_expandable
 from derive.formulas.switching import decisive_numbers, switching_functions
 from derive.mechanics.reduction import gathered, reduced
+from derive.mechanics.turning import turned
 from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -72,7 +73,7 @@ class Kinetics:
             return derivative(position, variable)
 
         tangents = [
-            [tuple(change(r, v) for r in position) for v in self.variables]
+            turned([tuple(change(r, v) for r in position) for v in self.variables])
             for _, position in motions
         ]
         inertias = [inertia for inertia, _ in motions]
@@ -203,7 +204,13 @@ def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
 
 
 def _factored(expression: sp.Expr) -> sp.Expr:
-    """The expression with common factors outside; unchanged if to find them takes too long."""
+    """The expression with common factors outside, where quotients or roots may cancel with them.
+
+    Elsewhere factors stay in the terms, which share them with those of other entries.
+    """
+    powers = (one for one in expression.atoms(sp.Pow) if not one.is_number)
+    if all(power.exp.is_Integer and power.exp.is_positive for power in powers):
+        return expression
     short = is_expandable(expression, largest=MOST_FACTORED)
     return sp.factor_terms(expression) if short else expression
 
