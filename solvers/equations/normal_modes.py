@@ -28,6 +28,7 @@ class Modes:
         `ValueError` if the system has no known equilibrium, or it is not stable.
         """
         name = module.SYSTEM
+        given = ", ".join(f"{n} = {x:.6g}" for n, x in zip(module.PARAMETERS, params, strict=True))
         if not has_function(module, "linear"):
             raise ValueError(f"{name} has no equilibrium: small motions have no modes")
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
@@ -35,13 +36,13 @@ class Modes:
             squares, shapes = scipy.linalg.eigh(stiffness_matrix, mass_matrix)
         except np.linalg.LinAlgError as error:
             text = "the mass matrix is not positive definite at the equilibrium"
-            raise ValueError(f"{name} has no modes with {params}: {text}") from error
+            raise ValueError(f"{name} has no modes with {given}: {text}") from error
         except ValueError as error:
             text = "its matrices are not finite at the equilibrium"
-            raise ValueError(f"{name} has no modes with {params}: {text}") from error
+            raise ValueError(f"{name} has no modes with {given}: {text}") from error
         if squares[0] <= 0:
-            reason = f"squared frequencies are {squares}"
-            raise ValueError(f"{name} does not oscillate about rest with {params}: {reason}")
+            reason = f"squared frequencies are {', '.join(f'{x:.6g}' for x in squares)} rad^2/s^2"
+            raise ValueError(f"{name} does not oscillate about rest with {given}: {reason}")
         return cls(mass_matrix, stiffness_matrix, np.sqrt(squares), shapes)
 
     @property
