@@ -5,8 +5,9 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.mechanics.integrability import Integrability, integrability
-from derive.mechanics.kinetics import Kinetics, Matrix, derivative
+from derive.mechanics.kinetics import Kinetics, Matrix
 from derive.mechanics.reduction import collected
 from derive.system.symbols import TIME
 
@@ -79,7 +80,8 @@ class Constraints(Kinetics):
     @cached_property
     def constraint_jacobian(self) -> Matrix:
         """G(q, t) of one row a constraint: ∂φ/∂q, or A."""
-        return self.constraint_rates.jacobian(self.system.qdot)
+        rates, qdot = self.constraint_rates, self.system.qdot
+        return Matrix(len(rates), len(qdot), [derivative(b, v) for b in rates for v in qdot])
 
     @cached_property
     def constraint_drift(self) -> Matrix:

@@ -6,8 +6,9 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.mechanics.constraints import Constraints
-from derive.mechanics.kinetics import Matrix, derivative
+from derive.mechanics.kinetics import Matrix
 from derive.mechanics.reduction import collected, reduced
 from derive.system.parts import SystemDefinitionError
 

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.formulas.expansion import is_expandable
 from derive.formulas.switching import decisive_numbers, switching_functions
 from derive.mechanics.reduction import gathered, reduced
@@ -65,15 +66,8 @@ class Kinetics:
         """M̄ = Σ m J̄ᵀJ̄ over all variables, symmetric; the mass matrix is its upper left part."""
         motions = [motion for mass in self.system.masses for motion in mass.motions]
 
-        @cache
-        def change(position: sp.Expr, variable: sp.Symbol) -> sp.Expr:
-            # the positions of a chain share most of their terms
-            if position.is_Add:
-                return sp.Add(*(change(term, variable) for term in position.args))
-            return derivative(position, variable)
-
         tangents = [
-            turned([tuple(change(r, v) for r in position) for v in self.variables])
+            turned([tuple(derivative(r, v) for r in position) for v in self.variables])
             for _, position in motions
         ]
         inertias = [inertia for inertia, _ in motions]
@@ -213,8 +207,3 @@ def _factored(expression: sp.Expr) -> sp.Expr:
         return expression
     short = is_expandable(expression, largest=MOST_FACTORED)
     return sp.factor_terms(expression) if short else expression
-
-
-def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
-    """∂expression/∂symbol, at once where the symbol is not in it."""
-    return expression.diff(symbol) if symbol in expression.free_symbols else sp.S.Zero

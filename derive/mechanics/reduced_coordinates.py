@@ -13,10 +13,10 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import warn_of_redundancy
 from derive.mechanics.equations import Equations
-from derive.mechanics.kinetics import derivative
 from derive.system.constraints import Constraint
 from derive.system.eliminated import Eliminated
 from derive.system.parts import SystemDefinitionError
@@ -135,12 +135,12 @@ def _next_solution(
 
 
 def _divided_by_number(formula: sp.Expr, q: sp.Symbol) -> sp.Expr | None:
-    return _divided(formula, q) if formula.diff(q).is_number else None
+    return _divided(formula, q) if derivative(formula, q).is_number else None
 
 
 def _divided(formula: sp.Expr, q: sp.Symbol) -> sp.Expr | None:
     """The solution of a linear equation with a coefficient that cannot be 0."""
-    coefficient = formula.diff(q)
+    coefficient = derivative(formula, q)
     if q in coefficient.free_symbols:
         coefficient = sp.expand(coefficient)
     if q in coefficient.free_symbols or coefficient.is_zero is not False:

@@ -11,8 +11,9 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.mechanics.equations import HALF, Equations
-from derive.mechanics.kinetics import Matrix, derivative
+from derive.mechanics.kinetics import Matrix
 from derive.mechanics.reduction import collected, reduced
 from derive.system.symbols import TIME
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 
@@ -134,7 +135,7 @@ def _check_constraints(system: "System") -> None:
 
 
 def _is_affine(formula: sp.Expr, variables: set[sp.Symbol]) -> bool:
-    slopes = (formula.diff(variable) for variable in variables)
+    slopes = (derivative(formula, variable) for variable in variables)
     others = [slope for slope in slopes if slope.free_symbols & variables]
     # most derivatives of affine functions are constant as they stand; to expand takes long
     return not any(sp.expand(slope).free_symbols & variables for slope in others)

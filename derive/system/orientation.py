@@ -12,6 +12,7 @@ from typing import Self, TypeAlias
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.formulas.zero import vanishes
 from derive.system.parts import SystemDefinitionError, formula, formulas, items
 from solvers.io.suggestion import shortened
@@ -73,7 +74,7 @@ class Orientation:
 
     def turn(self, variable: sp.Symbol) -> Vector:
         """The angular velocity in body axes for each unit of the variable's rate."""
-        slopes = [(f.diff(variable), vector) for f, vector in self.turning]
+        slopes = [(derivative(f, variable), vector) for f, vector in self.turning]
         used = [(slope, vector) for slope, vector in slopes if slope != 0]
         return tuple(sp.Add(*(slope * vector[k] for slope, vector in used)) for k in range(3))
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.system.constraints import Constraint, Point
 from derive.system.joint import canonical, components, constraint_rows, unit_vector
 from derive.system.orientation import AXES, Orientation
@@ -129,7 +130,7 @@ def rolling_on_plane(
     rates = {TIME: sp.S.One} | {q: velocity(q) for q in coordinates}
 
     def rate(expression: sp.Expr) -> sp.Expr:
-        return sp.Add(*(expression.diff(s) * rate for s, rate in rates.items()))
+        return sp.Add(*(derivative(expression, s) * rate for s, rate in rates.items()))
 
     turning = sp.zeros(3, 1)  # the angular velocity in axes of the body
     for s, speed in rates.items():
