@@ -18,6 +18,8 @@ from derive.system.system import System
 
 Matrix: TypeAlias = sp.ImmutableDenseMatrix
 
+#: Terms of the largest dot product that is expanded to be reduced.
+MOST_REDUCED = 1000
 #: Terms of the largest expression whose common factors are searched.
 MOST_FACTORED = 200
 
@@ -84,7 +86,7 @@ class Kinetics:
             for inertia, tangent in zip(inertias, tangents, strict=True):
                 pair = (tangent[i], tangent[j])
                 if pair not in dots:
-                    dots[pair] = _factored(reduced(_dot(*pair)))
+                    dots[pair] = _factored(reduced(_dot(*pair), MOST_REDUCED))
                 totals[dots[pair]] = totals.get(dots[pair], sp.S.Zero) + inertia
             return sp.Add(*(total * dot for dot, total in totals.items()))
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 import sympy as sp
 
-from derive.formulas.expansion import is_expandable
+from derive.formulas.expansion import LARGEST, is_expandable
 from derive.mechanics.harmonics import Harmonics
 
 Square = Callable[[sp.Expr], sp.Expr]
@@ -20,18 +20,23 @@ MOST_TERMS = 1000
 SQUARES: tuple[Square, ...] = (lambda a: 1 - 2 * sp.sin(a) ** 2, lambda a: 2 * sp.cos(a) ** 2 - 1)
 
 
-def reduced(expression: sp.Expr) -> sp.Expr:
-    """The form of `expression` with the fewest operations."""
-    if not expression.has(sp.sin, sp.cos) or not is_expandable(expression, waves=2):
+def reduced(expression: sp.Expr, largest: int = LARGEST) -> sp.Expr:
+    """The form of `expression` with the fewest operations; unchanged if too long."""
+    if not expression.has(sp.sin, sp.cos) or not is_expandable(
+        expression, waves=2, largest=largest
+    ):
         return expression
     harmonics, operations = Harmonics(expression), int(expression.count_ops())
     if harmonics.fewest_operations > operations:
         return expression
     waves = harmonics.sum
-    candidates = [waves, expression]
+    candidates = [waves]
     if halves := _halves(waves):
         candidates += [_halved(waves, halves, square) for square in SQUARES]
-    return min(candidates, key=lambda candidate: int(candidate.count_ops()))
+    counts = [int(candidate.count_ops()) for candidate in candidates]
+    candidates.insert(1, expression)
+    counts.insert(1, operations)
+    return candidates[counts.index(min(counts))]
 
 
 def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
