@@ -20,7 +20,8 @@ class LazyModule(ModuleType):
     which is generated for them.
     """
 
-    FUNCTIONS: tuple[str, ...]
+    SYSTEM = ""
+    FUNCTIONS: tuple[str, ...] = ()
 
     def __init__(self, part: "Callable[[tuple[str, ...]], GeneratedModule]") -> None:
         first = part(())
