@@ -2,10 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from solvers.equations.module import GeneratedModule
+from typing import Any
 
 #: Attributes that depend on the content of all functions.
 OF_ALL = ("DIGEST", "TIMED", "CALLS_FUNCTIONS", "OPERATIONS", "__file__")
@@ -23,13 +20,13 @@ class LazyModule(ModuleType):
     SYSTEM = ""
     FUNCTIONS: tuple[str, ...] = ()
 
-    def __init__(self, part: "Callable[[tuple[str, ...]], GeneratedModule]") -> None:
+    def __init__(self, part: Callable[[tuple[str, ...]], Any]) -> None:
         first = part(())
         super().__init__(first.__name__, first.__doc__)
         self._part = part
         self._adopt(first)
 
-    def part(self, names: Sequence[str]) -> "GeneratedModule":
+    def part(self, names: Sequence[str]) -> Any:
         """A module with the functions of these names."""
         return self._part(tuple(name for name in self.FUNCTIONS if name in names))
 
@@ -42,7 +39,7 @@ class LazyModule(ModuleType):
             return getattr(self.part(self.FUNCTIONS), name)
         raise AttributeError(f"the module of {self.SYSTEM} has no attribute {name!r}")
 
-    def _adopt(self, part: "GeneratedModule") -> None:
+    def _adopt(self, part: Any) -> None:
         """Take the tables and functions of a part."""
         public = (name for name in vars(part) if not name.startswith("_") and name not in OF_ALL)
         vars(self).update({name: getattr(part, name) for name in public})

@@ -15,7 +15,7 @@ from solvers.equations.module import (
     has_function,
     position_constraints,
 )
-from solvers.equations.singular_configuration import check_constraints
+from solvers.equations.singular_configuration import Motion, check_constraints
 
 #: Conditions of the mass matrix: above the first digits are lost, above the second all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
@@ -27,8 +27,6 @@ class MassMatrixWarning(UserWarning):
 
 #: Motions of many whose mass matrices are examined.
 EXAMINED = 4
-#: A motion in a report, its parameters, and its initial state; None examines no initial state.
-Motion = tuple[str, Sequence[float], Sequence[float] | None]
 
 _IS_CHECKED = ContextVar("mass matrices are checked", default=False)
 

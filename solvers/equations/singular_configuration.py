@@ -2,18 +2,16 @@
 
 import warnings
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.assembly import Assembly
-
-if TYPE_CHECKING:
-    from solvers.equations.mass_matrix import Motion
-    from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule
 
 Array = NDArray[np.float64]
+#: A motion in a report, its parameters, and its initial state; None examines no initial state.
+Motion = tuple[str, Sequence[float], Sequence[float] | None]
 #: Conditions of G M⁻¹ Gᵀ: above the first digits are lost, above the second all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
 #: States that give the sizes of the rows of G.
@@ -25,7 +23,7 @@ class SingularConfigurationWarning(UserWarning):
 
 
 def check_constraints(
-    module: "GeneratedModule", motions: "Iterable[Motion]", t: float, stacklevel: int
+    module: GeneratedModule, motions: Iterable[Motion], t: float, stacklevel: int
 ) -> None:
     """Refuse motions that start where constraints depend on each other, or warn near it."""
     for name, params, y0 in motions:
@@ -46,7 +44,7 @@ def check_constraints(
 
 
 def _condition(
-    module: "GeneratedModule", params: Sequence[float], y0: Sequence[float], t: float
+    module: GeneratedModule, params: Sequence[float], y0: Sequence[float], t: float
 ) -> tuple[float, str]:
     """The condition with rows of G of the size 1 at generic states, and the weakest constraint."""
     y = np.array([y0[: len(module.STATE)]])

@@ -6,9 +6,10 @@ from math import prod
 
 import numpy as np
 
-from solvers.equations.mass_matrix import Motion, examined
+from solvers.equations.mass_matrix import examined
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import positive, quantity, real_number
+from solvers.equations.singular_configuration import Motion
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Axes
