@@ -5,6 +5,7 @@ import json
 import tomllib
 from collections.abc import Iterator
 from dataclasses import fields
+from functools import cache
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from mutation import Mutation
 from derive import Derivation, load, names
 from derive.system.catalogue import published
 from derive.system.shipped import large_names
+from derive.verification import hand, quantities
 from derive.verification.hand import EQUATIONS, HEADER, judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
@@ -45,6 +47,15 @@ SLOW = ("chain_3", "foucault_pendulum", "four_bar", "free_body", "rolling_disc",
 QUICK = [name for name in names() if name not in SLOW]
 
 
+@pytest.fixture
+def without_advice(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Verdicts without corrections, which have tests of their own; files share a derivation."""
+    monkeypatch.setattr(quantities, "advised", lambda verdict, *_: verdict)
+    for name in ("load", "Derivation"):
+        monkeypatch.setattr(hand, name, cache(getattr(hand, name)))
+
+
+@pytest.mark.usefixtures("without_advice")
 @pytest.mark.parametrize("name", QUICK)
 def test_mutations_of_published_equations_are_wrong(name: str, tmp_path: Path) -> None:
     original, path, verdicts = published(name), tmp_path / "mutant.toml", []
