@@ -3,7 +3,8 @@
 import os
 import shutil
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -41,6 +42,18 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
     """``shared(name, compute)``: a result that one worker computes and all workers use."""
     folder = tmp_path_factory.getbasetemp()
     return Shared(folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder)
+
+
+@pytest.fixture(scope="session")
+def large_module(shared: Shared) -> Callable[[str], ModuleType]:
+    """Modules that take long to generate: one worker fills the cache, and each loads them once."""
+
+    @cache
+    def loaded(name: str) -> ModuleType:
+        shared(f"module_{name}", lambda: load_module(name).SYSTEM)
+        return load_module(name)  # type: ignore[return-value]
+
+    return loaded
 
 
 @pytest.fixture(scope="session", autouse=True)

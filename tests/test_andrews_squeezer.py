@@ -5,12 +5,13 @@ E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996,
 values and solution: F. Mazzia, C. Magherini, Test Set for Initial Value Problem Solvers, II.10.
 """
 
+from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
 import pytest
 
-from holonomic import integrate, load
+from holonomic import integrate
 from solvers.references.taylor import taylor
 
 #: Published angles at the start, where the mechanism is at rest.
@@ -27,8 +28,8 @@ END = (
 
 
 @pytest.fixture(scope="module")
-def module() -> ModuleType:
-    return load("andrews_squeezer")  # type: ignore[return-value]
+def module(large_module: Callable[[str], ModuleType]) -> ModuleType:
+    return large_module("andrews_squeezer")
 
 
 def test_the_mass_matrix_is_the_published_one(module: ModuleType) -> None:

@@ -5,6 +5,7 @@ dynamics equations for the balance and steer of a bicycle: a benchmark and revie
 the Royal Society A 463 (2007), tables 1 and 2. There z points down and y to the right.
 """
 
+from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from numpy import cross
 from numpy.typing import NDArray
 
-from holonomic import integrate, load
+from holonomic import integrate
 from solvers import linearise
 from solvers.equations.consistent_start import consistent_start
 
@@ -28,8 +29,8 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 @pytest.fixture(scope="module")
-def module() -> ModuleType:
-    return load("bicycle")  # type: ignore[return-value]
+def module(large_module: Callable[[str], ModuleType]) -> ModuleType:
+    return large_module("bicycle")
 
 
 def rolling(speed: float, **others: float) -> dict[str, float]:

@@ -57,7 +57,9 @@ def beside(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
 
 
 @pytest.fixture
-def module(name: str, beside: ModuleType) -> ModuleType:
+def module(name: str, beside: ModuleType, large_module: Callable[[str], ModuleType]) -> ModuleType:
+    if name in large_names():
+        return large_module(name)
     return beside if name == "strange" else load_module(name)
 
 
@@ -134,7 +136,7 @@ class Alembert:
         self.moving = (*system.q, *self.constant)
         free = [s for s in system.params if s not in self.constant]
         symbols = (TIME, *self.moving, *free)
-        compiled = partial(sp.lambdify, modules="mpmath")
+        compiled = partial(sp.lambdify, modules="mpmath", cse=True)
         self.terms = [
             (compiled(free, inertia), compiled(symbols, r))
             for mass in system.masses
@@ -235,9 +237,10 @@ def test_motions_and_reactions_satisfy_d_alembert_s_principle(
             scale = max(1, *(abs(x) for x in (*needed, *rates)))
             for force, given in zip(needed[:n], applied, strict=True):
                 assert abs(force - given) < 1e-11 * scale
-            a[0] += mpf("1e-6")
-            wrong = zip(alembert.forces(mpf(t), q, v, a, values), needed, strict=True)
-            assert system.conditions or max(abs(one - other) for one, other in wrong) > 1e-9
+            if not system.conditions:
+                a[0] += mpf("1e-6")
+                wrong = zip(alembert.forces(mpf(t), q, v, a, values), needed, strict=True)
+                assert max(abs(one - other) for one, other in wrong) > 1e-9
         if system.reactions:
             results = module.reactions(t, own, params)
             for force, reaction in zip(needed[n:], results, strict=True):

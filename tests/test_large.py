@@ -1,5 +1,6 @@
 """Large systems: loops factorise matrices, and texts grow with the square of the size."""
 
+from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
@@ -24,8 +25,8 @@ N = LARGE + 1
 
 
 @pytest.fixture(scope="module")
-def chain() -> ModuleType:
-    return load_module(f"chain_{N}")
+def chain(large_module: Callable[[str], ModuleType]) -> ModuleType:
+    return large_module(f"chain_{N}")
 
 
 def state(seed: int) -> tuple[np.ndarray, np.ndarray]:
