@@ -7,6 +7,7 @@ from typing import Self
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.formulas.expression import FUNCTIONS, Scope, Value
 from derive.formulas.numeric import Evaluator, NoValueError, solved
 from derive.formulas.sampling import STATES, sample
@@ -101,11 +102,8 @@ class Model:
 
     def agreement(self, difference: sp.Expr) -> str | None:
         """A note if a difference is zero at all states or along motions, otherwise None."""
-        for context in (self.context, self.motions):
-            note = context.agreement(difference)
-            if note is not None:
-                return note
-        return None
+        note = self.context.agreement(difference)
+        return self.motions.agreement(difference) if note is None else note
 
     @property
     def _further_states(self) -> list[State]:
@@ -152,7 +150,8 @@ def own_names(system: System) -> Scope:
 def time_derivative(system: System, value: Value) -> Value:
     """The time derivative of a function of coordinates, velocities and time."""
     rates = zip((*system.q, *system.qdot), (*system.qdot, *system.qddot), strict=True)
-    return sum((value.diff(symbol) * rate for symbol, rate in rates), value.diff(TIME))
+    slope = derivative if isinstance(value, sp.Expr) else sp.diff
+    return sum((slope(value, symbol) * rate for symbol, rate in rates), slope(value, TIME))
 
 
 def depends_on(value: Value, symbols: Collection[sp.Symbol]) -> bool:

@@ -19,14 +19,14 @@ FACTORS = (*map(sp.Integer, (1, -1, 2, -2)), sp.S.Half, -sp.S.Half)
 def with_multipliers(model: Model, equations: Sequence[str]) -> Model:
     """The model with the usual names of multipliers, with which most equations hold."""
     system = model.derivation.system
-    if not system.conditions:
+    if not system.conditions or not equations:
         return model
     motions = model.motions
 
     def holding(names: Scope) -> int:
         return sum(_holds(motions, text, {**motions.scope, **names}) for text in equations)
 
-    found = max(usual_names(system), key=holding) if equations else {}
+    found = max(usual_names(system), key=holding)
     return replace(model, names={**found, **model.names})
 
 
