@@ -24,6 +24,7 @@ from typing import Any
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
+from derive.formulas.derivative import derivative
 from derive.formulas.trigonometric_field import TrigonometricField
 from derive.mechanics.regular_integrals import RegularIntegrals
 from derive.system.symbols import TIME
@@ -140,7 +141,7 @@ def _independent(
 def _form(system: System, rate: sp.Expr) -> list[sp.Expr]:
     """Coefficients of the differentials of coordinates, inputs and time."""
     at_rest = dict.fromkeys(system.qdot, sp.S.Zero)
-    slopes = [sp.expand(rate).coeff(v) for v in system.qdot]
+    slopes = [derivative(rate, v).xreplace(at_rest) for v in system.qdot]
     return [*slopes, *(sp.S.Zero for _ in system.u), rate.xreplace(at_rest)]
 
 
