@@ -6,6 +6,7 @@ different lines.
 
 import ast
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TypeAlias
 
 from derive.formulas.latex import COMMANDS, latex, operand_latex
@@ -20,6 +21,9 @@ NOTHING: Chunk = ("", 0.0)
 
 #: Widths in units of a digit: of a sign with its spaces, of brackets, and of an index.
 SIGN, BRACKETS, INDEX = 3.2, 1.8, 0.7
+
+#: Widths that are kept.
+MOST_WIDTHS = 100_000
 
 #: The space before continued rows, and its width.
 INDENT, INDENT_WIDTH = r"\quad", 2.0
@@ -50,6 +54,7 @@ def latex_rows(sides: Sequence[ast.expr], width: float) -> list[str]:
     return rows
 
 
+@lru_cache(MOST_WIDTHS)  # of parts of formulas, whose lines are broken from outside to inside
 def width_of(node: ast.expr) -> float:
     """The width of a formula on one line, in digits."""
     match node:

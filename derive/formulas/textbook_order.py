@@ -5,12 +5,13 @@ m g l sin θ. Terms with accelerations and velocities precede the others.
 """
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, reduce
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import sympy as sp
+from sympy.printing.str import StrPrinter
 
 #: The kinds of symbols, in the order of factors.
 Kind: TypeAlias = Literal["mass", "gravity", "parameter", "coordinate", "rate", "acceleration"]
@@ -38,6 +39,16 @@ class TextbookOrder:
                 return ast.Tuple([self.tree(entry) for entry in value], ast.Load())
             rows = [[self.tree(entry) for entry in row] for row in value.tolist()]
             return ast.List([ast.List(row, ast.Load()) for row in rows], ast.Load())
+        if value not in self._trees:
+            self._trees[value] = self._of_number(value)
+        return self._trees[value]
+
+    @cached_property
+    def _trees(self) -> dict[sp.Expr, ast.expr]:
+        """Trees of values that occur in several formulas."""
+        return {}
+
+    def _of_number(self, value: sp.Expr) -> ast.expr:
         if value.is_Add:
             return self._sum(value)
         coefficient, rest = value.as_coeff_Mul()
@@ -94,13 +105,17 @@ class TextbookOrder:
     def _place(self, factor: sp.Expr) -> tuple[int, int, str]:
         """The place of a factor: that of its last symbol, and functions after symbols."""
         if factor.atoms(*FUNCTIONS):
-            return (len(KINDS), 0, str(factor))
+            return (len(KINDS), 0, self._print(factor))
         places = (self._place_of_symbol(symbol) for symbol in factor.free_symbols)
-        return (*max(places, default=(-1, 0)), str(factor))
+        return (*max(places, default=(-1, 0)), self._print(factor))
 
     def _place_of_symbol(self, symbol: sp.Symbol) -> tuple[int, int]:
         kind = self.kinds.get(symbol, "parameter")
         return (KINDS.index(kind), self._index.get(symbol, 0))
+
+    @cached_property
+    def _print(self) -> Callable[[sp.Expr], str]:
+        return _Texts().doprint
 
     @cached_property
     def _index(self) -> dict[sp.Symbol, int]:
@@ -126,6 +141,21 @@ class TextbookOrder:
             base, exponent = factor.as_base_exp()
             if self.kinds.get(base) == kind and exponent.is_Integer and exponent > 0:
                 yield from [self._index[base]] * int(exponent)
+
+
+class _Texts(StrPrinter):
+    """Texts of expressions, as `str` gives them; sums and products are printed once."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._known: dict[sp.Expr, str] = {}
+
+    def _print(self, expr: sp.Basic, **kwargs: Any) -> str:
+        if not isinstance(expr, sp.Add | sp.Mul):
+            return str(super()._print(expr, **kwargs))
+        if expr not in self._known:
+            self._known[expr] = str(super()._print(expr, **kwargs))
+        return self._known[expr]
 
 
 def _is_divisor(factor: sp.Expr) -> bool:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from derive.formulas.derivative import derivative
 from derive.handout.document import Block, Paragraph
 from derive.handout.motion import has_inverse, legendre
 from derive.handout.notation import names_of, words
@@ -64,5 +65,5 @@ def _rates_of_momenta(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     for i, q in enumerate(d.system.q):
         force = formulas.notation.force(i)
         right = f"d({L}, {q})" + (f" + {force}" if force else "")
-        value = tidied(d.lagrangian.diff(q) + d.system.applied[i], *state)
+        value = tidied(derivative(d.lagrangian, q) + d.system.applied[i], *state)
         yield formulas.equation(f"pdot_{q}", right, value=value)

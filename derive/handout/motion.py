@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import sympy as sp
 
+from derive.formulas.derivative import derivative
 from derive.handout.document import Block, Paragraph
 from derive.handout.notation import names_of
 from derive.handout.numbering import Numbering
@@ -33,18 +34,18 @@ def euler_lagrange(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     residuals = _residuals(d)
     for i, (q, qdot) in enumerate(zip(d.system.q, d.system.qdot, strict=True)):
         rate, slope = f"ddt(d({L}, {qdot}))", f"d({L}, {q})"
-        change, derivative = _time_derivative(d, d.momenta[i]), d.lagrangian.diff(q)
+        change, gradient = _time_derivative(d, d.momenta[i]), derivative(d.lagrangian, q)
         force = formulas.notation.force(i)
         yield Paragraph(
             f"Coordinate `{q}`: the rate of the momentum, the derivative of the Lagrangian, and "
             "the equation."
         )
         yield formulas.equation(rate, value=tidied(change, *state))
-        yield formulas.equation(slope, value=tidied(derivative, *state))
+        yield formulas.equation(slope, value=tidied(gradient, *state))
         reaction = formulas.notation.reaction(i)
         left = f"{rate} - {slope}" + (f" - {force}" if force else "") + reaction
         yield formulas.equation(left, value=residuals[i], after=("0",))
-        if derivative == 0 and not force and not reaction:
+        if gradient == 0 and not force and not reaction:
             yield Paragraph(
                 f"The Lagrangian does not depend on `{q}`: the momentum `p_{q}` is constant."
             )
@@ -53,8 +54,8 @@ def euler_lagrange(d: Derivation, formulas: Numbering) -> Iterator[Block]:
 def accelerations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     """The equations of motion as linear equations, and their solution if it is readable."""
     M, f = map(formulas.notation.letter, "Mf")
-    still = dict.fromkeys((*d.system.qddot, *d.system.multipliers), 0)
-    forcing = sp.Matrix([-residual.subs(still) for residual in _residuals(d)])
+    still = dict.fromkeys((*d.system.qddot, *d.system.multipliers), sp.S.Zero)
+    forcing = sp.Matrix([-residual.xreplace(still) for residual in _residuals(d)])
     is_column = len(d.system.q) > 1
     vector = f"{f}_vector" if is_column else f
     matrix = "mass matrix" if is_column else "inertia"
@@ -149,7 +150,7 @@ def _residuals(d: Derivation) -> list[sp.Expr]:
     )
     triples = zip(d.momenta, d.system.q, forces, strict=True)
     return [
-        tidied(_time_derivative(d, p) - d.lagrangian.diff(q) - force, *state)
+        tidied(_time_derivative(d, p) - derivative(d.lagrangian, q) - force, *state)
         for p, q, force in triples
     ]
 
@@ -168,4 +169,5 @@ def _time_derivative(d: Derivation, value: sp.Expr) -> sp.Expr:
     """The time derivative of a function of coordinates, velocities and time."""
     symbols = (*d.system.q, *d.system.qdot)
     rates = zip(symbols, (*d.system.qdot, *d.system.qddot), strict=True)
-    return sp.Add(value.diff(TIME), *(value.diff(symbol) * rate for symbol, rate in rates))
+    terms = (derivative(value, symbol) * rate for symbol, rate in rates)
+    return sp.Add(derivative(value, TIME), *terms)

@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations_with_replacement, count, product
+from itertools import combinations_with_replacement, count, islice, product
 
 import sympy as sp
 
@@ -14,6 +14,8 @@ from derive.handout.notation import Notation
 
 #: Width of the left side of a column or matrix, and lines of the longest readable formula.
 NAME_WIDTH, READABLE = 8, 3
+#: Parts of the largest value of which the width is determined; others have hundreds in a row.
+MOST_PARTS = 5000
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,8 @@ class Numbering:
 
     def fits(self, value: sp.Expr | sp.MatrixBase) -> bool:
         """Whether a value fits on a line, beside its name."""
+        if next(islice(sp.preorder_traversal(value), MOST_PARTS, None), None) is not None:
+            return False
         return width_of(self.notation.order.tree(value)) < WIDTH - NAME_WIDTH
 
     def are_readable(self, values: Iterable[sp.Expr]) -> bool:
