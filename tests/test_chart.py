@@ -52,8 +52,8 @@ def few_settings(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="module")
-def truth() -> Reference:
-    return Reference.of(find("report", load_module))
+def truth(shared: Shared) -> Reference:
+    return shared("reference_report", lambda: Reference.of(find("report", load_module)))
 
 
 @pytest.fixture

@@ -388,7 +388,7 @@ def test_where_no_compiled_numbers_are_sufficient_series_have_more_digits(
     assert selection.model.run.method_choice.method == "taylor"
     assert "at best where 1e-09 is requested" in selection.declined["double precision"]
     end = selection.model.states(np.array([20.0]))[0]
-    fine = taylor(dp, scene.params, scene.y0, [0, 20], 60)[-1]
+    fine = taylor(dp, scene.params, scene.y0, [0, 20], 40)[-1]  # errors grow by 1e7
     assert np.abs(end - fine).max() <= selection.model.error_estimate < 1e-13
     with pytest.raises(NotAccurateError, match="dop853 reaches"):
         selected(replace(scene, method="dop853"))
