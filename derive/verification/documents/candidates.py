@@ -2,21 +2,29 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from itertools import islice, permutations, product
 from math import pi
 from typing import Any, Literal, TypeAlias
 
 from derive.system.parts import Parameter
 from derive.system.system import System
+from derive.verification.documents.constraints import StatedConstraint
 from derive.verification.documents.letters import Letters
-from derive.verification.multipliers import usual_names
 
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
+#: The same of one with constraints, before those of the signs of multipliers.
+MAX_CONSTRAINED = 400
 #: Largest number of choices of parameters of one kind, and of all.
 MAX_CHOICES = 200
 #: Letters of forces and of friction that are tried.
 MAX_FORCES = 2
+
+#: A document may write constraints times one of these factors, the usual one first.
+FACTORS = tuple(Fraction(n, d) for n, d in ((1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2), (-1, 2)))
+#: Most multipliers whose signs are tried one by one.
+MAX_SIGNS = 3
 
 #: What a letter of friction damps: the rate of one coordinate or of all, the velocity of each mass
 #: (with Rayleigh's function b (v_1**2 + v_2**2)/2), or the motion as a whole (Q = -b M q_dot).
@@ -56,6 +64,12 @@ class Candidate:
     friction: tuple[tuple[str, Damped], ...] = ()
     #: Numbers in place of parameters that have no letter.
     numbers: Mapping[str, str] = field(default_factory=dict)
+    #: Constraints that the document states, after those of the system.
+    constraints: tuple[StatedConstraint, ...] = ()
+    #: Letters of multipliers, the number of the constraint, and the factor of its multiplier.
+    multipliers: tuple[tuple[str, int, Fraction], ...] = ()
+    #: Numbers of formulas that state the system, beside constraints.
+    stating: frozenset[int] = frozenset()
 
     @property
     def is_usual(self) -> bool:
@@ -68,6 +82,22 @@ class Candidate:
     def lacking(self) -> int:
         """How many parameters of the system have neither a letter nor a number."""
         return len(self.system.parameters) - len({*self.parameters, *self.numbers})
+
+    @property
+    def given(self) -> frozenset[int]:
+        """Numbers of formulas that state the system, and hold for it whatever they are."""
+        return self.stating | {one.number for one in self.constraints}
+
+    @property
+    def title(self) -> str:
+        """The title of the system."""
+        stated = " with the constraints that the document states" if self.constraints else ""
+        return f"{self.system.title}{stated}"
+
+    @property
+    def condition_count(self) -> int:
+        """The number of constraints."""
+        return len(self.system.conditions) + len(self.constraints)
 
     def offset(self, index: int, values: Mapping[str, float]) -> float:
         """The offset of a coordinate in numbers."""
@@ -88,8 +118,8 @@ def candidates(
     With `numbers`, by kinds of parameters, these have the numbers instead of letters.
     """
     n = len(system.coordinates)
-    if system.conditions:
-        own = {one for names in usual_names(system) for one in names}
+    if system.conditions or letters.constraints:
+        own = {*letters.multipliers}
         others = (one for one in letters.parameters if one not in own)
         letters = replace(letters, parameters=tuple(others))
     choices = _likeliest(
@@ -99,12 +129,40 @@ def candidates(
         loads(letters, "force", n),
         frictions(letters, n),
     )
-    for (signs, offsets), order, mapping, forces, friction in islice(choices, MAX_CANDIDATES):
+    most = MAX_CONSTRAINED if system.conditions or letters.constraints else MAX_CANDIDATES
+    for (signs, offsets), order, mapping, forces, friction in islice(choices, most):
         if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
             continue  # the letter of a force of the system
         stated = _numbers(system, mapping, numbers or {})
         if numbers is None or stated:
-            yield Candidate(system, order, signs, offsets, mapping, forces, friction, stated)
+            one = Candidate(system, order, signs, offsets, mapping, forces, friction, stated)
+            yield from constrained(one, letters)
+
+
+def constrained(candidate: Candidate, letters: Letters) -> Iterator[Candidate]:
+    """The candidate with the constraints of its coordinates, and meanings of multipliers.
+
+    A system with constraints has no others. There is none if a constraint of the document contains
+    other coordinates as well.
+    """
+    own = set() if candidate.system.conditions else {*candidate.coordinates}
+    stated = tuple(one for one in letters.constraints if one.coordinates & own)
+    if not all(one.coordinates <= own for one in stated):
+        return
+    candidate = replace(candidate, constraints=stated)
+    for factors in _factors(min(candidate.condition_count, len(letters.multipliers))):
+        numbered = zip(letters.multipliers, range(len(factors)), factors, strict=False)
+        yield replace(candidate, multipliers=tuple(numbered))
+
+
+def _factors(count: int) -> Iterator[tuple[Fraction, ...]]:
+    """Factors of multipliers: the same for all, or signs of each."""
+    if not count:
+        yield ()
+        return
+    common = [(one,) * count for one in FACTORS]
+    signs = product(*(FACTORS[:2],) * count) if count <= MAX_SIGNS else iter(())
+    yield from dict.fromkeys([*common, *signs])
 
 
 def _numbers(

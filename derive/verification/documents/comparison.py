@@ -45,8 +45,20 @@ class Comparison:
         # a Lagrangian of motions alone has other equations
         is_lagrangian = self._scope.letters.quantities.get(first.text) == "lagrangian"
         model = self._model.context if is_lagrangian else self._model
+        has_reactions = is_lagrangian and depends_on(
+            right, self._scope.derivation.system.multipliers
+        )
+        if has_reactions:
+            left += self._reactions
         if (note := model.agreement(left - right)) is not None:
             return plain("verified", formula, note)
+        if has_reactions:
+            result = self._roles.value(side, first.text, left)
+            if result.verdict.verdict not in CORRECT:
+                return result
+            # it has the value along motions alone
+            note = "the multipliers have not the signs and factors of the equations of motion"
+            return plain("wrong", formula, note, self._model.context.witness(right, left))
         small = "it holds for small motions about the origin"
         if is_product:
             return self._scaled(formula, side, left, right)
@@ -65,6 +77,14 @@ class Comparison:
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
         return result
+
+    @property
+    def _reactions(self) -> sp.Expr:
+        """The terms Σ λ φ that the constraints of coordinates add to a Lagrangian."""
+        derivation = self._scope.derivation
+        pairs = zip(derivation.system.multipliers, derivation.system.conditions, strict=True)
+        holonomic = derivation.holonomic
+        return sp.Add(*(name * one.formula for name, one in pairs if one.formula in holonomic))
 
     def _scaled(
         self, formula: DocumentFormula, side: Text, left: sp.Expr, right: sp.Expr

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.convention import is_crossed
+from derive.verification.documents.energies import systems_of_energies
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.letter_search import letters_of
 from derive.verification.documents.letters import Letters
@@ -68,7 +69,8 @@ def _best(
     trivial = trivial_comparisons(letters, formulas, derivatives)
     matches = [
         match
-        for tried in groups
+        for group in groups
+        for tried in _alike(group)
         for match in best_matches(tried, letters, formulas, derivatives, trivial)
         if match.holding or not least
     ]
@@ -76,6 +78,14 @@ def _best(
     if best is None or (least and not _is_supported(best, least)):
         return Interpretation(letters, None)
     return Interpretation(letters, best, tuple(_rivals(best, matches)))
+
+
+def _alike(group: Sequence[Candidate]) -> Iterator[Sequence[Candidate]]:
+    """Candidates of one system with the same constraints."""
+    found: dict[frozenset[int], list[Candidate]] = {}
+    for one in group:
+        found.setdefault(one.given, []).append(one)
+    yield from found.values()
 
 
 def _is_supported(best: Match, least: float) -> bool:
@@ -119,6 +129,10 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[C
     for system in stated_systems(letters, statements.formulas):
         yield [*stated_candidates(system, letters)]
     yield from _of_templates(letters, statements)
+    if letters.constraints:
+        for system, numbers in systems_of_energies(letters, statements.formulas):
+            stated = stated_candidates(system, letters)
+            yield [replace(one, stating=numbers) for one in stated if one.constraints]
 
 
 def _of_templates(
@@ -126,7 +140,7 @@ def _of_templates(
 ) -> Iterator[Sequence[Candidate]]:
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
-        for system in templates(count, has_rods):
+        for system in templates(count, has_rods, bool(letters.constraints)):
             yield [*candidates(system, letters, numbers)]
 
 
@@ -142,7 +156,8 @@ def judge_of(statements: Translated, letters: Letters, candidate: Candidate) -> 
     letters = _with_order(statements, letters, candidate)
     meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
     system, formulas = meaning(candidate), statements.formulas
-    return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings))
+    given = [formulas[number].occurrence for number in candidate.given]
+    return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings), given)
 
 
 def _with_order(statements: Translated, letters: Letters, candidate: Candidate) -> Letters:

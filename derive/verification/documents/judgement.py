@@ -1,5 +1,6 @@
 """Verdicts on all formulas of a document, from its displays alone."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -8,12 +9,15 @@ from derive.reading.latex.reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
 from derive.reading.latex.walking import nodes
 from derive.verification.documents.alternatives import alternatives
+from derive.verification.documents.constraints import WAY_OUT
 from derive.verification.documents.convention import convention
 from derive.verification.documents.corrections import corrected
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import interpretation, judge_of
 from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
+from derive.verification.documents.letter_search import letters_of
 from derive.verification.documents.rates import RATES, stem
+from derive.verification.documents.sentences import sentence
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     DocumentFormula,
@@ -25,6 +29,8 @@ from solvers.io.suggestion import did_you_mean
 
 #: Most systems of a document.
 MAX_SYSTEMS = 3
+#: Brackets around a letter, as those of a function's argument.
+BRACKETS = re.compile(r"\s*(?:\\left)?\(\s*([^()]*?)\s*(?:\\right)?\)\s*")
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
 
@@ -48,7 +54,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
         if found.match is None:
             break
         judge = judge_of(part, found.letters, found.match.candidate)
-        titles.append(found.match.candidate.system.title)
+        titles.append(found.match.candidate.title)
         verdicts = judge.verdicts(remaining)
         conventions.append(convention(found.match.candidate))
         others += alternatives(part, found, verdicts, written)
@@ -56,16 +62,23 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
             before = results.get(formula.occurrence)
             if before is None or _is_graver(result, before[1]):
                 results[formula.occurrence] = formula, result
-        remaining = tuple(one for one, result in verdicts if not result.is_understood)
+        bound = {q for one in found.match.candidate.constraints for q in one.coordinates}
+        remaining = tuple(
+            one for one, result in verdicts
+            if not result.is_understood and bound.isdisjoint(map(stem, one.words))
+        )  # fmt: skip
     note = "no system was found for which its formulas hold"
+    letters = letters_of(statements.formulas, statements.derivatives)
+    if letters.multipliers or letters.constraints:
+        note = f"{note}: {WAY_OUT}"
     places = {formula.occurrence for formula in statements.formulas} - results.keys()
     judged += [_plain(place, "context", note) for place in places]
     judged += [_judged(*pair, written) for pair in results.values()]
     notes = (*document.notes, *_unused(hints, statements.formulas))
     system, ordered = "; ".join(dict.fromkeys(titles)), sorted(judged, key=lambda one: one.span)
-    letters = "; ".join(filter(None, dict.fromkeys(conventions)))
+    meanings = "; ".join(filter(None, dict.fromkeys(conventions)))
     return JudgedDocument(
-        document.file, document.kind, system, tuple(ordered), notes, letters, tuple(others)
+        document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
 
 
@@ -86,7 +99,8 @@ def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:
 
 def _occurrence(document: Document, display: Display, tree: Statement | Unreadable) -> Occurrence:
     line, column, cell = document.place(display.start + tree.span[0])
-    return Occurrence(display.number, line, column, cell, display.start, display.latex, tree)
+    prose = sentence(document, display)
+    return Occurrence(display.number, line, column, cell, display.start, display.latex, tree, prose)
 
 
 def _plain(place: Occurrence, verdict: str, note: str) -> JudgedFormula:
@@ -124,7 +138,9 @@ def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
     for occurrence in occurrences:
         for node in nodes(occurrence.sides):
             if isinstance(node, Letter | Derivative):
-                found.setdefault(translator.text(node).text, occurrence.latex[slice(*node.span)])
+                own = occurrence.latex[slice(*node.span)]
+                inside = BRACKETS.fullmatch(own)
+                found.setdefault(translator.text(node).text, inside[1] if inside else own)
     return found
 
 

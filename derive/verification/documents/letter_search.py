@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 
+from derive.verification.documents.constraints import multipliers_of, stated_constraints
 from derive.verification.documents.entries import matrices_by_entries
 from derive.verification.documents.letters import (
     ABBREVIATION,
@@ -88,9 +89,13 @@ def letters_of(
     used = {*abbreviations, *matrices_by_entries(stems)}
     parameters = [one for one in parameters if one not in used]
     ordered, *others = _orders(formulas, coordinates, stems)
+    multipliers = multipliers_of(stems)
+    constraints = stated_constraints(formulas, coordinates, parameters, multipliers, derivatives)
+    if not constraints:  # lambda = k/m defines another quantity
+        multipliers = multipliers_of(parameters)
     return Letters(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
-        ordered, tuple(others),
+        ordered, tuple(others), multipliers=multipliers, constraints=constraints,
     )  # fmt: skip
 
 

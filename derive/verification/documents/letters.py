@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Self
 
+from derive.verification.documents.constraints import StatedConstraint
 from derive.verification.documents.jets import FUNCTIONS
 
 #: Names of energies and of the Lagrangian, without their index.
@@ -35,7 +36,7 @@ MATRICES = {"M": "mass_matrix", "C": "coriolis_matrix", "G": "gravity", "g": "gr
 #: Numbers of entries of matrices and columns.
 SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
 #: Indices that change nothing.
-TOTAL = ("", "tot", "total")
+TOTAL = ("", "tot", "total", "sys")
 
 #: Kinds of parameters by the first letters of their names, the usual ones first.
 KINDS: dict[str, tuple[str, ...]] = {
@@ -84,6 +85,8 @@ class Letters:
     ordered: tuple[str, ...]  # coordinates in the order of columns and matrices
     other_orders: tuple[tuple[str, ...], ...] = ()  # if the document does not state it
     kinds: Mapping[str, str] = field(default_factory=dict)  # of parameters, if they are given
+    multipliers: tuple[str, ...] = ()  # parameters that can be multipliers of constraints
+    constraints: tuple[StatedConstraint, ...] = ()
 
     def hinted(self, kinds: Mapping[str, str]) -> Self:
         """The letters with given kinds of parameters."""

@@ -88,7 +88,7 @@ def best_matches(
         (index, side, vote)
         for index, formula in enumerate(formulas)
         for side, vote in numbers.comparisons(formula)
-        if (index, side) not in trivial
+        if (index, side) not in trivial and index not in tried[0].given
     ]
     if not votes:
         return []

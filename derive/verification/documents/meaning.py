@@ -1,17 +1,23 @@
 """The system of a document in the document's own letters."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 
 import sympy as sp
 
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.mechanics.derivation import Derivation
+from derive.system.constraints import Constraint
 from derive.system.naming import check_name
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
-from derive.system.symbols import velocity
+from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.verification.documents.candidates import Candidate, Damped
+from derive.verification.documents.constraints import StatedConstraint
+from derive.verification.documents.letters import KINDS
+from derive.verification.documents.rates import RATES
+from derive.verification.documents.statements import WORD
 
 #: Endings of parameters that a document does not name, and of letters that are no valid names.
 UNNAMED, INVALID = "_unnamed", "_letter"
@@ -23,6 +29,8 @@ class Meaning:
 
     system: System
     symbols: Mapping[str, sp.Symbol]
+    #: Letters of multipliers, with their values.
+    multipliers: Mapping[str, sp.Expr] = field(default_factory=dict)
 
 
 def meaning(candidate: Candidate) -> Meaning:
@@ -61,6 +69,11 @@ def meaning(candidate: Candidate) -> Meaning:
         forces = [force - symbols[name] * one for force, one in zip(forces, row, strict=True)]
     for name, i in candidate.forces:
         forces[i] += symbols[name]
+    for name in _letters(candidate.constraints):
+        if name not in symbols:
+            kind = {"positive": True} if is_length(name) else {"real": True}
+            symbols[name] = sp.Symbol(valid_name(name), **kind)
+            units[symbols[name].name] = "m" if is_length(name) else "1"
     parameters = {s.name: s for s in symbols.values() if s not in q}
     parameters |= {v.name: v for p in template.params if isinstance(v := values[p], sp.Symbol)}
     kinds = {one.symbol.name: one.unit for one in template.coordinates}
@@ -80,9 +93,41 @@ def meaning(candidate: Candidate) -> Meaning:
         potential=template.potential_energy.xreplace(values),
         gravity=(sp.S.Zero,) * template.dimension,  # included in the potential
         forces=forces,
-        constraints=[one.with_formula(one.formula.xreplace(values)) for one in template.conditions],
+        constraints=[
+            *(one.with_formula(one.formula.xreplace(values)) for one in template.conditions),
+            *_conditions(candidate, symbols),
+        ],
     )
-    return Meaning(system, symbols)
+    multipliers = {
+        name: sp.Rational(factor.numerator, factor.denominator) * system.multipliers[index]
+        for name, index, factor in candidate.multipliers
+    }
+    return Meaning(system, symbols, multipliers)
+
+
+def _letters(constraints: Sequence[StatedConstraint]) -> set[str]:
+    """The parameters in constraints."""
+    words = {word for one in constraints for word in WORD.findall(one.text)}
+    moving = {q + ending for one in constraints for q in one.coordinates for ending in RATES}
+    return words - moving - {*FUNCTIONS, "t"}
+
+
+def is_length(name: str) -> bool:
+    """Whether a letter is usual for a length, which is positive."""
+    return name.partition("_")[0].rstrip("0123456789") in KINDS["length"]
+
+
+def _conditions(candidate: Candidate, symbols: Mapping[str, sp.Symbol]) -> Iterator[Constraint]:
+    """The constraints that the document states."""
+    scope = {**FUNCTIONS, **symbols, "t": TIME}
+    scope |= {f"{q}_dot": velocity(symbols[q]) for q in candidate.coordinates}
+    for k, one in enumerate(candidate.constraints):
+        yield Constraint(parse(one.text, scope), multiplier(candidate, k))
+
+
+def multiplier(candidate: Candidate, index: int) -> str:
+    """The name of the multiplier of a constraint that the document states."""
+    return f"multiplier_{len(candidate.system.conditions) + index + 1}"
 
 
 def _assumptions(candidate: Candidate, index: int) -> dict[str, bool]:

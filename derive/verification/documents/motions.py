@@ -9,14 +9,18 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from derive.verification.documents.candidates import Candidate
+from derive.verification.documents.conditions import Conditions, conditions
 from derive.verification.documents.jets import Array, Jet, Value, evaluated
 from derive.verification.documents.letters import Letters
-from derive.verification.documents.meaning import derivation, drag, mass_matrix
+from derive.verification.documents.meaning import derivation, drag, mass_matrix, multiplier
 
 #: Number of states.
 STATES = 3
+#: Steps of Newton's method onto constraints, and residuals of order 1 that count as none.
+NEWTON_STEPS, TINY = 20, 1e-14
 
 
 class ArbitraryMotion:
@@ -25,14 +29,17 @@ class ArbitraryMotion:
     def __init__(self, letters: Letters) -> None:
         self._random = np.random.default_rng(1)
         self.shape = (1, STATES)
-        self.places = {q: self._random.uniform(0.3, 1.3, STATES) for q in letters.coordinates}
-        self.speeds = {q: self._random.uniform(-1, 1, STATES) for q in letters.coordinates}
+        size = self.shape
+        self.places = {q: self._random.uniform(0.3, 1.3, size) for q in letters.coordinates}
+        self.speeds = {q: self._random.uniform(-1, 1, size) for q in letters.coordinates}
         self.parameters = {p: float(self._random.uniform(0.5, 1.5)) for p in letters.parameters}
         self.accelerations = {q: self._array() for q in letters.coordinates}
         self._gradients: dict[tuple[str, str, int], Array] = {}
         energies = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
         self.energies = {kind: self._array() for kind in energies}
         self.positions: Sequence[Array] = ()
+        self.multipliers: Mapping[str, Array] = {}
+        self.reactions: Mapping[str, Array] = {}
         self.time = Jet.of(self._array(), 1.0)
 
     def momentum(self, coordinate: str) -> Jet:
@@ -64,13 +71,16 @@ class Motions:
         self.shape = (len(tried), STATES)
         random = np.random.default_rng(0)
         names = sorted({*letters.coordinates} | {q for one in tried for q in one.coordinates})
-        #: Places and speeds of the document's coordinates, and values of its parameters.
-        self.places = {q: random.uniform(0.3, 1.3, STATES) for q in names}
-        self.speeds = {q: random.uniform(-1, 1, STATES) for q in names}
+        #: Places and speeds of the document's coordinates, and values of its parameters. Those
+        #: of candidates differ if these have constraints.
+        self.places = {q: random.uniform(0.3, 1.3, (1, STATES)) for q in names}
+        self.speeds = {q: random.uniform(-1, 1, (1, STATES)) for q in names}
         self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
         own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
         self._signs = np.array([one.signs for one in tried], float)
         self._names = self._system_names(own)
+        if tried[0].condition_count:
+            self._move(own)
 
     @property
     def time(self) -> Jet:
@@ -81,15 +91,92 @@ class Motions:
     @cached_property
     def accelerations(self) -> Mapping[str, Array]:
         """The accelerations of each coordinate of the document; NaN where it is none."""
+        return self._by_coordinate(self._solution[..., : len(self._system.q)])
+
+    @cached_property
+    def multipliers(self) -> Mapping[str, Array]:
+        """The values of letters of multipliers."""
+        reactions = self._solution[..., len(self._system.q) :]
+        values: dict[str, Array] = {}
+        for b, one in enumerate(self._tried):
+            for name, index, factor in one.multipliers:
+                table = values.setdefault(name, np.full(self.shape, np.nan))
+                table[b] = float(factor) * reactions[b, :, index]
+        return values
+
+    @cached_property
+    def reactions(self) -> Mapping[str, Array]:
+        """The multipliers of all constraints by their names."""
+        names = [one.name for one in self._system.conditions]
+        names += [multiplier(self._tried[0], k) for k in range(len(self._tried[0].constraints))]
+        return dict(
+            zip(names, np.moveaxis(self._solution, -1, 0)[len(self._system.q) :], strict=True)
+        )
+
+    @cached_property
+    def _solution(self) -> Array:
+        """Accelerations and multipliers of M q̈ - Gᵀ λ = f and G q̈ = γ."""
         M, f = self._mass_matrix, np.array([*map(self._numbers, self._derivation.forcing)])
-        f = np.einsum("bji,jbk->bki", self._signs, f)
-        f += self._loads
+        f = np.einsum("bji,jbk->bki", self._signs, f) + self._loads
+        if self._tried[0].condition_count:
+            now = self._conditions
+            G = now.gradients
+            zero = np.zeros((*self.shape, G.shape[2], G.shape[2]))
+            M = np.block([[M, -G.transpose(0, 1, 3, 2)], [G, zero]])
+            f = np.concatenate([f, now.forcing], axis=-1)
         with np.errstate(all="ignore"):
             try:
-                solution = np.linalg.solve(M, f[..., None])[..., 0]
+                return np.asarray(np.linalg.solve(M, f[..., None])[..., 0])
             except np.linalg.LinAlgError:
-                solution = np.full_like(f, np.nan)
-        return self._by_coordinate(solution)
+                return np.full_like(f, np.nan)
+
+    @property
+    def _conditions(self) -> Conditions:
+        """The constraints at the states."""
+        return conditions(self._tried, self._names, self._letters, self.shape)
+
+    @property
+    def _letters(self) -> dict[str, Value]:
+        """Letters of the document at the states, without accelerations."""
+        letters: dict[str, Value] = {"t": self._names["t"]}
+        letters |= {p: Jet.of(np.array([[value]])) for p, value in self.parameters.items()}
+        for q, place in self.places.items():
+            speed = self.speeds[q]
+            letters |= {q: Jet.of(place, speed), f"{q}_dot": Jet.of(speed)}
+        return letters
+
+    def _move(self, own: Mapping[str, float]) -> None:
+        """Move the states onto the constraints: coordinates by Newton's method, then velocities."""
+        # constraints in letters are the same for all candidates
+        tried = self._tried if self._system.conditions else self._tried[:1]
+        shape = (len(tried), STATES)
+        for _ in range(NEWTON_STEPS):
+            now = conditions(tried, self._names, self._letters, shape)
+            if not np.any(np.abs(now.residuals) > TINY):
+                break
+            self._shift(self.places, tried, _shortest(now.gradients, now.residuals))
+            if self._system.conditions:
+                self._names = self._system_names(own)
+        now = conditions(tried, self._names, self._letters, shape)
+        self._shift(self.speeds, tried, _shortest(now.gradients, now.rates))
+        self._names = self._system_names(own)
+
+    def _shift(self, table: dict[str, Array], tried: Sequence[Candidate], change: Array) -> None:
+        """Subtract a change of the coordinates of candidates, or of velocities."""
+        for q, values in table.items():
+            table[q] = np.broadcast_to(values, change.shape[:2]).copy()
+            for order, rows in self._orders.items():
+                if q in order:
+                    own = rows[rows < len(tried)]
+                    table[q][own] -= change[own, :, order.index(q)]
+
+    @cached_property
+    def _orders(self) -> Mapping[tuple[str, ...], NDArray[np.intp]]:
+        """The numbers of the candidates with each order of coordinates."""
+        found: dict[tuple[str, ...], list[int]] = {}
+        for b, one in enumerate(self._tried):
+            found.setdefault(one.coordinates, []).append(b)
+        return {order: np.array(rows) for order, rows in found.items()}
 
     @cached_property
     def _mass_matrix(self) -> Array:
@@ -176,7 +263,7 @@ class Motions:
         loads = np.zeros((STATES, len(candidate.coordinates)))
         for name, i in candidate.forces:
             loads[:, i] += self.parameters[name]
-        speeds = np.stack([self.speeds[q] for q in candidate.coordinates], axis=-1)
+        speeds = np.stack([_row(self.speeds[q], number) for q in candidate.coordinates], axis=-1)
         for name, damped in candidate.friction:
             if isinstance(damped, int):
                 rates = speeds * (np.arange(speeds.shape[-1]) == damped)
@@ -187,6 +274,14 @@ class Motions:
                 rates = np.einsum("kij,kj->ki", matrix[number], speeds)
             loads -= self.parameters[name] * rates
         return loads
+
+    def _by_order(self, table: Mapping[str, Array]) -> Array:
+        """The values of the coordinates of each candidate in its order."""
+        result = np.empty((len(self._tried), len(self._system.q), STATES))
+        for order, rows in self._orders.items():
+            for i, q in enumerate(order):
+                result[rows, i] = np.broadcast_to(table[q], self.shape)[rows]
+        return result
 
     def _by_coordinate(self, table: Array) -> Mapping[str, Array]:
         result = {q: np.full(self.shape, np.nan) for q in self.places}
@@ -207,10 +302,7 @@ class Motions:
 
     def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
         """Coordinates, velocities and parameters of the system."""
-        place, speed = (
-            np.array([[table[q] for q in one.coordinates] for one in self._tried])
-            for table in (self.places, self.speeds)
-        )
+        place, speed = (self._by_order(table) for table in (self.places, self.speeds))
         offsets = [[one.offset(i, self.parameters) for i in range(len(one.offsets))]
                    for one in self._tried]  # fmt: skip
         q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
@@ -223,3 +315,18 @@ class Motions:
             column = [[self._parameter(one, p, own[p])] for one in self._tried]
             names[p] = Jet.of(np.broadcast_to(np.array(column), self.shape))
         return names
+
+
+def _row(table: Array, candidate: int) -> Array:
+    """The values of a candidate in a table that can be the same for all."""
+    return np.asarray(table[candidate if len(table) > 1 else 0])
+
+
+def _shortest(gradients: Array, residuals: Array) -> Array:
+    """The shortest solutions x of G x = r; zeros where constraints depend on each other."""
+    rows = np.einsum("bkci,bkdi->bkcd", gradients, gradients)
+    try:
+        factors = np.linalg.solve(rows, residuals[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.zeros((*gradients.shape[:2], gradients.shape[3]))
+    return np.nan_to_num(np.einsum("bkci,bkc->bki", gradients, factors))

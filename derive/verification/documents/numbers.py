@@ -41,7 +41,11 @@ class Numbers:
             self.values[name] = Jet.of(np.array([[number]]))
         for q, place in self._motions.places.items():
             speed, acceleration = self._motions.speeds[q], self._motions.accelerations[q]
-            self.set_rates(q, Jet.of(place[None], speed[None], acceleration))
+            self.set_rates(q, Jet.of(place, speed, acceleration))
+        self.parameters = tuple(self._motions.parameters)
+        self.reactions = tuple(self._motions.reactions)
+        for name, force in {**self._motions.reactions, **self._motions.multipliers}.items():
+            self.values[name] = Jet.of(force, np.nan, np.nan)
         for name, coordinate in letters.momenta.items():
             jet = self._motions.momentum(coordinate)
             self.values[name], self.values[f"{name}_dot"] = jet, jet.rate
@@ -101,8 +105,7 @@ class Numbers:
 
     def is_near(self, *sides: str) -> Votes | None:
         """Whether two sides are equal but for one term."""
-        speeds = [one[None] for one in self._motions.speeds.values()]
-        near = is_near(sides, self._value, speeds)
+        near = is_near(sides, self._value, [*self._motions.speeds.values()])
         return None if near is None else np.broadcast_to(near, self._motions.shape[:1]) > 0
 
     def signatures(self) -> list[bytes]:

@@ -10,7 +10,13 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.documents.candidates import UNITS, Candidate, frictions, loads
+from derive.verification.documents.candidates import (
+    UNITS,
+    Candidate,
+    constrained,
+    frictions,
+    loads,
+)
 from derive.verification.documents.letters import KINDS, Letters
 from derive.verification.documents.meaning import derivation, valid_name
 from derive.verification.documents.statements import DocumentFormula, definitions
@@ -69,7 +75,8 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[Candidate]:
                   if p.name == valid_name(name)}  # fmt: skip
     for forces in loads(letters, "force", n):
         for friction in frictions(letters, n):
-            yield Candidate(system, order, signs, (0,) * n, parameters, forces, friction)
+            one = Candidate(system, order, signs, (0,) * n, parameters, forces, friction)
+            yield from constrained(one, letters)
 
 
 def _points(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
-from derive.verification.documents.candidates import Candidate
+from derive.verification.documents.candidates import FACTORS, Candidate
 from derive.verification.documents.jets import UnknownNameError, evaluated
 from derive.verification.documents.letters import OPERATORS, Letters
 from derive.verification.documents.motions import Motions
@@ -31,6 +31,8 @@ def resolved(
     used = {
         *candidate.parameters.values(),
         *(name for name, _ in (*candidate.forces, *candidate.friction)),
+        *(name for name, *_ in candidate.multipliers),
+        *(word for one in candidate.constraints for word in WORD.findall(one.text)),
     }
     for name in letters.parameters:
         if name not in used:  # a random number until now
@@ -43,7 +45,12 @@ def resolved(
         meanings |= _accepted(names, formulas, numbers)
     numbers.define(formulas)
     while True:
-        unknown = {f: u for f in formulas if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN}
+        unknown = {
+            f: u
+            for f in formulas
+            if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN
+            and not {*u} & {*letters.multipliers}
+        }  # which would hold with any reaction
         found = next((m for u in dict.fromkeys(unknown.values())
                       if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],
                                         candidate, numbers))), None)  # fmt: skip
@@ -110,6 +117,8 @@ def _meaning(
     numbers: Numbers,
 ) -> dict[str, str] | None:
     pool = [*_pool(candidate)]
+    if len(names) == 1:
+        pool += _reactions(candidate, numbers)
     for texts in product(pool, repeat=len(names)):
         try:
             jets = {
@@ -147,3 +156,12 @@ def _pool(candidate: Candidate) -> Iterator[str]:
         for q in candidate.coordinates:
             yield q + ending
     yield from dict.fromkeys(candidate.parameters.values())
+
+
+def _reactions(candidate: Candidate, numbers: Numbers) -> Iterator[str]:
+    """Forces that a letter can stand for: multipliers, times or over a letter."""
+    letters = {word for one in candidate.constraints for word in WORD.findall(one.text)}
+    letters &= {*numbers.parameters}
+    for name, factor in product(numbers.reactions, FACTORS):
+        yield f"{factor}*{name}"
+        yield from (f"{factor}*{name}{sign}{letter}" for letter in sorted(letters) for sign in "*/")

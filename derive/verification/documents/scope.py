@@ -47,7 +47,7 @@ class DocumentScope:
         #: Formulas that define a name, with the text that does.
         self.defining: dict[str, tuple[DocumentFormula, str]] = {}
         self._add_letters(meaning)
-        own, *_ = usual_names(self._system)
+        own = meaning.multipliers or next(usual_names(self._system))
         self.names |= own
         self._add_energies()
         self._add_routhians(formulas)
@@ -72,6 +72,9 @@ class DocumentScope:
         #: Parameters with the numbers that the document sets them to.
         self.special_values = self._special_values(formulas)
         equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
+        if meaning.multipliers:
+            self.model = Model(self.derivation, self.names)
+            return
         others = {name: value for name, value in self.names.items() if name not in own}
         self.model = with_multipliers(Model(self.derivation, others), equations)
         self.names = dict(self.model.names)

@@ -39,6 +39,7 @@ class Occurrence:
     start: int  # of the display's LaTeX in the text of the file
     latex: str  # of the display
     tree: Statement | Unreadable
+    prose: str = ""  # of the sentence around the display
 
     @property
     def source(self) -> str:

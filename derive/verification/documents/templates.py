@@ -24,22 +24,26 @@ RODS = frozenset(
     "uniform_rod half_rod pushed_rod cart_and_half_rod cart_and_uniform_rod two_half_rods".split()
 )
 
+#: Systems without constraints of their own, which documents add.
+FREE = frozenset("polar_mass mass_in_space body_in_plane body_on_plane".split())
 
-def templates(count: int, has_rods: bool = True) -> Iterator[System]:
-    """Yield the systems with so many coordinates, with uniform rods or without."""
+
+def templates(count: int, has_rods: bool = True, is_free: bool = False) -> Iterator[System]:
+    """Yield the systems with so many coordinates, with uniform rods, and free ones, or without."""
     for system in _all():
-        if len(system.coordinates) == count and (has_rods or system.name not in RODS):
+        is_meant = (has_rods or system.name not in RODS) and (is_free or system.name not in FREE)
+        if len(system.coordinates) == count and is_meant:
             yield system
 
 
 def named(name: str | Path) -> System:
     """The system of a name, also one that does not ship, or of a path."""
-    return next((one for one in _others() if one.name == name), None) or load(name)
+    return next((one for one in (*_free(), *_others()) if one.name == name), None) or load(name)
 
 
 @cache
 def _all() -> tuple[System, ...]:
-    return (*map(load, SHIPPED), *_others())
+    return (*_free(), *map(load, SHIPPED), *_others())
 
 
 def _coordinates(*pairs: tuple[sp.Symbol, str]) -> list[Coordinate]:
@@ -217,3 +221,26 @@ def _others() -> Iterator[System]:
         _parameters(m1="kg", m2="kg", g="m/s^2"),
         [PointMass(m1, (0, -x)), PointMass(m2, (0, x))],
     )
+
+
+def _free() -> Iterator[System]:
+    """Systems to which documents add constraints."""
+    x, y, z, theta = symbols("x y z theta", real=True)
+    r, m, J = symbols("r m J", positive=True)
+    yield System(
+        "polar_mass", "Mass in polar coordinates", _coordinates((r, "m"), (theta, "rad")),
+        _parameters(m="kg", g="m/s^2"), [PointMass(m, (r * sin(theta), -r * cos(theta)))],
+    )  # fmt: skip
+    yield System(
+        "mass_in_space", "Mass in space in uniform gravity",
+        _coordinates((x, "m"), (y, "m"), (z, "m")),
+        _parameters(m="kg", g="m/s^2"), [PointMass(m, (x, y, z))],
+    )  # fmt: skip
+    place = _coordinates((x, "m"), (y, "m"), (theta, "rad"))
+    body = [RigidBody(m, (x, y), J, theta)]
+    inertia = _parameters(m="kg", J="kg m^2", g="m/s^2")
+    yield System("body_in_plane", "Rigid body in a vertical plane", place, inertia, body)
+    yield System(
+        "body_on_plane", "Rigid body in a plane without gravity", place, inertia[:2], body,
+        potential=sp.S.Zero,
+    )  # fmt: skip

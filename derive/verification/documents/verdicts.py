@@ -1,6 +1,6 @@
 """Verdicts on the formulas of a document whose letters are known."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -12,6 +12,7 @@ from derive.formulas.zero import vanishes
 from derive.verification.documents.applied_forces import without_unknown_terms
 from derive.verification.documents.comparison import Comparison
 from derive.verification.documents.consequences import Consequences
+from derive.verification.documents.constraints import WAY_OUT
 from derive.verification.documents.derived_matrices import DerivedMatrices
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.manipulator import Manipulator
@@ -20,7 +21,7 @@ from derive.verification.documents.partial_energies import PartialEnergies
 from derive.verification.documents.roles import Roles
 from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.side_verdict import CORRECT, SideVerdict, not_understood, plain
-from derive.verification.documents.statements import INDICES, WORD, DocumentFormula
+from derive.verification.documents.statements import INDICES, WORD, DocumentFormula, Occurrence
 from derive.verification.documents.text import Text
 from derive.verification.engine import joined
 from derive.verification.model import depends_on
@@ -29,7 +30,8 @@ from derive.verification.model import depends_on
 class Judge:
     """Verdicts on formulas in the scope of a document."""
 
-    def __init__(self, scope: DocumentScope) -> None:
+    def __init__(self, scope: DocumentScope, given: Collection[Occurrence] = ()) -> None:
+        self._given = given
         linear = Linear(scope.derivation)
         # these give names their correct values, and the scope another model
         self._positions = MassPositions(scope)
@@ -56,23 +58,32 @@ class Judge:
             return plain("context", formula, "it is a step in time")
         if formula.subject in INDICES or self._is_special(formula):
             return plain("context", formula, "it states a value")
+        if formula.occurrence in self._given:
+            return plain("definition", formula, "it states the system")
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         if unknown and self._is_equation_without(formula, unknown):
             return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
         if self._unknown(formula.sides[:1]):
-            return not_understood(formula, unknown)
+            return self._not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
                 return self._first_side(formula) or result
         if unknown:
-            return not_understood(formula, unknown)
+            return self._not_understood(formula, unknown)
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
+
+    def _not_understood(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
+        result = not_understood(formula, unknown)
+        if not {*unknown} & {*self._scope.letters.multipliers}:
+            return result
+        note = joined(result.verdict.note, f"if this is a multiplier, {WAY_OUT}")
+        return replace(result, verdict=replace(result.verdict, note=note))
 
     def _is_identity(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
         """Whether neighbouring sides are equal for all values of letters without a meaning."""
@@ -88,6 +99,8 @@ class Judge:
     def _is_equation_without(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
         """Whether a formula is an equation of motion but for terms with unknown letters."""
         system = self._scope.derivation.system
+        if {*unknown} & {*self._scope.letters.multipliers}:  # all reactions would be correct
+            return False
         known = without_unknown_terms(formula, unknown)
         if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
             return False
