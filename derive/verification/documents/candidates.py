@@ -232,7 +232,8 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
 
 
 def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str, str]]:
-    """The letters of parameters of one kind: with the same indices first, also one for all."""
+    """The letters of parameters of one kind: their own, the same indices, one for all."""
+    own = {name: name for name in names if name in letters.parameters}
     usual = letters.of_kind(kind) if kind else list(letters.parameters)
     if len(usual) >= len(names):
         orders: Iterator[Sequence[str]] = permutations(usual, len(names))
@@ -241,7 +242,10 @@ def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str
     chosen = [dict(zip(names, order, strict=True)) for order in islice(orders, MAX_CHOICES)]
     same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
     chosen.sort(key=lambda one: sum(_index(name) != _index(one[name]) for name in one))
-    return [*chosen, *(one for one in same if one not in chosen)] or [{}]
+    others = [*chosen, *(one for one in same if one not in chosen)]
+    if len(own) == len(names):
+        return [own, *(one for one in others if one != own)]
+    return others or [{}]
 
 
 def _index(name: str) -> str:

@@ -25,28 +25,13 @@ def systems_of_energies(
     letters: Letters, formulas: Sequence[DocumentFormula]
 ) -> Iterator[tuple[System, frozenset[int]]]:
     """Yield the system of the stated Lagrangian, or energies, and the numbers of these formulas."""
-    symbols = {q: sp.Symbol(valid_name(q), real=True) for q in letters.coordinates}
-    for name in set(letters.parameters) - {*letters.multipliers}:
-        is_positive = is_length(name) or name in letters.of_kind("mass")
-        assumptions = {"positive": True} if is_positive else {"real": True}
-        symbols[name] = sp.Symbol(valid_name(name), **assumptions)
-    stated = _stated(letters, formulas, symbols)
+    symbols = _symbols(letters)
+    energies = _energies(letters, formulas, symbols)
+    if energies is None:
+        return
+    T, V, numbers = energies
     q = [symbols[name] for name in letters.coordinates]
     rates = [velocity(one) for one in q]
-    at_rest = dict.fromkeys(rates, sp.S.Zero)
-    numbers = set[int]()
-    if "kinetic_energy" in stated and "potential_energy" in stated:
-        (T, first), (V, second) = stated["kinetic_energy"], stated["potential_energy"]
-        numbers = {first, second}
-    elif "lagrangian" in stated:
-        L, number = stated["lagrangian"]
-        V, numbers = -L.xreplace(at_rest), {number}
-        T = sp.expand(L + V)
-    elif "kinetic_energy" in stated:
-        (T, number), V = stated["kinetic_energy"], sp.S.Zero
-        numbers = {number}
-    else:
-        return
     masses = _masses(sp.expand(T), q, rates)
     moving = [one for one, v in zip(q, rates, strict=True) if T.has(v)]
     if masses is None or V.free_symbols & {*rates} or not {*moving} >= {*q} & V.free_symbols:
@@ -66,7 +51,61 @@ def systems_of_energies(
         derivation(system)
     except SystemDefinitionError:
         return
-    yield system, frozenset(numbers)
+    yield system, numbers
+
+
+def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether the stated kinetic energy is that of a system and energies of rotations beside it.
+
+    The masses are then those of bodies, of which the document states the centres. An energy of a
+    rotation has a moment of inertia, which is no mass.
+    """
+    own = {one.name: one for one in (*system.q, *system.params)}
+    symbols = {name: own.get(one.name, one) for name, one in _symbols(letters).items()}
+    energies = _energies(letters, formulas, symbols)
+    if energies is None:
+        return False
+    masses = {symbols[name] for name in letters.of_kind("mass")}
+    rest = sp.expand(sp.expand_trig(energies[0] - derivation(system).kinetic_energy))
+    rotations = [(rest.coeff(rate, 2), rate) for rate in system.qdot if rest.has(rate)]
+    return (
+        bool(rotations)
+        and all(
+            not factor.could_extract_minus_sign()
+            and factor.free_symbols - masses
+            and not factor.free_symbols & {*system.q, *system.qdot, TIME}
+            for factor, _ in rotations
+        )
+        and sp.expand(rest - sp.Add(*(c * rate**2 for c, rate in rotations))) == 0
+    )
+
+
+def _symbols(letters: Letters) -> dict[str, sp.Symbol]:
+    """Symbols of the coordinates and parameters of a document, without multipliers."""
+    symbols = {q: sp.Symbol(valid_name(q), real=True) for q in letters.coordinates}
+    for name in set(letters.parameters) - {*letters.multipliers}:
+        is_positive = is_length(name) or name in letters.of_kind("mass")
+        assumptions = {"positive": True} if is_positive else {"real": True}
+        symbols[name] = sp.Symbol(valid_name(name), **assumptions)
+    return symbols
+
+
+def _energies(
+    letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
+) -> tuple[sp.Expr, sp.Expr, frozenset[int]] | None:
+    """The stated kinetic and potential energy, and the numbers of their formulas."""
+    stated = _stated(letters, formulas, symbols)
+    if "kinetic_energy" in stated and "potential_energy" in stated:
+        (T, first), (V, second) = stated["kinetic_energy"], stated["potential_energy"]
+        return T, V, frozenset({first, second})
+    if "lagrangian" in stated:
+        L, number = stated["lagrangian"]
+        V = -L.xreplace({velocity(symbols[q]): sp.S.Zero for q in letters.coordinates})
+        return sp.expand(L + V), V, frozenset({number})
+    if "kinetic_energy" in stated:
+        T, number = stated["kinetic_energy"]
+        return T, sp.S.Zero, frozenset({number})
+    return None
 
 
 def _stated(

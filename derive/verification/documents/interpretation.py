@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from derive.verification.documents.candidates import Candidate, candidates
 from derive.verification.documents.convention import is_crossed
-from derive.verification.documents.energies import systems_of_energies
+from derive.verification.documents.energies import has_rotations, systems_of_energies
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.letter_search import letters_of
 from derive.verification.documents.letters import Letters
@@ -127,6 +127,8 @@ def _is_plausible(rival: Candidate, best: Candidate) -> bool:
 def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[Candidate]]:
     """Candidates of one system after another: of those that the document states first."""
     for system in stated_systems(letters, statements.formulas):
+        if letters.constraints and has_rotations(system, letters, statements.formulas):
+            continue
         yield [*stated_candidates(system, letters)]
     yield from _of_templates(letters, statements)
     if letters.constraints:

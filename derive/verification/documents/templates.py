@@ -25,7 +25,7 @@ RODS = frozenset(
 )
 
 #: Systems without constraints of their own, which documents add.
-FREE = frozenset("polar_mass mass_in_space body_in_plane body_on_plane".split())
+FREE = frozenset("polar_mass mass_in_space body_in_plane body_on_plane body_by_point".split())
 
 
 def templates(count: int, has_rods: bool = True, is_free: bool = False) -> Iterator[System]:
@@ -226,7 +226,7 @@ def _others() -> Iterator[System]:
 def _free() -> Iterator[System]:
     """Systems to which documents add constraints."""
     x, y, z, theta = symbols("x y z theta", real=True)
-    r, m, J = symbols("r m J", positive=True)
+    r, a, m, J = symbols("r a m J", positive=True)
     yield System(
         "polar_mass", "Mass in polar coordinates", _coordinates((r, "m"), (theta, "rad")),
         _parameters(m="kg", g="m/s^2"), [PointMass(m, (r * sin(theta), -r * cos(theta)))],
@@ -243,4 +243,9 @@ def _free() -> Iterator[System]:
     yield System(
         "body_on_plane", "Rigid body in a plane without gravity", place, inertia[:2], body,
         potential=sp.S.Zero,
+    )  # fmt: skip
+    yield System(
+        "body_by_point", "Rigid body in a plane without gravity, by the place of one of its points",
+        place, [*inertia[:2], *_parameters(a="m")],
+        [RigidBody(m, (x + a * cos(theta), y + a * sin(theta)), J, theta)], potential=sp.S.Zero,
     )  # fmt: skip
