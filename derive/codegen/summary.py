@@ -1,6 +1,7 @@
 """The description of a system in the docstring of its generated module."""
 
 from collections.abc import Iterable
+from functools import lru_cache
 from textwrap import indent
 
 import sympy as sp
@@ -42,13 +43,18 @@ def units(system: System) -> dict[str, str]:
 
 def summary(contents: Contents) -> str:
     """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
-    system, derivation, unit = contents.system, contents.derivation, units(contents.system)
+    return _summary(contents.derivation, tuple(contents.states.items()))
+
+
+@lru_cache(maxsize=1)  # for the files of all languages, and of parts of a module
+def _summary(derivation: Derivation, states: tuple[tuple[Form, tuple[str, ...]], ...]) -> str:
+    system, unit = derivation.system, units(derivation.system)
     coordinates = [
         f"{c.symbol} [{c.unit}]{' > 0' if c.symbol.is_positive else ''}: {c.meaning}"
         for c in system.coordinates
     ]
     sections = {"Coordinates q": coordinates}
-    for form, state in contents.states.items():
+    for form, state in states:
         sections[STATES[form]] = [f"{name} [{unit[name]}]" for name in state]
     sections["Parameters params"] = [
         f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
