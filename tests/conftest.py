@@ -45,15 +45,9 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
 
 
 @pytest.fixture(scope="session")
-def large_module(shared: Shared) -> Callable[[str], ModuleType]:
-    """Modules that take long to generate: one worker fills the cache, and each loads them once."""
-
-    @cache
-    def loaded(name: str) -> ModuleType:
-        shared(f"module_{name}", lambda: load_module(name).SYSTEM)
-        return load_module(name)  # type: ignore[return-value]
-
-    return loaded
+def large_module() -> Callable[[str], ModuleType]:
+    """Modules that take long to load, once a worker."""
+    return cache(load_module)  # type: ignore[return-value]
 
 
 @pytest.fixture(scope="session", autouse=True)

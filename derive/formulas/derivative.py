@@ -20,17 +20,17 @@ def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
         return sp.S.Zero
     if not isinstance(expression, sp.Add | sp.Mul | sp.Pow | sp.sin | sp.cos):
         return expression.diff(symbol)
-    slopes = [derivative(part, symbol) for part in expression.args]
-    if not any(slopes):
+    changes = [derivative(part, symbol) for part in expression.args]
+    if not any(changes):
         return sp.S.Zero
     if expression.is_Add:
-        return sp.Add(*slopes)
+        return sp.Add(*changes)
     if expression.is_Mul:
         parts = expression.args
-        terms = [sp.Mul(*parts[:k], d, *parts[k + 1 :]) for k, d in enumerate(slopes) if d != 0]
+        terms = [sp.Mul(*parts[:k], d, *parts[k + 1 :]) for k, d in enumerate(changes) if d != 0]
         return sp.Add(*terms)
     if expression.is_Pow:
         base, exponent = expression.args
-        growth = slopes[1] * sp.log(base) if slopes[1] != 0 else sp.S.Zero
-        return expression * (growth + slopes[0] * exponent / base)
-    return expression.fdiff() * slopes[0]
+        growth = changes[1] * sp.log(base) if changes[1] != 0 else sp.S.Zero
+        return expression * (growth + changes[0] * exponent / base)
+    return expression.fdiff() * changes[0]

@@ -30,13 +30,12 @@ def reduced(expression: sp.Expr, largest: int = LARGEST) -> sp.Expr:
     if harmonics.fewest_operations > operations:
         return expression
     waves = harmonics.sum
-    candidates = [waves]
+    counts = {waves: int(waves.count_ops())}
+    counts.setdefault(expression, operations)  # known; to count takes long
     if halves := _halves(waves):
-        candidates += [_halved(waves, halves, square) for square in SQUARES]
-    counts = [int(candidate.count_ops()) for candidate in candidates]
-    candidates.insert(1, expression)
-    counts.insert(1, operations)
-    return candidates[counts.index(min(counts))]
+        others = (_halved(waves, halves, square) for square in SQUARES)
+        counts |= {one: int(one.count_ops()) for one in others}
+    return min(counts, key=counts.__getitem__)
 
 
 def collected(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:

@@ -28,7 +28,6 @@ class Modes:
         `ValueError` if the system has no known equilibrium, or it is not stable.
         """
         name = module.SYSTEM
-        given = ", ".join(f"{n} = {x:.6g}" for n, x in zip(module.PARAMETERS, params, strict=True))
         if not has_function(module, "linear"):
             raise ValueError(f"{name} has no equilibrium: small motions have no modes")
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
@@ -36,13 +35,18 @@ class Modes:
             squares, shapes = scipy.linalg.eigh(stiffness_matrix, mass_matrix)
         except np.linalg.LinAlgError as error:
             text = "the mass matrix is not positive definite at the equilibrium"
-            raise ValueError(f"{name} has no modes with {given}: {text}") from error
+            raise ValueError(
+                f"{name} has no modes with {_values(module, params)}: {text}"
+            ) from error
         except ValueError as error:
             text = "its matrices are not finite at the equilibrium"
-            raise ValueError(f"{name} has no modes with {given}: {text}") from error
+            raise ValueError(
+                f"{name} has no modes with {_values(module, params)}: {text}"
+            ) from error
         if squares[0] <= 0:
             reason = f"squared frequencies are {', '.join(f'{x:.6g}' for x in squares)} rad^2/s^2"
-            raise ValueError(f"{name} does not oscillate about rest with {given}: {reason}")
+            at = f"about rest with {_values(module, params)}"
+            raise ValueError(f"{name} does not oscillate {at}: {reason}")
         return cls(mass_matrix, stiffness_matrix, np.sqrt(squares), shapes)
 
     @property
@@ -57,6 +61,11 @@ class Modes:
         x, velocity = np.split(y, 2)
         twice = velocity @ self.mass_matrix @ velocity + x @ self.stiffness_matrix @ x
         return float(np.sqrt(twice))
+
+
+def _values(module: GeneratedModule, params: Sequence[float]) -> str:
+    """Parameters with their values, for messages."""
+    return ", ".join(f"{n} = {x:.6g}" for n, x in zip(module.PARAMETERS, params, strict=True))
 
 
 def local_eigenvalues(

@@ -2,15 +2,17 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from itertools import islice, permutations, product
 from math import pi
 from typing import Any, Literal, TypeAlias
+
+import sympy as sp
 
 from derive.system.parts import Parameter
 from derive.system.system import System
 from derive.verification.documents.constraints import StatedConstraint
 from derive.verification.documents.letters import Letters
+from derive.verification.multipliers import FACTORS
 
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
@@ -21,8 +23,6 @@ MAX_CHOICES = 200
 #: Letters of forces and of friction that are tried.
 MAX_FORCES = 2
 
-#: A document may write constraints times one of these factors, the usual one first.
-FACTORS = tuple(Fraction(n, d) for n, d in ((1, 1), (-1, 1), (2, 1), (-2, 1), (1, 2), (-1, 2)))
 #: Most multipliers whose signs are tried one by one.
 MAX_SIGNS = 3
 
@@ -67,7 +67,7 @@ class Candidate:
     #: Constraints that the document states, after those of the system.
     constraints: tuple[StatedConstraint, ...] = ()
     #: Letters of multipliers, the number of the constraint, and the factor of its multiplier.
-    multipliers: tuple[tuple[str, int, Fraction], ...] = ()
+    multipliers: tuple[tuple[str, int, sp.Rational], ...] = ()
     #: Numbers of formulas that state the system, beside constraints.
     stating: frozenset[int] = frozenset()
 
@@ -155,7 +155,7 @@ def constrained(candidate: Candidate, letters: Letters) -> Iterator[Candidate]:
         yield replace(candidate, multipliers=tuple(numbered))
 
 
-def _factors(count: int) -> Iterator[tuple[Fraction, ...]]:
+def _factors(count: int) -> Iterator[tuple[sp.Rational, ...]]:
     """Factors of multipliers: the same for all, or signs of each."""
     if not count:
         yield ()

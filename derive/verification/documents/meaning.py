@@ -99,8 +99,7 @@ def meaning(candidate: Candidate) -> Meaning:
         ],
     )
     multipliers = {
-        name: sp.Rational(factor.numerator, factor.denominator) * system.multipliers[index]
-        for name, index, factor in candidate.multipliers
+        name: factor * system.multipliers[index] for name, index, factor in candidate.multipliers
     }
     return Meaning(system, symbols, multipliers)
 

@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
-from derive.verification.documents.candidates import FACTORS, Candidate
+from derive.verification.documents.candidates import Candidate
 from derive.verification.documents.jets import UnknownNameError, evaluated
 from derive.verification.documents.letters import OPERATORS, Letters
 from derive.verification.documents.motions import Motions
 from derive.verification.documents.numbers import Numbers
 from derive.verification.documents.rates import RATES
 from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.multipliers import FACTORS
 
 #: Unknown letters of a formula that are sought at once, and comparisons that must hold.
 MAX_UNKNOWN, SUPPORT = 2, 2
