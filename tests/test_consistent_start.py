@@ -10,8 +10,10 @@ import generated.rolling_disc as disc
 from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
 from solvers.equations.assembly import EXACT, Assembly
+from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.singular_configuration import SingularConfigurationWarning
+from solvers.equations.tangent_start import tangent_start
 
 q1, q2, q3, x, y = sp.symbols("q1 q2 q3 x y", real=True)
 a, b, c, d, m, length = sp.symbols("a b c d m l", positive=True)
@@ -236,3 +238,19 @@ def test_mistakes_in_the_assembly_are_noticed(
         monkeypatch.setattr("solvers.equations.assembly.STEPS", 1)
     with pytest.raises((AssertionError, ValueError)):
         test_four_bar_linkages_have_freudenstein_s_angles_in_both_branches(1.0, 1, four_bar)
+
+
+def test_perturbations_of_completed_starts_are_their_derivatives() -> None:
+    # of the given rolling; no constraint contains the rate of the heading, which remains 0
+    given, size, h = {"phi": 0.3, "psi": 0.2, "phi_dot": 0.4}, len(disc.STATE), 1e-5
+
+    def start(rolling: float) -> np.ndarray:
+        return np.array(consistent_start(disc, given | {"chi_dot": rolling}, disc.DEFAULTS).y)
+
+    rate = disc.STATE.index("chi_dot")
+    row = np.concatenate([start(2.0), np.eye(size)[rate]])
+    flags = np.array([name in given or name == "chi_dot" for name in disc.STATE])
+    form = Form(disc, "variational", disc.DEFAULTS)
+    (changed,) = tangent_start(form, 0.0, row[np.newaxis], flags)
+    differences = (start(2.0 + h) - start(2.0 - h)) / (2 * h)
+    assert changed[size:] == pytest.approx(differences, abs=1e-9)
