@@ -48,7 +48,7 @@ static void interpolate(
     count_turns(start, splat(h), state);
 }
 
-static void locate_by_cubic(Lanes *lanes, int lane, WithinStep *within)
+SELDOM static void locate_by_cubic(Lanes *lanes, int lane, WithinStep *within)
 {
     const Event *event = &lanes->task->events[within->bracket->event];
     const State *start = &lanes->motion.state;

@@ -69,7 +69,7 @@ static void estimate_event(int degree, const double *coefficients, double full_h
 }
 
 /* Bracket all crossings of an event within the step of a lane. */
-static void bracket_crossings(const Lanes *lanes, int lane, WithinStep *within, int e)
+SELDOM static void bracket_crossings(const Lanes *lanes, int lane, WithinStep *within, int e)
 {
     const Event *event = &lanes->task->events[e];
     const double before = LANE(lanes->before[e], lane), after = within->after[e];

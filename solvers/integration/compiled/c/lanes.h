@@ -5,6 +5,14 @@
 #include <math.h>
 #include <stdint.h>
 
+/* A function that few steps need: it is compiled for size, in less time, and is called instead of
+   inlined. */
+#if defined __GNUC__
+#define SELDOM __attribute__((cold, noinline))
+#else
+#define SELDOM
+#endif
+
 #ifdef ONE_LANE
 enum { LANES = 1 };
 typedef double real;

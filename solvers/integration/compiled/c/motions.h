@@ -26,7 +26,7 @@ typedef struct {
 } Lanes;
 
 /* Load the next unfinished motion into a lane, if there is one. */
-static void load_motion(Lanes *lanes, int lane)
+SELDOM static void load_motion(Lanes *lanes, int lane)
 {
     Task *task = lanes->task;
     WithinStep *within = &lanes->within[lane];
@@ -70,7 +70,7 @@ static void update_lane(Lanes *lanes, int lane)
 }
 
 /* Event values of the motions just loaded. */
-static void evaluate_events(Lanes *lanes)
+SELDOM static void evaluate_events(Lanes *lanes)
 {
     const Task *task = lanes->task;
     for (int e = 0; e < task->event_count; e++) {
