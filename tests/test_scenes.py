@@ -1,12 +1,12 @@
 """Scenes are read strictly and safely, and invalid scenes are refused."""
 
-import time
 from math import pi
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
+from counting import counted_calls
 
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
@@ -72,11 +72,10 @@ def test_numbers_have_units_and_exact_fractions(text: object, unit: str, value: 
     ("(" * 100_000, "longer than a number"),
     ("", "is no number"),
 ])  # fmt: skip
-def test_text_that_is_no_number_is_refused_at_once(text: object, words: str) -> None:
-    before = time.perf_counter()
-    with pytest.raises(QuantityError, match=words):
+def test_text_that_is_no_number_is_refused_with_little_work(text: object, words: str) -> None:
+    with pytest.raises(QuantityError, match=words), counted_calls() as calls:
         quantity(text, "m")
-    assert time.perf_counter() - before < 1
+    assert calls.count < 10_000
 
 
 @pytest.mark.parametrize(("changes", "words"), [
@@ -147,7 +146,7 @@ def test_a_missing_key_is_named(key: str) -> None:
         scene("mine", {k: v for k, v in PLAIN.items() if k != key}, load_module)
 
 
-def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> None:
+def test_a_file_that_is_no_scene_is_refused_with_little_work(tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"
     cases = {
         b"x" * 50_000_000: "more than",
@@ -158,10 +157,9 @@ def test_a_file_that_is_no_scene_is_refused_within_a_second(tmp_path: Path) -> N
     }
     for content, words in cases.items():
         path.write_bytes(content)
-        before = time.perf_counter()
-        with pytest.raises(InputError, match=words):
+        with pytest.raises(InputError, match=words), counted_calls() as calls:
             read(path, load_module)
-        assert time.perf_counter() - before < 1
+        assert calls.count < 10_000
     with pytest.raises(InputError, match=r"none.toml: there is no such file"):
         read(tmp_path / "none.toml", load_module)
 
