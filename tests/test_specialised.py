@@ -1,5 +1,7 @@
 """Code for one scene: folded parameters, required functions only, the same motion."""
 
+import subprocess
+import sys
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType
@@ -113,6 +115,25 @@ def test_a_changed_system_is_generated_anew() -> None:
     text = generator_text()
     for name in ("systems/double_pendulum.py", "codegen/graph.py"):
         assert (ROOT / "derive" / name).read_text() in text
+
+
+def test_the_generator_s_text_is_that_of_all_modules_that_a_generation_imports() -> None:
+    code = (
+        "import sys\nfrom derive import Derivation, System, load, reduced\n"
+        "from derive.codegen.functions import Functions\nfrom derive.codegen.writing import texts\n"
+        "from derive.mechanics.specialisation import specialised\n"
+        "texts(Derivation(specialised(reduced(load('rotating_hoop')), {'g': 1.0})), ('rhs',))\n"
+        "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('derive.')), sep='\\n')"
+    )
+    printed = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, check=True, text=True
+    )
+    loaded = [path for path in printed.stdout.splitlines() if path != "None"]
+    text = generator_text()
+    assert len(loaded) > 30
+    assert [path for path in loaded if Path(path).read_text() not in text] == []
+    for name in ("verification/documents/page.py", "reading/latex/build.py"):
+        assert (ROOT / "derive" / name).read_text() not in text
 
 
 def test_folded_parameters_cost_nothing_and_zeros_vanish() -> None:

@@ -1,5 +1,6 @@
 """Generated modules of systems: shipped, or built and cached."""
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
@@ -19,6 +20,10 @@ from solvers.scenes.models.method_choice import MethodChoice
 
 if TYPE_CHECKING:
     from derive import System
+
+#: The rooms that write modules from systems, and an import of another file of theirs.
+GENERATOR = ("derive/codegen", "derive/mechanics", "derive/system", "derive/systems")
+IMPORTED = re.compile(r"^ *from (derive[\w.]*) import (?:([\w ,]+)|\(([^)]*)\))", re.MULTILINE)
 
 #: The systems of modules that were built in this process, by the module's name.
 _systems: "dict[str, System]" = {}
@@ -178,6 +183,22 @@ def system_of(module: GeneratedModule) -> "System":
 
 @cache
 def generator_text() -> str:
-    """The source text of the generator, which is part of the key of cached modules."""
-    folder = Path(__file__).parents[2] / "derive"
-    return "".join(source.read_text(encoding="utf-8") for source in sorted(folder.rglob("*.py")))
+    """The source text of the generator and the systems, a part of the key of cached modules.
+
+    It has all files that the generator imports, and no others, so that a change to a reader of
+    documents rebuilds no module.
+    """
+    root = Path(__file__).parents[2]
+    waiting = [path for room in GENERATOR for path in (root / room).rglob("*.py")]
+    texts: dict[Path, str] = {}
+    while waiting:
+        path = waiting.pop()
+        if path not in texts and path.is_file():
+            texts[path] = path.read_text(encoding="utf-8")
+            for package, one, several in IMPORTED.findall(texts[path]):
+                names = re.findall(r"\w+", one or several)
+                parts = [package, *(f"{package}.{name}" for name in names)]
+                files = [root.joinpath(*part.split(".")) for part in parts]
+                waiting += [file.with_suffix(".py") for file in files]
+                waiting += [file / "__init__.py" for file in files]
+    return "".join(texts[path] for path in sorted(texts))
