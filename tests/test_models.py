@@ -8,13 +8,14 @@ from math import pi
 
 import numpy as np
 import pytest
+import scipy
 from sharing import Shared
 
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
-from solvers.equations.normal_modes import mode_spread
+from solvers.equations.normal_modes import _generalized_eigh, mode_spread
 from solvers.integration.integrate import integrate
 from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
@@ -27,7 +28,7 @@ from solvers.scenes.models import (
 )
 from solvers.scenes.models.catalogue import closed_forms, load
 from solvers.scenes.models.double_precision import check_times
-from solvers.scenes.models.equilibrium import Equilibrium
+from solvers.scenes.models.equilibrium import Equilibrium, _exponentials
 from solvers.scenes.models.extended_precision import by_series
 from solvers.scenes.models.full_equations import estimated_error
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
@@ -360,9 +361,24 @@ def test_without_their_propagation_errors_would_be_underestimated(
     assert NormalModes.of(motion).error_estimate < largest_error(motion, NormalModes.of(motion))
     motion = motion_from(sp, (pi, 0.0), 14)
     monkeypatch.setattr(
-        equilibrium.scipy.linalg, "expm", lambda matrix: np.eye(matrix.shape[-1]) + matrix
+        equilibrium, "_exponentials", lambda matrices: np.eye(matrices.shape[-1]) + matrices
     )
     assert Equilibrium.of(motion).error_estimate < largest_error(motion, Equilibrium.of(motion))
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 10.0])
+def test_exponentials_and_modes_are_those_of_scipy(size: float) -> None:
+    rng = np.random.default_rng(5)
+    matrices = size * rng.normal(size=(20, 5, 5))
+    truth = scipy.linalg.expm(matrices)
+    difference = np.abs(_exponentials(matrices) - truth).max(axis=(1, 2))
+    assert (difference < 1e-13 * (1 + 10 * size) * np.abs(truth).max(axis=(1, 2))).all()
+    factor, other = rng.normal(size=(2, 4, 4))
+    mass_matrix, stiffness = factor @ factor.T + np.eye(4), size * (other @ other.T)
+    squares, shapes = _generalized_eigh(stiffness, mass_matrix)
+    assert squares == pytest.approx(scipy.linalg.eigh(stiffness, mass_matrix)[0], rel=1e-9)
+    assert shapes.T @ mass_matrix @ shapes == pytest.approx(np.eye(4), abs=1e-12)
+    assert stiffness @ shapes == pytest.approx(mass_matrix @ shapes * squares, abs=1e-11 * size)
 
 
 def test_the_full_equations_are_checked_by_another_method() -> None:

@@ -107,5 +107,4 @@ def test_the_installed_commands_derive_and_run(environment: Path, tmp_path: Path
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "report.csv",
         "report.html",
-        "report.png",
     }

@@ -56,8 +56,29 @@ def test_the_json_contains_the_model_the_reason_and_the_final_state(
     assert result["accuracy_met"] is True
     assert set(result["declined_models"]) >= {"rest", "normal modes", "quadrature"}
     names = {Path(path).name for path in result["files"].values()}
-    assert names == {"report.csv", "report.png", "report.html"}
+    assert names == {"report.csv", "report.html"}
     assert names == {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize(("scene", "options", "is_plotted"), [
+    ("single", [], False), ("single", ["--plot"], True), ("figure_4_2", [], True),
+])  # fmt: skip
+def test_a_scene_is_plotted_on_request_and_where_it_specifies_pictures(
+    scene: str, options: list[str], is_plotted: bool, tmp_path: Path
+) -> None:
+    assert run(scene, *options, folder=tmp_path) == 0
+    assert (tmp_path / f"{scene}.png").is_file() is is_plotted
+
+
+def test_a_run_without_a_plot_loads_neither_matplotlib_nor_parts_of_scipy(tmp_path: Path) -> None:
+    code = (
+        "import sys\nfrom solvers.app.cli import main\n"
+        f"assert main(['run', 'small', '--output', {str(tmp_path)!r}]) == 0\n"
+        "parts = {'.'.join(name.split('.')[:2]) for name in sys.modules}\n"
+        "print(sorted(parts & {'matplotlib', 'sympy', 'scipy.linalg', 'scipy.special'}))"
+    )
+    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    assert printed.stdout.splitlines()[-1] == b"[]"
 
 
 SCENE = """
@@ -104,7 +125,8 @@ def test_scenes_with_other_files_are_accepted(tmp_path: Path) -> None:
         path.write_text(SCENE + BESIDE)
     arguments = Namespace(scenes=[*map(str, paths)], output=tmp_path)
     names = {
-        one.name: [*file_names(one.name, 2).values()] for one in selected_scenes(arguments, ())
+        one.name: [*file_names(one, 2, plot=True).values()]
+        for one in selected_scenes(arguments, ())
     }
     assert selected_scenes(arguments, (), lambda one: names[one.name])
     tables = [name for files in names.values() for name in files if name.endswith("csv")]
@@ -275,7 +297,7 @@ def test_other_commands_refuse_unsuitable_scenes(
 def test_text_with_dollar_signs_is_plotted_unchanged(tmp_path: Path) -> None:
     text = 'title = "costs $5 and $x^"\nsystem = "single_pendulum"\nduration = 1\n'
     (tmp_path / "s.toml").write_text(text + "initial = { theta = 1 }\n")
-    assert run(str(tmp_path / "s.toml"), folder=tmp_path / "out") == 0
+    assert run(str(tmp_path / "s.toml"), "--plot", folder=tmp_path / "out") == 0
     assert len(list((tmp_path / "out").iterdir())) == 3
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "s.toml").write_text(text + "initial = { theta = 2 }\n")

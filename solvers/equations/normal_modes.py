@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function, has_function
@@ -32,7 +31,7 @@ class Modes:
             raise ValueError(f"{name} has no equilibrium: small motions have no modes")
         mass_matrix, stiffness_matrix = np.array(function(module, "linear")(params))
         try:
-            squares, shapes = scipy.linalg.eigh(stiffness_matrix, mass_matrix)
+            squares, shapes = _generalized_eigh(stiffness_matrix, mass_matrix)
         except np.linalg.LinAlgError as error:
             text = "the mass matrix is not positive definite at the equilibrium"
             raise ValueError(
@@ -61,6 +60,21 @@ class Modes:
         x, velocity = np.split(y, 2)
         twice = velocity @ self.mass_matrix @ velocity + x @ self.stiffness_matrix @ x
         return float(np.sqrt(twice))
+
+
+def _generalized_eigh(stiffness_matrix: Array, mass_matrix: Array) -> tuple[Array, Array]:
+    """Squares ω², ascending, and shapes s of K s = ω² M s, with sᵀ M s = 1.
+
+    By the eigenvalues of L⁻¹ K L⁻ᵀ with M = L Lᵀ. SciPy's function would load a part of SciPy that
+    takes longer than a run. `ValueError` if a matrix is not finite, `LinAlgError` if the mass
+    matrix is not positive definite.
+    """
+    if not (np.isfinite(stiffness_matrix).all() and np.isfinite(mass_matrix).all()):
+        raise ValueError("matrices are not finite")
+    root = np.linalg.cholesky(mass_matrix)
+    reduced = np.linalg.solve(root, np.linalg.solve(root, stiffness_matrix).T)
+    squares, vectors = np.linalg.eigh((reduced + reduced.T) / 2)
+    return squares, np.linalg.solve(root.T, vectors)
 
 
 def _values(module: GeneratedModule, params: Sequence[float]) -> str:

@@ -1,8 +1,8 @@
 """The single pendulum in closed form, by Jacobi's elliptic functions."""
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import elliprf
 
 Array = NDArray[np.float64]
 
@@ -53,9 +53,9 @@ def elliptic_integral(sine: float, cosine: float, complement: float) -> float:
     By Carlson's integral (NIST Digital Library of Mathematical Functions, 19.25.5).
     """
     if cosine < 0:
-        whole = np.copysign(2 * elliprf(0.0, complement, 1.0), sine)  # ±2K
+        whole = np.copysign(2 * scipy.special.elliprf(0.0, complement, 1.0), sine)  # ±2K
         return float(whole - elliptic_integral(sine, -cosine, complement))
-    return float(sine * elliprf(cosine**2, cosine**2 + complement * sine**2, 1.0))
+    return float(sine * scipy.special.elliprf(cosine**2, cosine**2 + complement * sine**2, 1.0))
 
 
 def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
@@ -65,7 +65,7 @@ def jacobi(u: Array, complement: float) -> tuple[Array, Array, Array, Array]:
     22.20(ii)), after reduction of `u` to at most half a quarter period by 22.4(iii), so
     that cn and dn keep their digits where they are small.
     """
-    quarter = elliprf(0.0, complement, 1.0)  # K
+    quarter = scipy.special.elliprf(0.0, complement, 1.0)  # K
     halves = np.round(u / (2 * quarter))
     rest = u - 2 * quarter * halves
     is_reflected = np.abs(rest) > quarter / 2

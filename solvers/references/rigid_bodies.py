@@ -5,8 +5,8 @@ Analytical Dynamics, § 69 and § 71; functions as in NIST's DLMF, chapter 22.
 """
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import ellipj, ellipk
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ def free_body(
         A, C, first, third = C, A, third, first
     low, high = twice_energy * C - square, square - twice_energy * A
     pace = np.sqrt((C - B) * high / (A * B * C))
-    sn, cn, dn, _ = ellipj(pace * times, (B - A) * low / ((C - B) * high))
+    sn, cn, dn, _ = scipy.special.ellipj(pace * times, (B - A) * low / ((C - B) * high))
     omega = np.array([first * cn, np.sqrt(low / (B * (C - B))) * sn, third * dn])
     return omega[::-1] if is_about_first else omega
 
@@ -69,6 +69,6 @@ def top_inclination(
     ]
     low, high, outer = np.sort(np.roots(cubic).real)
     m = (high - low) / (outer - low)
-    phase = ellipk(m) if abs(u - high) < abs(u - low) else 0.0
-    sn, *_ = ellipj(np.sqrt(slope * (outer - low) / 4) * times + phase, m)
+    phase = scipy.special.ellipk(m) if abs(u - high) < abs(u - low) else 0.0
+    sn, *_ = scipy.special.ellipj(np.sqrt(slope * (outer - low) / 4) * times + phase, m)
     return np.asarray(low + (high - low) * sn**2)

@@ -19,6 +19,7 @@ from solvers.scenes.geometry import energy_errors, links_and_points, mass_positi
 from solvers.scenes.models.motion import Array
 from solvers.scenes.run import SceneResult
 from solvers.scenes.shapes import draw_link
+from solvers.scenes.summary import full_note
 
 #: The name of a curve if there are several, its horizontal and its vertical values.
 Curve = tuple[str, Array, Array]
@@ -88,23 +89,6 @@ def default_pictures(result: SceneResult) -> tuple[str, ...]:
         "path",
         "energy",
     )
-
-
-def full_note(results: Sequence[SceneResult]) -> str:
-    """The scene's note, and the model and error estimate of every run."""
-    words = results[0].scene.note.split()
-    return " ".join([*words, *(_accuracy_note(one, len(results) > 1) for one in results)])
-
-
-def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
-    """Model, method and error estimate in brackets, with the label if there are several runs."""
-    model, scene = result.selection.model, result.scene
-    text = model.name if result.method is None else f"{model.name} by {result.method}"
-    if scene.step is not None:
-        text += f" with h = {scene.step:g} s"
-    label = f"{scene.label}: " if is_labelled else ""
-    start = f" Start {scene.completed}." if scene.completed else ""
-    return f"[{label}{text}, error estimate {model.error_estimate:.1g}.{start}]"
 
 
 def _draw(panel: Axes, picture: str, results: Sequence[SceneResult]) -> None:

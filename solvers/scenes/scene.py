@@ -57,7 +57,7 @@ class Scene:
         general.
     pictures : tuple of str, optional
         The pictures, each such as ``theta1, theta2 over t``, or ``path`` or ``energy``; by
-        default all.
+        default no plot is written, and `figure` plots all.
     title, name : str, optional
         A title for plots, and a name for files.
     label : str, optional

@@ -1,6 +1,6 @@
-"""Results of scenes as text, as JSON and as a table."""
+"""Results of scenes as text, as a note, as JSON and as a table."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -72,6 +72,23 @@ def _time(seconds: float) -> str:
     if seconds < 1e-3:
         return f"{seconds * 1e6:.3g} µs"
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
+
+
+def full_note(results: Sequence[SceneResult]) -> str:
+    """The scene's note, and the model and error estimate of every run."""
+    words = results[0].scene.note.split()
+    return " ".join([*words, *(_accuracy_note(one, len(results) > 1) for one in results)])
+
+
+def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
+    """Model, method and error estimate in brackets, with the label if there are several runs."""
+    model, scene = result.selection.model, result.scene
+    text = model.name if result.method is None else f"{model.name} by {result.method}"
+    if scene.step is not None:
+        text += f" with h = {scene.step:g} s"
+    label = f"{scene.label}: " if is_labelled else ""
+    start = f" Start {scene.completed}." if scene.completed else ""
+    return f"[{label}{text}, error estimate {model.error_estimate:.1g}.{start}]"
 
 
 def figures(result: SceneResult) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,10 +19,12 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Describe the command and its arguments."""
     parser.description = (
         "Run scenes with the smallest model whose error stays below the requested accuracy; write "
-        "each motion as a table, a plot and a page that plays it."
+        "each motion as a table and a page that plays it."
     )
     options.add_scenes(parser, DEFAULT)
-    options.add_output(parser, "tables, plots and pages")
+    options.add_output(parser, "tables, pages and plots")
+    meaning = "also plot motions of scenes that specify no pictures"
+    parser.add_argument("--plot", action="store_true", help=meaning)
     meaning = "also write the motion as FILE.gif, .mp4, .svg, .pdf or .png, for slides"
     parser.add_argument("--export", type=Path, metavar="FILE", help=meaning)
     meaning = "seconds of the motion in a second of FILE.gif or .mp4 (default: 1)"
@@ -35,13 +38,15 @@ def run(arguments: Namespace) -> int:
     from solvers.app.modules import specialiser
     from solvers.app.typesetting import equations
     from solvers.io.progress import Progress
-    from solvers.scenes.export import check_export, export_motion
     from solvers.scenes.output import write_files
     from solvers.scenes.run import run_scene
     from solvers.scenes.summary import figures, summary
 
-    scenes, results = options.selected_scenes(arguments, DEFAULT, _files), []
+    names = partial(_files, plot=arguments.plot)
+    scenes, results = options.selected_scenes(arguments, DEFAULT, names), []
     if export := arguments.export:
+        from solvers.scenes.export import check_export, export_motion
+
         if scenes[1:]:
             raise ValueError(
                 f"--export {export} is one file, but {len(scenes)} scenes run: run one"
@@ -51,8 +56,9 @@ def run(arguments: Namespace) -> int:
     for scene in scenes:
         with Progress() as report:
             first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
-            report("plots")
-            paths = write_files([first, *beside], arguments.output, equations(scene.module))
+            report("files")
+            written = equations(scene.module)
+            paths = write_files([first, *beside], arguments.output, written, plot=arguments.plot)
             if export:
                 report("export")
                 paths["export"] = export_motion([first, *beside], export, speed=arguments.speed)
@@ -67,7 +73,7 @@ def run(arguments: Namespace) -> int:
     return 0
 
 
-def _files(scene: "Scene") -> Iterable[str]:
+def _files(scene: "Scene", *, plot: bool) -> Iterable[str]:
     from solvers.scenes.output import file_names
 
-    return file_names(scene.name, 1 + len(scene.beside)).values()
+    return file_names(scene, 1 + len(scene.beside), plot=plot).values()
