@@ -1,9 +1,12 @@
 # The whole developer interface. Needs Python 3.11 or newer and nothing else.
 PYTHON ?= python3
 BIN := .venv/bin
+PYTEST := $(BIN)/pytest --numprocesses auto --dist worksteal
+# each of the tests' many processes would compile all modules anew
+export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test campaign docs derive bench lint types check clean
+.PHONY: help demo test test-all campaign mutants docs derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -11,11 +14,17 @@ help:  ## list the targets
 demo: .venv/base  ## set up and run the demonstration: derive, verify, generate, integrate
 	$(BIN)/holonomic demo
 
-test: .venv/ready  ## set up and run the tests
-	$(BIN)/pytest --numprocesses auto --dist worksteal
+test: .venv/ready  ## set up and run the tests, but for the long ones (five minutes on two cores)
+	$(PYTEST)
+
+test-all: .venv/ready  ## run all tests (fifteen minutes on two cores)
+	$(PYTEST) --long
 
 campaign: .venv/ready  ## run the tests over thousands of random cases
-	$(BIN)/pytest --numprocesses auto --dist worksteal -o faulthandler_timeout=3600 -m campaign
+	$(PYTEST) --long -o faulthandler_timeout=3600 -m campaign
+
+mutants: .venv/ready  ## plant 200 mistakes one by one, and list those that no test notices (an hour)
+	$(BIN)/python tests/mutants.py
 
 docs: .venv/docs  ## build the documentation site, into out/docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going --conf-dir notebooks/docs \
@@ -35,7 +44,7 @@ lint: .venv/ready  ## style and common mistakes
 types: .venv/ready  ## strict type check of the three packages
 	$(BIN)/mypy
 
-check: lint types test docs  ## everything that decides whether a change lands
+check: lint types test-all docs  ## everything that decides whether a change lands
 	$(BIN)/holonomic derive --check
 	$(BIN)/holonomic verify > /dev/null
 
@@ -43,7 +52,8 @@ clean:  ## remove the environment and what the tools left behind
 	rm -rf .venv out build dist .mypy_cache .pytest_cache .ruff_cache
 
 # The environment, in four sizes. Versions are those that are known to work together.
-PIP := PIP_CONSTRAINT=$(CURDIR)/.ci/constraints.txt $(BIN)/python -m pip install \
+# pip splits PIP_CONSTRAINT at blanks, which a path from the root may have
+PIP := PIP_CONSTRAINT=.ci/constraints.txt $(BIN)/python -m pip install \
 	--quiet --disable-pip-version-check --editable
 
 .venv/base: pyproject.toml .ci/constraints.txt

@@ -1,15 +1,19 @@
-"""Fixtures that several tests use, and the order of the tests."""
+"""Fixtures that several tests use, and the selection and order of the tests."""
 
 import os
 import shutil
 import signal
+from collections import defaultdict
 from collections.abc import Callable, Iterator
+from datetime import date
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from random import Random
 from types import ModuleType
 from typing import Any
 
+import cheap_compiler
 import pytest
 import sympy as sp
 from browser import Player
@@ -22,9 +26,50 @@ from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.scene_stability import SceneStability
 
+#: The environment variable that chooses the cases of long tests which the short part keeps.
+SEED = "HOLONOMIC_TEST_SEED"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option for the long part of the tests."""
+    parser.addoption("--long", action="store_true", help="also run tests that are marked long")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile with less optimisation, and let all workers choose the same cases."""
+    cheap_compiler.install()
+    os.environ.setdefault(SEED, date.today().isoformat())
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    """How to repeat the choice of cases."""
+    return f"cases of long tests: {SEED}={os.environ[SEED]}"
+
+
+def long_part(items: list[pytest.Item]) -> set[pytest.Item]:
+    """Tests that are marked long, but for the number of cases that their marker keeps."""
+    cases: dict[str, list[pytest.Item]] = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("long"):
+            cases[item.nodeid.partition("[")[0]].append(item)
+    left_out: set[pytest.Item] = set()
+    for name, own in cases.items():
+        marker = own[0].get_closest_marker("long")
+        rng = Random(f"{os.environ[SEED]} {name}")
+        kept = rng.sample(own, min(marker.kwargs.get("keep", 0) if marker else 0, len(own)))
+        left_out |= {*own} - {*kept}
+    return left_out
+
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let every worker begin with slow tests; workers receive equal parts of the list."""
+    """Leave out the long part, unless requested, and let every worker begin with slow tests.
+
+    Tests that are named one by one are requested. Workers receive equal parts of the list.
+    """
+    if not config.getoption("long") and not any("::" in argument for argument in config.args):
+        left_out = long_part(items)
+        config.hook.pytest_deselected(items=[*left_out])
+        items[:] = [item for item in items if item not in left_out]
     workers = getattr(config, "workerinput", {}).get("workercount", 1)
     slow = [item for item in items if item.get_closest_marker("slow")]
     other = [item for item in items if not item.get_closest_marker("slow")]
@@ -48,6 +93,12 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
 def large_module() -> Callable[[str], ModuleType]:
     """Modules that take long to load, once a worker."""
     return cache(load_module)  # type: ignore[return-value]
+
+
+@pytest.fixture
+def optimised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compile as users do."""
+    cheap_compiler.remove(monkeypatch)
 
 
 @pytest.fixture(scope="session", autouse=True)

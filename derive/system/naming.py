@@ -30,7 +30,7 @@ RESERVED = {
     *"co_yield const_cast reinterpret_cast static_cast typeof typeof_unqual".split(),
     *"linux unix i386 EOF INFINITY NAN NULL MAXFLOAT DECIMAL_DIG math_errhandling".split(),
     # macros of the compiled loops; a header of the system `lane` would define functions of theirs
-    *"ONE_LANE LANE MASK_LANE RHS JACOBIAN COMPENSATED HAS_POLYNOMIAL INTERPOLATES".split(),
+    *"ONE_LANE LANE MASK_LANE SELDOM RHS JACOBIAN COMPENSATED HAS_POLYNOMIAL INTERPOLATES".split(),
     *"VARIES_ORDER HAS_SWITCHES SWITCHING PART PERTURBED HAS_JACOBIAN".split(),
     *"LANE_BY_LANE PAIR_BY_PAIR SINE_OR_COSINE".split(),
     *"SMOOTH_RHS SMOOTH_JACOBIAN".split(),

@@ -1,0 +1,221 @@
+"""Expressions as graphs: equal values, shared parts, fewest operations."""
+
+import math
+import random
+
+import pytest
+import sympy as sp
+
+from derive.codegen import operation as op
+from derive.codegen.assignments import Assignments, Notation
+from derive.codegen.factorisation import Factorisation
+from derive.codegen.graph import Graph
+from derive.codegen.lowering import Lowering
+from derive.codegen.node import Node
+from derive.codegen.translation import Translation, UnsupportedFunctionError
+
+pi = sp.pi
+a, b, c, d, x = sp.symbols("a b c d x", positive=True)
+FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt, "exp": math.exp}
+
+
+def evaluated(lowering: Lowering, values: dict[str, float]) -> list[float]:
+    """The outputs by plain recursion: no names, texts or order of the generator."""
+
+    def value(number: int) -> float:
+        operation = lowering.operations[number]
+        inner = [value(n) for n in operation.operands]
+        match operation:
+            case op.Leaf(name=name):
+                return values[name]
+            case op.Constant(value=constant):
+                return float(constant)
+            case op.Sum(coefficients=coefficients):
+                return math.fsum(float(k) * v for k, v in zip(coefficients, inner, strict=True))
+            case op.Product():
+                return math.prod(inner)
+            case op.Quotient():
+                return inner[0] / inner[1] if len(inner) == 2 else 1 / inner[0]
+            case op.Call(function=function):
+                return FUNCTIONS[function](*inner)
+        raise NotImplementedError(operation)
+
+    return [value(n) for n in lowering.outputs]
+
+
+def lowered(*expressions: sp.Expr, parameters: tuple[str, ...] = ()) -> Lowering:
+    node = Translation(Graph())
+    return Lowering([node(e) for e in expressions], parameters)
+
+
+def random_expression(generator: random.Random, depth: int) -> sp.Expr:
+    if depth == 0:
+        return generator.choice([a, b, c, d, sp.Integer(generator.randint(-3, 3)), sp.S.Half])
+    left, right = (random_expression(generator, depth - 1) for _ in range(2))
+    return generator.choice(
+        [
+            left + right,
+            left - right,
+            left * right,
+            left**2,
+            sp.sin(left),
+            sp.cos(left - right),
+            left / (3 + sp.sin(right)),
+            sp.sqrt(4 + sp.cos(left)),
+            -left,
+            left**3 * right,
+            left - left * sp.cos(right) ** 2,
+        ]
+    )
+
+
+@pytest.mark.long("more cases of the same kind", keep=8)
+@pytest.mark.parametrize("seed", range(60))
+def test_lowered_expressions_have_the_value_of_the_original(seed: int) -> None:
+    generator = random.Random(seed)
+    expressions = [random_expression(generator, 4) for _ in range(4)]
+    values = {s.name: generator.uniform(0.3, 2) for s in (a, b, c, d)}
+    results = evaluated(lowered(*expressions, parameters=("a", "b")), values)
+    for result, expression in zip(results, expressions, strict=True):
+        exact = float(
+            expression.evalf(30, subs={sp.Symbol(k, positive=True): v for k, v in values.items()})
+        )
+        assert result == pytest.approx(exact, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("expressions", "operations"),
+    [
+        ([a + b, 2 * (a + b)], 2),
+        ([a * b * c, a * b * d], 3),
+        ([a**2 * b**2, a * b * c], 3),
+        ([a - b + c, b - a + d], 3),
+        ([sp.sin(a - b), sp.sin(b - a)], 3),
+        ([a**2 * b / (a * b**2)], 1),
+        ([a * b + a * c], 2),
+        ([a - a * sp.cos(x) ** 2], 3),
+        ([b + a - a * sp.sin(x) ** 2], 4),
+        ([a / 2 + b / 2], 2),
+        ([a / 2 + b], 2),
+        ([-a - b], 2),
+    ],
+)
+def test_common_parts_are_computed_once(expressions: list[sp.Expr], operations: int) -> None:
+    assert lowered(*expressions).cost[0] == operations
+
+
+def test_differences_that_would_cancel_become_squares() -> None:
+    # a(1 - cos² x) at x = 1e-9 is 0 in double precision; a sin² x is right to the last digit
+    value = evaluated(lowered(a - a * sp.cos(x) ** 2), {"a": 1.0, "x": 1e-9})[0]
+    assert value == pytest.approx(1e-18, rel=1e-12)
+    assert 1 - math.cos(1e-9) ** 2 == 0
+
+
+def test_terms_of_parameters_alone_are_grouped() -> None:
+    lowering = lowered(a * b * x / c + d * x, parameters=("a", "b", "c"))
+    constant = [o for o in lowering.operations.values() if o.constant and op.cost(o)]
+    assert sum(op.cost(o) for o in constant) == 3
+    assert evaluated(lowering, {"a": 2, "b": 3, "c": 4, "d": 5, "x": 7})[0] == 45.5
+
+
+def test_unknown_functions_are_refused_and_known_ones_listed() -> None:
+    with pytest.raises(
+        UnsupportedFunctionError, match=r"no generated code for 'gamma\(a\)'.*sin, cos"
+    ):
+        lowered(sp.gamma(a))
+    with pytest.raises(UnsupportedFunctionError, match="no generated code"):
+        lowered(sp.zeta(a))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 5])
+def test_the_factorisation_solves_symmetric_systems(n: int) -> None:
+    generator = random.Random(n)
+    graph = Graph()
+    root = [[generator.uniform(-1, 1) for _ in range(n)] for _ in range(n)]
+    numbers = [
+        [sum(u * v for u, v in zip(root[i], root[j], strict=True)) + (i == j) for j in range(n)]
+        for i in range(n)
+    ]
+    values = {f"m{min(i, j)}{max(i, j)}": numbers[i][j] for i in range(n) for j in range(n)}
+    values |= {f"r{i}": generator.uniform(-1, 1) for i in range(n)}
+    matrix = [[graph.leaf(f"m{min(i, j)}{max(i, j)}") for j in range(n)] for i in range(n)]
+    factorisation = Factorisation(graph, matrix)
+    x = evaluated(
+        Lowering(factorisation.solve([graph.leaf(f"r{i}") for i in range(n)]), ()), values
+    )
+    for i in range(n):
+        assert sum(m * v for m, v in zip(numbers[i], x, strict=True)) == pytest.approx(
+            values[f"r{i}"]
+        )
+    assert all(pivot > 0 for pivot in evaluated(Lowering(factorisation.pivots, ()), values))
+
+
+def test_common_lengths_of_rows_and_columns_are_factored_out() -> None:
+    graph = Graph()
+    l1, l2, m, cosine = (graph.leaf(name) for name in ("l1", "l2", "m", "cosine"))
+    right = [graph.leaf("f1"), graph.leaf("f2")]
+    matrix = [[m * l1 * l1, m * l1 * l2 * cosine], [m * l1 * l2 * cosine, m * l2 * l2]]
+    pivots = Factorisation(graph, matrix).pivots
+    assert leaves(pivots) == {"m", "cosine"}
+    assert len(Factorisation(graph, matrix).solve(right)) == 2
+
+
+def leaves(nodes: list[Node]) -> set[str]:
+    return {*Lowering(nodes, ()).inputs}
+
+
+def test_equal_named_terms_and_factors_are_merged() -> None:
+    graph = Graph()
+    p, q = graph.leaf("p"), graph.leaf("q")
+    named = graph.let(p + q)
+    outputs = [
+        graph.sum([(p + q, -1), (named, 2)]),  # p + q
+        graph.sum([(p + q, 1), (named, -1)]),  # 0
+        graph.sum([(p, 1), (named, 1), (p + q, -1)]),  # p
+        named * q / (p + q),  # q
+        named / (p + q),  # 1
+    ]
+    results = evaluated(Lowering(outputs, ()), {"p": 2.0, "q": 3.0})
+    assert results == [5.0, 0.0, 2.0, 3.0, 1.0]
+
+
+def test_a_sum_that_cancels_with_a_shared_pair_is_the_number_0() -> None:
+    graph = Graph()
+    p, q, r = map(graph.leaf, "pqr")
+    named = graph.let(p + q)
+    cancelling = graph.sum([(p, 1), (q, 1), (named, -1)])
+    more = graph.sum([(p, 1), (q, 1), (r, 1), (named, -1)])
+    lowering = Lowering([named * r, cancelling, more], ())
+    assert evaluated(lowering, {"p": 2.0, "q": 3.0, "r": 7.0}) == [35.0, 0.0, 7.0]
+    texts = Assignments(lowering, (), Notation()).outputs
+    assert texts == ["r*(p + q)", "0.0", "r"]
+
+
+@pytest.mark.parametrize("expression", [
+    (a + b) * a + (a + b) * b,
+    (a - b) * a * c - (a - b) * b * c,
+    (a * x + b * c) ** 2 / 2 + (a * x + b * c) * a * x,
+    (a + b) ** 2 * a + (a + b) ** 2 * b,
+])  # fmt: skip
+def test_a_sum_that_is_its_own_common_factor_keeps_all_its_powers(expression: sp.Expr) -> None:
+    values = {"a": 1.3, "b": -0.7, "c": 2.1, "d": 0.4, "x": 1.9}
+    (result,) = evaluated(lowered(expression), values)
+    exact = expression.subs({sp.Symbol(k, positive=True): v for k, v in values.items()})
+    assert result == pytest.approx(float(exact), rel=1e-13)
+
+
+@pytest.mark.parametrize("number", [
+    pi, pi / 3, 2 * pi, -pi / 7, pi**2, 1 / pi, sp.sqrt(2), 3 * sp.sqrt(5) / 7, sp.exp(1),
+    sp.sqrt(pi), 1 + pi / 2, sp.cos(2), sp.log(2) - sp.Rational(1, 3),
+])  # fmt: skip
+def test_numbers_are_one_literal_right_to_the_last_bit(number: sp.Expr) -> None:
+    lowering = lowered(number, number * a)
+    exact = float(number.evalf(40))
+    assert evaluated(lowering, {"a": 1.0}) == [exact, exact]
+    assert lowered(abs(number), abs(number) * a).cost == (1, 0)
+
+
+def test_irrational_factors_cancel() -> None:
+    assert lowered(pi * a / (pi * b)).cost[0] == 1
+    assert lowered(pi * a - pi * a + b).cost[0] == 0
+    assert evaluated(lowered(pi * a + pi * b), {"a": 1.5, "b": 2.5}) == [4 * math.pi]

@@ -1,0 +1,303 @@
+"""Whether the tests notice mistakes: plants them one at a time, and runs the tests of the line.
+
+A mistake is a change of one operator, number or condition in a line of Python or C, chosen at
+random in every room. A first run of the tests on a copy of the project, in which each chosen place
+reports when it is reached, yields the tests that reach it. Each mistake is then planted in another
+copy, where these tests run, and after them those of its room. Reported are the mistakes that no
+test notices. ``make mutants`` runs this.
+"""
+
+import argparse
+import ast
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from queue import SimpleQueue
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).parents[1]
+#: Seconds after which a test that does not end has noticed a mistake.
+TIMEOUT = 100
+#: Most tests of a line; more of them reach the most general lines only.
+MOST_TESTS = 120
+COMPARISONS = {
+    ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==",
+    ast.In: "not in", ast.NotIn: "in", ast.Is: "is not", ast.IsNot: "is",
+}  # fmt: skip
+OPERATORS = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*", ast.FloorDiv: "*",
+    ast.Pow: "*", ast.Mod: "+", ast.MatMult: "*"}  # fmt: skip
+#: Pieces of a line of C and what replaces them.
+C_PIECES = {
+    r" \+ ": " - ", r" - ": " + ", r"(?<=\w)\*(?=\w)": "/", r" < ": " <= ", r" <= ": " < ",
+    r" > ": " >= ", r" >= ": " > ", r" == ": " != ", r" != ": " == ", r" && ": " || ",
+    r" \|\| ": " && ", r"\+\+": "--", r" \+= ": " -= ", r"\b0\.5\b": "0.6", r"\b2\.0\b": "3.0",
+    r"\blane_fabs\(": "(", r"\bfabs\(": "(", r" & ~": " & ", r"(?<= = )-(?=\w)": "",
+    r"\b1\.0\b": "2.0", r"\[0\]": "[1]",
+}  # fmt: skip
+#: A module that Python loads at its start: it notes the tests that reach a place.
+PROBE = """
+import builtins, os
+_last = {}
+def _reached(number):
+    test = os.environ.get("PYTEST_CURRENT_TEST", "")
+    if _last.get(number) != test:
+        _last[number] = test
+        with open(os.path.join(os.environ["REACHED"], str(number)), "a", encoding="utf-8") as file:
+            file.write(test.rpartition(" (")[0] + "\\n")
+builtins._reached = _reached
+"""
+#: A plugin of pytest that selects the tests of a file.
+SELECTION = """
+import os
+from pathlib import Path
+def pytest_collection_modifyitems(config, items):
+    wanted = Path(os.environ["SELECTED"]).read_text(encoding="utf-8").splitlines()
+    order = {name: k for k, name in enumerate(wanted)}
+    items[:] = sorted((i for i in items if i.nodeid in order), key=lambda i: order[i.nodeid])
+"""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A mistake in one line of a file; columns count bytes."""
+
+    file: str
+    line: int
+    start: int
+    end: int
+    text: str
+
+    @property
+    def room(self) -> str:
+        """The room of the file, such as ``solvers/scenes``, or that of the C code."""
+        return "C" if self.file.endswith((".h", ".c")) else "/".join(self.file.split("/")[:2])
+
+    def applied(self, lines: Sequence[bytes], text: str | None = None) -> bytes:
+        """The changed line."""
+        line, new = lines[self.line - 1], (self.text if text is None else text).encode()
+        return line[: self.start] + new + line[self.end :]
+
+    def __str__(self) -> str:
+        lines = (ROOT / self.file).read_bytes().splitlines()
+        before = lines[self.line - 1].decode().strip()
+        return (
+            f"{self.file}:{self.line}\n    - {before}\n    + {self.applied(lines).decode().strip()}"
+        )
+
+
+def python_mutants(file: str) -> Iterator[Mutant]:
+    """All mistakes that are planted in a Python file."""
+    source = (ROOT / file).read_bytes()
+    lines = source.splitlines()
+
+    def visit(node: ast.AST) -> Iterator[ast.AST]:
+        yield node
+        for name, value in ast.iter_fields(node):
+            if name in ("annotation", "returns", "type_params") or isinstance(node, ast.JoinedStr):
+                continue
+            for child in value if isinstance(value, list) else [value]:
+                # `strict` is itself a check
+                is_check = isinstance(child, ast.keyword) and child.arg == "strict"
+                if (
+                    isinstance(child, ast.AST)
+                    and not isinstance(child, ast.pattern)
+                    and not is_check
+                ):
+                    yield from visit(child)
+
+    for node in visit(ast.parse(source)):
+        if not isinstance(node, ast.expr) or node.lineno != node.end_lineno:
+            continue
+        start, end = node.col_offset, node.end_col_offset
+        assert end is not None
+        own = lines[node.lineno - 1][start:end].decode()
+        for new in replacements(node, own, lines[node.lineno - 1]):
+            yield Mutant(file, node.lineno, start, end, new)
+
+
+def replacements(node: ast.expr, own: str, line: bytes) -> Iterator[str]:
+    """Other texts of an expression."""
+
+    def part(one: ast.expr) -> str:
+        return line[one.col_offset : one.end_col_offset].decode()
+
+    match node:
+        case ast.Compare(left=left, ops=[op], comparators=[right]):
+            yield f"({part(left)} {COMPARISONS[type(op)]} {part(right)})"
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+            is_text = any(isinstance(x, ast.Constant | ast.JoinedStr) and not isinstance(
+                getattr(x, "value", ""), int | float) for x in (left, right))  # fmt: skip
+            if not is_text:
+                yield f"(({part(left)}) {OPERATORS[type(op)]} ({part(right)}))"
+        case ast.BoolOp(op=op, values=values):
+            word = " or " if isinstance(op, ast.And) else " and "
+            yield f"({word.join(f'({part(value)})' for value in values)})"
+        case ast.UnaryOp(op=ast.Not() | ast.USub(), operand=operand):
+            yield f"({part(operand)})"
+        case ast.Call(func=ast.Name(id="abs" | "sorted" | "reversed"), args=[argument]):
+            yield f"({part(argument)})"
+        case ast.Constant(value=bool()):
+            yield str(not node.value)
+        case ast.Constant(value=int() | float()):
+            yield f"({own} + 1)"
+        case ast.IfExp(test=test, body=body, orelse=orelse):
+            yield f"({part(orelse)} if {part(test)} else {part(body)})"
+
+
+def c_mutants(file: str) -> Iterator[Mutant]:
+    """All mistakes that are planted in a file of C."""
+    text = (ROOT / file).read_text(encoding="utf-8")
+    code = re.sub(r"/\*.*?\*/", lambda m: re.sub(r"[^\n]", " ", m[0]), text, flags=re.DOTALL)
+    for number, line in enumerate(code.splitlines(), 1):
+        if line.lstrip().startswith("#") or not line.isascii() or line.startswith("enum"):
+            continue
+        for piece, new in C_PIECES.items():
+            for found in re.finditer(piece, line):
+                yield Mutant(file, number, found.start(), found.end(), new)
+
+
+def chosen(count: int, seed: int) -> list[Mutant]:
+    """Random mistakes, as many in each room as in the others, at most one in a line."""
+    everywhere: dict[str, dict[tuple[str, int], list[Mutant]]] = defaultdict(dict)
+    files = subprocess.check_output(["git", "ls-files", "derive", "solvers"], cwd=ROOT, text=True)
+    for file in files.splitlines():
+        kinds = {".py": python_mutants, ".h": c_mutants, ".c": c_mutants}
+        # systems are data, which are compared with other sources as a whole
+        if (kind := kinds.get(Path(file).suffix)) and file.count("/") > 1:
+            for mutant in kind(file):
+                place = (file, mutant.line)
+                everywhere[mutant.room].setdefault(place, []).append(mutant)
+    rng = random.Random(seed)
+    rooms = sorted(everywhere)
+    shares = Counter(rooms * (count // (len(rooms) + 1)))
+    shares["C"] *= 2
+    shares.update(rng.sample(rooms, count % (len(rooms) + 1) % len(rooms)))
+    return [
+        rng.choice(lines[place])
+        for room in rooms
+        for lines in [everywhere[room]]
+        for place in rng.sample(sorted(lines), min(shares[room], len(lines)))
+    ]
+
+
+def copy(folder: Path) -> Path:
+    """A copy of the project, whose tests import it and nothing else of the project."""
+    files = subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True).splitlines()
+    for file in files:
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / file, folder / file)
+    (folder / "selection.py").write_text(SELECTION)
+    if (beside := ROOT.parent / "shared").exists() and not (folder.parent / "shared").exists():
+        (folder.parent / "shared").symlink_to(beside)
+    return folder
+
+
+def pytest(project: Path, *arguments: str, **environment: str) -> int:
+    """The exit code of the tests of a copy."""
+    own = {"PYTHONPATH": str(project), "XDG_CACHE_HOME": str(project.parent / "cache")}
+    limits = f"timeout={TIMEOUT}", f"faulthandler_timeout={TIMEOUT + 20}"
+    options = ["-q", "-p", "no:cacheprovider", *(f"--override-ini={limit}" for limit in limits)]
+    command = [sys.executable, "-m", "pytest", *options, *arguments]
+    quiet = subprocess.DEVNULL
+    return subprocess.run(command, cwd=project, env=os.environ | own | environment,
+        stdout=quiet, stderr=quiet, stdin=quiet, check=False).returncode  # fmt: skip
+
+
+def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> list[list[str]]:
+    """The tests that reach each mistake in Python, first those that reach few others."""
+    project, reached = copy(place / "probed"), place / "reached"
+    reached.mkdir()
+    (project / "sitecustomize.py").write_text(PROBE)
+    sites = sorted(enumerate(mutants), key=lambda one: (one[1].file, one[1].line, one[1].start))
+    for number, mutant in reversed(sites):  # from the end of a line
+        if mutant.room != "C":
+            lines = (project / mutant.file).read_bytes().splitlines()
+            own = lines[mutant.line - 1][mutant.start : mutant.end].decode()
+            lines[mutant.line - 1] = mutant.applied(lines, f"(_reached({number}) or ({own}))")
+            (project / mutant.file).write_bytes(b"\n".join(lines) + b"\n")
+    workers = ("--numprocesses", "auto", "--dist", "worksteal")
+    pytest(project, *workers, *options, REACHED=str(reached))
+    tests = [
+        [*dict.fromkeys(filter(None, (reached / str(n)).read_text().splitlines()))]
+        if (reached / str(n)).exists() else []
+        for n in range(len(mutants))
+    ]  # fmt: skip
+    frequency = Counter(test for names in tests for test in names)
+    return [sorted(names, key=frequency.__getitem__)[:MOST_TESTS] for names in tests]
+
+
+def is_noticed(mutant: Mutant, tests: Sequence[str], project: Path, options: Sequence[str]) -> bool:
+    """Whether a test fails with a mistake in a copy, which is undone."""
+    path = project / mutant.file
+    original = path.read_bytes()
+    lines = original.splitlines()
+    lines[mutant.line - 1] = mutant.applied(lines)
+    path.write_bytes(b"\n".join(lines) + b"\n")
+    room = project / "tests" / ("integration" if mutant.room == "C" else mutant.room.split("/")[1])
+    try:
+        if tests:
+            selected = project.parent / f"{project.name}.txt"
+            selected.write_text("\n".join(tests), encoding="utf-8")
+            files = sorted({test.partition("::")[0] for test in tests})
+            arguments = ("-x", "-p", "selection", *options, *files)
+            if pytest(project, *arguments, SELECTED=str(selected)) not in (0, 5):
+                return True
+        others = [str(room)] if room.is_dir() else []
+        return bool(others) and pytest(project, "-x", *options, *others) not in (0, 5)
+    finally:
+        path.write_bytes(original)
+
+
+def main() -> int:
+    """Plant mistakes and report those that no test notices."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=200, help="number of mistakes")
+    parser.add_argument("--seed", type=int, default=int(time.strftime("%Y%m%d")))
+    parser.add_argument("--long", action="store_true", help="run the long part of the tests, too")
+    parser.add_argument("--only", type=Path, help="file with lines FILE:LINE of mistakes to plant")
+    arguments = parser.parse_args()
+    mutants = chosen(arguments.count, arguments.seed)
+    if arguments.only:
+        places = set(arguments.only.read_text(encoding="utf-8").split())
+        mutants = [mutant for mutant in mutants if f"{mutant.file}:{mutant.line}" in places]
+    options = ["--long"] if arguments.long else []
+    print(f"{len(mutants)} mistakes of seed {arguments.seed}", flush=True)
+    survivors: list[Mutant] = []
+    with TemporaryDirectory(prefix="mutants-") as folder:
+        place = Path(folder)
+        tests = reaching(mutants, place, options)
+        projects: SimpleQueue[Path] = SimpleQueue()
+        workers = os.cpu_count() or 1
+        for k in range(workers):
+            projects.put(copy(place / f"worker{k}" / "holonomic"))
+
+        def tried(number: int) -> None:
+            project = projects.get()
+            noticed = is_noticed(mutants[number], tests[number], project, options)
+            projects.put(project)
+            if not noticed:
+                survivors.append(mutants[number])
+                reach = f"reached by {len(tests[number])} tests"
+                print(f"not noticed, {reach}: {mutants[number]}", flush=True)
+
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(tried, range(len(mutants))))
+    rooms, missed = (Counter(one.room for one in each) for each in (mutants, survivors))
+    for room in sorted(rooms):
+        print(f"{room:<24}{rooms[room] - missed[room]:>4} of {rooms[room]}")
+    found = len(mutants) - len(survivors)
+    print(f"noticed {found} of {len(mutants)}: {100 * found / len(mutants):.0f} %")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

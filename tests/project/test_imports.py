@@ -1,0 +1,141 @@
+"""Imports: each package alone, each room only those below it, and no package of another project."""
+
+import ast
+import importlib
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from folders import ROOT
+
+PACKAGES = ("derive", "generated", "solvers")
+STANDARD = set(sys.stdlib_module_names)
+
+#: Packages that the modules of a package may import; solvers/app may import all of them.
+ALLOWED = {
+    # mpmath is SymPy's arithmetic; NumPy tries many meanings of a document's letters at once
+    "derive": {"derive", "sympy", "mpmath", "numpy", "lark", "tree_sitter", "solvers.io"},
+    "generated": {"numpy"},
+    "solvers": {"solvers", "numpy", "scipy", "matplotlib"},
+}
+
+
+def imported(source: str) -> Iterator[str]:
+    """Dotted names of the modules that a text imports, those of the standard library aside."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name not in STANDARD)
+        elif isinstance(node, ast.ImportFrom) and node.module not in STANDARD:
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def is_within(name: str, package: str) -> bool:
+    return f"{name}.".startswith(f"{package}.")
+
+
+def foreign(path: Path, allowed: set[str]) -> set[str]:
+    names = {n for n in imported(path.read_text()) if n.partition(".")[0] not in STANDARD}
+    return {n for n in names if not any(is_within(n, package) for package in allowed)}
+
+
+def floors(package: str) -> dict[str, int]:
+    """The floor of each room, from the table in the package's README."""
+    text = (ROOT / package / "README.md").read_text()
+    return {room: int(floor) for floor, room in re.findall(r"^\| (\d+) \| `(\w+)/` \|", text, re.M)}
+
+
+def arrows(package: str) -> dict[tuple[str, str], Path]:
+    """Pairs of rooms of which the first imports the second, each with a file that does."""
+    found = {}
+    for path in sorted((ROOT / package).rglob("*.py")):
+        room = path.relative_to(ROOT / package).parts[0]
+        for name in imported(path.read_text()):
+            parts = name.split(".")
+            is_ours = parts[0] == package and (ROOT / package / "/".join(parts[1:2])).is_dir()
+            if is_ours and len(parts) > 2 and room not in (parts[1], path.name):
+                found[room, parts[1]] = path
+    return found
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("package", PACKAGES)
+def test_each_package_imports_only_the_allowed_packages(package: str) -> None:
+    for path in (ROOT / package).rglob("*.py"):
+        if not path.is_relative_to(ROOT / "solvers" / "app"):
+            assert not foreign(path, ALLOWED[package]), path
+
+
+@pytest.mark.parametrize("package", ["derive", "solvers"])
+def test_every_room_has_a_floor_and_imports_only_rooms_below_it(package: str) -> None:
+    floor = floors(package)
+    rooms = {path.parent.name for path in (ROOT / package).glob("*/*.py")}
+    assert set(floor) == rooms
+    upwards = {
+        f"{above} -> {below} ({path.name})"
+        for (above, below), path in arrows(package).items()
+        if floor[above] <= floor[below]
+    }
+    assert not upwards
+
+
+def test_rooms_have_few_arrows() -> None:
+    assert len(floors("solvers")) == 10
+    assert len(arrows("solvers")) <= 35
+
+
+def test_an_upward_import_is_detected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(globals(), "ROOT", tmp_path)
+    for room in ("io", "app"):
+        (tmp_path / "solvers" / room).mkdir(parents=True)
+    (tmp_path / "solvers" / "io" / "file.py").write_text("from solvers.app.cli import main\n")
+    assert arrows("solvers") == {("io", "app"): tmp_path / "solvers" / "io" / "file.py"}
+
+
+def test_derive_imports_only_standard_library_modules_of_solvers() -> None:
+    code = (
+        "import sys, solvers.io.suggestion, solvers.io.atomic_write, solvers.io.toml_input,"
+        "solvers.io.text_table, solvers.io.terminal;"
+        "print([m for m in ('sympy', 'numpy', 'scipy', 'matplotlib') if m in sys.modules])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert run.stdout == "[]\n"
+    for path in (ROOT / "derive").rglob("*.py"):
+        taken = {n.split(".")[2] for n in imported(path.read_text()) if is_within(n, "solvers.io")}
+        texts = {"suggestion", "atomic_write", "toml_input", "text_table", "terminal", "lazy"}
+        assert taken <= texts, path
+
+
+def test_generated_modules_use_only_math_from_the_standard_library_at_run_time() -> None:
+    for path in (ROOT / "generated").glob("*.py"):
+        top = ast.parse(path.read_text()).body
+        names = {n.module for n in top if isinstance(n, ast.ImportFrom)}
+        assert names <= {"__future__", "math", "typing"}
+
+
+def test_a_foreign_import_is_detected(tmp_path: Path) -> None:
+    path = tmp_path / "file.py"
+    path.write_text("import os\nfrom sympy.core import Add\nimport derive.codegen.graph")
+    assert foreign(path, ALLOWED["solvers"]) == {"sympy.core.Add", "derive.codegen.graph"}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_packages_come_from_this_repository(package: str) -> None:
+    found = importlib.import_module(package).__file__
+    assert found is not None
+    assert Path(found).parent == ROOT / package
+
+
+def test_importing_a_generated_module_loads_neither_sympy_nor_numpy() -> None:
+    code = (
+        "import sys, generated.double_pendulum as dp; dp.rhs(0, (1, 2, 3, 4), dp.DEFAULTS);"
+        "print([m for m in ('sympy', 'numpy', 'scipy') if m in sys.modules])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert run.stdout == "[]\n"

@@ -1,0 +1,383 @@
+"""Equations and methods of programs follow from their text, in every language."""
+
+import random
+import re
+from collections.abc import Mapping
+from functools import cache
+
+import pytest
+import strange_programs as programs
+import sympy as sp
+
+from derive import Derivation, load
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.reading.programs.degrees import starts_in_degrees
+from derive.reading.programs.program import Finding, Program
+from derive.reading.programs.reader import read_program
+from derive.reading.programs.trees import Name, Number
+from derive.reading.programs.writing import cleaned
+
+
+@cache
+def derivation(system: str) -> Derivation:
+    return Derivation(load(system))
+
+
+def values(system: str, rng: random.Random) -> dict[str, sp.Expr]:
+    """Numbers for all names of a system: a state, its accelerations, and parameters."""
+    derived = derivation(system)
+    own = derived.system
+    symbols = [*own.q, *own.qdot, *(one.symbol for one in own.parameters)]
+    state = {symbol: sp.Rational(rng.randint(20, 199), 100) for symbol in symbols}
+    found = {symbol.name: value for symbol, value in state.items()}
+    for q, acceleration in zip(own.q, derived.accelerations, strict=True):
+        found[f"{q.name}_ddot"] = acceleration.subs(state).evalf(30)
+    return found
+
+
+def residuals(program: Program, system: str, names: Mapping[str, str]) -> list[float]:
+    """Left minus right side of each equation; `names` has the formulas of its names."""
+    own = values(system, random.Random(20))
+    scope = FUNCTIONS | {name: sp.sympify(value) for name, value in own.items()}
+    for name, formula in names.items():
+        sign = "-" if formula.startswith("-") else ""
+        for order in ("", "_dot", "_ddot"):
+            if not order or f"{formula.removeprefix('-')}{order}" in own:
+                scope[name + order] = parse(f"{sign}{formula.removeprefix('-')}{order}", scope)
+    found = []
+    for equation in program.equations:
+        left, right = equation.text.split(" = ")
+        found.append(float(abs((parse(left, scope) - parse(right, scope)).evalf(20))))
+    return found
+
+
+def kinds(program: Program, *, faults: bool = True) -> set[str]:
+    return {one.kind for one in program.findings if one.is_fault or not faults}
+
+
+def finding(program: Program, kind: str) -> Finding:
+    return next(one for one in program.findings if one.kind == kind)
+
+
+def line_of(text: str, part: str) -> int:
+    return text[: text.index(part)].count("\n") + 1
+
+
+ENTRIES = {"y_0": "theta1", "y_1": "theta2"}
+ENTRIES_FROM_1 = {"y_1": "theta1", "y_2": "theta2"}
+CASES = {
+    "array of rates": (
+        "Python",
+        programs.ARRAY_OF_RATES,
+        "double_pendulum",
+        {"state_0": "theta1", "state_2": "theta2", "M1": "m1", "M2": "m2", "L1": "l1", "L2": "l2"}
+        | {"G": "g"},
+        2,
+    ),
+    "linear system": ("Python", programs.LINEAR_SYSTEM, "double_pendulum", {}, 2),
+    "sketch": (
+        "JavaScript",
+        programs.SKETCH,
+        "double_pendulum",
+        {"p1": "theta1", "p2": "theta2"},
+        2,
+    ),
+    "browser": (
+        "JavaScript",
+        programs.BROWSER,
+        "double_pendulum",
+        {"a": "theta1", "b": "theta2"},
+        2,
+    ),
+    "typed": (
+        "TypeScript",
+        programs.TYPED,
+        "single_pendulum",
+        {"gravity": "g", "length": "l"},
+        1,
+    ),
+    "history": ("Python", programs.HISTORY, "single_pendulum", {"L": "l"}, 1),
+    "scalar steps": (
+        "Python",
+        programs.SCALAR_STEPS,
+        "double_pendulum",
+        {"t1": "theta1", "t2": "theta2"},
+        2,
+    ),
+    "C": ("C++", programs.C_PROGRAM, "double_pendulum", ENTRIES | {"G": "g"}, 2),
+    "C++": ("C++", programs.CPP_PROGRAM, "elastic_pendulum", {"mass": "m", "rest": "l"}, 2),
+    "MATLAB": ("MATLAB", programs.MATLAB_PROGRAM, "double_pendulum", ENTRIES_FROM_1, 2),
+    "Octave": (
+        "MATLAB",
+        programs.OCTAVE_PROGRAM,
+        "single_pendulum",
+        {"phi": "theta", "len": "l"},
+        1,
+    ),
+    "Fortran": (
+        "Fortran",
+        programs.FORTRAN_PROGRAM,
+        "double_pendulum",
+        {"y_1": "theta1", "y_3": "theta2"},
+        2,
+    ),
+    "fixed form": ("Fortran 77", programs.FIXED_FORM, "single_pendulum", {}, 1),
+    "state with parameters": (
+        "MATLAB",
+        programs.STATE_WITH_PARAMETERS,
+        "single_pendulum",
+        {"x_1": "theta", "x_3": "g", "x_4": "l"},
+        1,
+    ),
+    "Julia": ("Julia", programs.JULIA_PROGRAM, "double_pendulum", {}, 2),
+    "macros in Julia": (
+        "Julia",
+        programs.JULIA_MACROS,
+        "double_pendulum",
+        {"th1": "theta1", "th2": "theta2"},
+        2,
+    ),
+    "matrices in Julia": (
+        "Julia",
+        programs.JULIA_MATRIX,
+        "double_pendulum",
+        {"u_1": "theta1", "u_2": "theta2"},
+        2,
+    ),
+    "cart": (
+        "Python",
+        programs.CART,
+        "cart_1",
+        {"M": "m0", "m": "m1", "l": "l1", "theta": "theta1"},
+        2,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_equations_agree_with_the_derived_ones(name: str) -> None:
+    language, text, system, names, count = CASES[name]
+    program = read_program(text, language)
+    assert program.language == language
+    assert not program.unread
+    found = residuals(program, system, names)
+    assert len(found) == count
+    assert max(found) < 1e-12
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_changed_sign_changes_an_equation(name: str) -> None:
+    language, text, system, names, _ = CASES[name]
+    wrong = re.sub(r"(?<![\w.:])((?:Math\.|np\.|math\.|std::)?)sin\(", r"2*\1sin(", text, count=1)
+    assert wrong != text
+    assert max(residuals(read_program(wrong, language), system, names)) > 1e-3
+
+
+def test_a_state_can_be_separate_parameters_with_time_before_them() -> None:
+    for parameters in ("x, v, k", "t, x, v, k", "t, k, x, v"):
+        text = f"def f({parameters}):\n    return v, -k*x\n"
+        texts = [one.text for one in read_program(text, "Python").equations]
+        assert texts == ["x_ddot = -k*x"], parameters
+
+
+def test_parameters_without_a_name_keep_their_place() -> None:
+    text = "y = y + h*f(0, y);\nfunction d = f(~, y)\n  d = [y(2); -sin(y(1))];\nend\n"
+    program = read_program(text, "MATLAB")
+    assert [one.text for one in program.equations] == ["y_1_ddot = -sin(y_1)"]
+    assert kinds(program) == {"explicit_euler"}
+
+
+def test_momenta_give_rates() -> None:
+    program = read_program(programs.CANONICAL, "Python")
+    assert [one.text for one in program.equations] == [
+        "theta_dot = p/(m*l**2)",
+        "p_dot = -m*g*l*sin(theta)",
+    ]
+    assert {one.kind for one in program.equations} == {"rate"}
+
+
+def test_names_lines_and_constants_are_those_of_the_program() -> None:
+    text = programs.SKETCH
+    program = read_program(text, "JavaScript")
+    (function,) = program.functions
+    assert function.name == "draw"
+    first, second = function.equations
+    assert (first.coordinate, first.velocity, first.kind) == ("p1", "v1", "acceleration")
+    assert first.line == line_of(text, "let acc1")
+    assert second.line == line_of(text, "let acc2")
+    assert function.names["v1"] == "p1_dot"
+    given = {one.name: one.value for one in program.constants}
+    assert given == {"l1": "150", "l2": "120", "m1": "20", "m2": "10", "g": "1"}
+
+
+def test_names_of_one_function_are_not_those_of_another() -> None:
+    text = """
+class Model:
+    def __init__(self, a, b):
+        self.given = (a, b)
+    def rates(self, t, y):
+        b, a = self.given
+        return [y[1], -a*y[0] - b*y[1]]
+"""
+    (function,) = read_program(text, "Python").functions
+    assert function.equations[0].text == "y_0_ddot = -b*y_0 - a*y_0_dot"
+    text = "struct P { double m, l, g = 9.81; };"
+    (constant,) = read_program(text, "C++").constants
+    assert (constant.name, constant.value) == ("g", "9.81")
+
+
+def test_parts_of_equations_have_their_lines() -> None:
+    program = read_program(programs.SKETCH, "JavaScript")
+    first = program.equations[0]
+    lines = {first.text[one.start : one.end]: one.line for one in first.origins}
+    assert lines["-g*(2*m1 + m2)*sin(p1)"] == line_of(programs.SKETCH, "let part1")
+    assert lines["2*m1 + m2 - m2*cos(2*(p1 - p2))"] == line_of(programs.SKETCH, "let below")
+
+
+def test_methods_and_their_faults_are_reported() -> None:
+    sketch = read_program(programs.SKETCH, "JavaScript")
+    assert kinds(sketch) == {"frame_step", "damping"}
+    assert finding(sketch, "semi_implicit_euler").line == line_of(programs.SKETCH, "p1 += v1")
+    assert finding(sketch, "damping").line == line_of(programs.SKETCH, "v2 *= 0.999")
+    browser = read_program(programs.BROWSER, "JavaScript")
+    assert kinds(browser) == {"explicit_euler", "degrees"}
+    assert finding(browser, "degrees").line == line_of(programs.BROWSER, "this.a = 45")
+    assert kinds(read_program(programs.CART, "Python")) == {"explicit_euler"}
+    for text, language in ((programs.HISTORY, "Python"), (programs.TYPED, "TypeScript")):
+        assert kinds(read_program(text, language), faults=False) == {"semi_implicit_euler"}
+    library = finding(read_program(programs.ARRAY_OF_RATES, "Python"), "library")
+    assert "DOP853" in library.text
+
+
+def test_angles_in_degrees_are_right_where_sines_take_degrees() -> None:
+    text = "let a = 90, v = 0;\nfunction draw() { v -= g*sin(a)*dt; a += v*dt; }\n"
+    assert kinds(read_program(text, "JavaScript")) == {"degrees"}
+    text += "function setup() { angleMode(DEGREES); }\n"
+    assert not kinds(read_program(text, "JavaScript"))
+
+
+def test_commands_of_notebooks_are_left_out() -> None:
+    text = "%matplotlib inline\n!pip install numpy\nf = lambda t, y: (y[1], -sin(y[0]))\n"
+    program = read_program(text, "Python")
+    assert not program.unread
+    assert [(one.line, one.text) for one in program.equations] == [(3, "y_0_ddot = -sin(y_0)")]
+
+
+#: A function of rates with an expression, in each language, and the values of expressions.
+TEMPLATES = {
+    "Python": "def f(t, y, k):\n    x, v = y\n    return [v, EXPRESSION]\n",
+    "C": "void f(double *y, double *d, double k) {\n  double x = y[0];\n  d[0] = y[1];\n"
+    "  d[1] = EXPRESSION;\n}",
+    "MATLAB": "function d = f(t, y, k)\n  x = y(1);\n  d = [y(2); EXPRESSION];\nend",
+    "Fortran": "subroutine f(t, y, k, d)\n real :: y(2), d(2), t, k, x\n x = y(1)\n d(1) = y(2)\n"
+    " d(2) = EXPRESSION\nend subroutine",
+    "Julia": "function f(y, k, t)\n  x, v = y\n  [v, EXPRESSION]\nend",
+}
+MEANINGS = [
+    ("Python", "-x**2 - -k", "-x**2 + k"),
+    ("Python", "x**k**2/2*k", "x**k**2/2*k"),
+    ("Python", "x^2", ""),  # exclusive or
+    ("C", "1/2*x", "0*x"),  # the quotient of whole numbers
+    ("C", "1.0f/2*x - 7/2*k", "1.0/2*x - 3*k"),
+    ("C", "x^2", ""),
+    ("MATLAB", "-x^2 + k", "-x**2 + k"),
+    ("MATLAB", "x^k^2", "(x**k)**2"),
+    ("MATLAB", "k*sind(x')", "k*sin(x*(pi/180))"),
+    ("Fortran", "-x**k**2", "-x**k**2"),
+    ("Fortran", "x**(1/2)*1.5d0", "x**0*1.5e0"),
+    ("Julia", "-x^2 + 2x^2", "-x**2 + 2*x**2"),
+    ("Julia", "-3x^2k^2", "-3*x**(2*k)**2"),
+    ("Julia", "1/2k*x", "1/(2*k)*x"),
+    ("Julia", "3(x + k)", "3*(x + k)"),
+]
+
+
+@pytest.mark.parametrize(("language", "expression", "meaning"), MEANINGS)
+def test_expressions_have_the_meaning_of_their_language(
+    language: str, expression: str, meaning: str
+) -> None:
+    program = read_program(TEMPLATES[language].replace("EXPRESSION", expression), language)
+    assert [one.text for one in program.equations] == [f"x_ddot = {meaning}"] * bool(meaning)
+    assert bool(program.unread) != bool(meaning)
+
+
+def test_methods_are_found_in_all_languages() -> None:
+    for text, language in ((programs.C_PROGRAM, "C"), (programs.FORTRAN_PROGRAM, "Fortran")):
+        assert "order 4" in finding(read_program(text, language), "runge_kutta").text
+        wrong = read_program(text.replace("2*k3", "k3"), language)
+        assert finding(wrong, "runge_kutta").is_fault
+    arrays = programs.ARRAY_STEPS
+    assert "order 4" in finding(read_program(arrays, "JavaScript"), "runge_kutta").text
+    wrong = arrays.replace("moved(y, k3, h)", "moved(y, k2, h)")
+    assert finding(read_program(wrong, "JavaScript"), "runge_kutta").is_fault
+    matlab = read_program(programs.MATLAB_PROGRAM, "MATLAB")
+    assert kinds(matlab, faults=False) == {"library", "degrees"}
+    assert finding(matlab, "degrees").line == line_of(programs.MATLAB_PROGRAM, "y0 = [30")
+    julia = read_program(programs.JULIA_PROGRAM, "Julia")
+    assert kinds(julia, faults=False) == {"library", "degrees"}
+    assert "120" in finding(julia, "degrees").text
+    octave = read_program(programs.OCTAVE_PROGRAM, "octave")
+    assert kinds(octave, faults=False) == {"explicit_euler"}
+    cpp = read_program(programs.CPP_PROGRAM, "C++")
+    assert kinds(cpp, faults=False) == {"semi_implicit_euler"}
+
+
+def test_parts_that_are_not_followed_are_reported_and_never_guessed() -> None:
+    text = programs.UNREADABLE
+    program = read_program(text, "Python")
+    assert not program.equations
+    reasons = {one.function: (one.line, one.reason) for one in program.unread}
+    assert reasons["chain"] == (line_of(text, "for i in"), "a loop is not followed")
+    assert reasons["table"][1] == "the function lookup is not followed"
+    assert reasons["early"] == (line_of(text, "if y[0]"), "the value depends on a condition")
+    assert "is not understood" in reasons["broken"][1]
+    assert reasons["verlet"][1] == "the update of x has the acceleration a of another step"
+
+
+def test_conditions_on_the_method_give_both_methods_and_those_on_formulas_none() -> None:
+    program = read_program(programs.CONDITIONAL, "Python")
+    assert [one.text for one in program.equations] == ["x_ddot = (kick - k*x)/m"]
+    found = {one.kind: one.line for one in program.findings}
+    text = programs.CONDITIONAL
+    assert found["explicit_euler"] == line_of(text, "x = x + self.h*v")
+    assert found["semi_implicit_euler"] > found["explicit_euler"]
+    (unread,) = program.unread
+    assert unread.function == "Model.other"
+    assert "conditional" in unread.reason
+
+
+def test_accelerations_with_values_after_the_step_are_reported() -> None:
+    program = read_program(programs.MIXED, "JavaScript")
+    mixed = finding(program, "mixed_update")
+    assert mixed.text == "the acceleration for w2 uses values after the step: w1"
+    assert mixed.line == line_of(programs.MIXED, "w2 +=")
+    assert [one.text for one in program.equations] == [
+        "t1_ddot = -sin(t1) - k*t2_dot",
+        "t2_ddot = -sin(t2) - k*t1_dot",
+    ]
+
+
+def test_coefficients_of_runge_kutta_methods_are_checked() -> None:
+    right = finding(read_program(programs.LINEAR_SYSTEM, "Python"), "runge_kutta")
+    assert "4 stages and order 4" in right.text
+    assert not right.is_fault
+    for old, new in (("h / 6", "h / 5"), ("2 * k3", "k3"), ("h / 2 * k2", "h * k2")):
+        text = programs.LINEAR_SYSTEM.replace(old, new)
+        wrong = finding(read_program(text, "Python"), "runge_kutta")
+        assert wrong.is_fault, new
+        assert "order 4 is possible" in wrong.text
+
+
+@pytest.mark.parametrize(
+    ("name", "identifier"),
+    [("θ₁", "theta1"), ("Θ", "Theta"), ("ϼ", "rho"), ("x\u0307", "x_dot"), ("x\u0308", "x_ddot")],
+)
+def test_names_of_programs_become_identifiers(name: str, identifier: str) -> None:
+    assert cleaned(name) == identifier
+
+
+def test_a_start_in_degrees_is_found_through_names_of_names() -> None:
+    values = {"start": Name(2, "initial"), "initial": Number(1, "120")}
+    (found,) = starts_in_degrees("theta", Name(3, "start"), values, "main")
+    assert "theta starts at 120" in found.text
+    assert not [*starts_in_degrees("theta", Name(3, "other"), values, "main")]

@@ -1,0 +1,580 @@
+"""Work-precision curves, their frontier, and the findings that follow from them."""
+
+import json
+import math
+import operator
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from math import inf, isnan, nan
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from sharing import Shared
+
+import generated.double_pendulum as dp
+from solvers.app.cli import main
+from solvers.app.commands.chart import _measured
+from solvers.app.modules import load as load_module
+from solvers.equations.forms import Form, fastest_form
+from solvers.integration.timing import TimedRun, timed_run, work_at
+from solvers.io.figures import save
+from solvers.runge_kutta.catalogue import SCIPY, load
+from solvers.scenes.reading import find
+from solvers.scenes.scene import Scene
+from solvers.studies import heyoka
+from solvers.studies.work_precision import measurement, peers, plots
+from solvers.studies.work_precision.curve import Curve, Point, frontier
+from solvers.studies.work_precision.findings import (
+    RoundingLimit,
+    misleading_energy,
+    rounding_limits,
+    wrong_above,
+)
+from solvers.studies.work_precision.measurement import combinations, curves
+from solvers.studies.work_precision.reference import Reference
+from solvers.studies.work_precision.scene_curves import SceneCurves, record
+
+REPORT = find("report", load_module)
+
+
+@pytest.fixture(autouse=True)
+def few_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 9))
+    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(12))
+    # the runs must not depend on the speed of the machine
+    monkeypatch.setattr(measurement, "LONGEST", dict.fromkeys(measurement.LONGEST, inf))
+    monkeypatch.setattr(measurement, "LONGEST_REPORT", inf)
+
+
+@pytest.fixture(scope="module")
+def truth(shared: Shared) -> Reference:
+    return shared("reference_report", lambda: Reference.of(find("report", load_module)))
+
+
+@pytest.fixture
+def long_truth(shared: Shared) -> Reference:
+    return shared("reference_long", lambda: Reference.of(find("long", load_module)))
+
+
+def point(seconds: float, error: float, energy: float = 1.0) -> Point:
+    return Point({"rtol": error}, seconds, int(seconds * 100), error, energy)
+
+
+def curve(method: str, form: str, backend: str, *points: Point) -> Curve:
+    return Curve("scene", method, form, backend, list(points))
+
+
+@pytest.mark.long("references of all scenes")
+def test_independent_references_agree_more_closely_than_curves_need(
+    truth: Reference, long_truth: Reference
+) -> None:
+    # curves end at 1e-13 (1e-7 after 20 s of chaos), a hundred times the error of references
+    single = Reference.of(find("single", load_module))
+    for found, least in ((truth, 1e-15), (long_truth, 1e-9), (single, 1e-13)):
+        assert found.global_error < 1e-14
+        assert max(found.differences.values()) < (
+            least if np.finfo(np.longdouble).nmant > 60 else 1e-6
+        )
+
+
+def test_the_error_of_the_reference_is_estimated_with_fewer_digits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("solvers.studies.work_precision.reference.FEWER", 8)
+    assert 1e-10 < Reference.of(find("report", load_module)).global_error < 1e-4
+
+
+def test_the_error_of_the_reference_is_at_least_its_last_rounding(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("solvers.studies.work_precision.reference.FEWER", 32)
+    single = load_module("single_pendulum")
+    found = Reference.of(Scene(single, single.DEFAULTS, (-1.5, -3.0), 0.25))
+    assert [*found.differences] == ["extrapolated midpoint rule", "elliptic functions"]
+    assert found.end.max() < 0  # the largest number is negative
+    assert found.global_error == np.spacing(np.abs(found.end).max())
+
+
+def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) -> None:
+    wanted = [
+        ("rk4", "lagrangian", "compiled"),
+        ("verner853", "rational", "compiled"),
+        ("dp54", "hamiltonian", "python"),
+        ("DOP853", "lagrangian", "scipy"),
+    ]
+    found = curves(find("report", load_module), truth, wanted)
+    assert [(c.method, c.form, c.backend) for c in found] == wanted
+    for c in found:
+        errors = [p.global_error for p in c.points]
+        assert min(errors) < 1e-3 < max(errors)
+        assert all(a.work_rhs < b.work_rhs for a, b in zip(c.points, c.points[1:], strict=False))
+        for p in c.points:
+            assert p.work_seconds > 0
+            # a right trajectory has the right energy; the converse is false
+            assert p.energy_error < 10 * p.global_error
+    # the curve shows the order of the method, and the error of the run
+    rk4 = found[0].points
+    late = [p for p in rk4 if 1e-9 < p.global_error < 1e-4]
+    order = np.log(late[0].global_error / late[-1].global_error) / np.log(
+        late[0].setting["h"] / late[-1].setting["h"]
+    )
+    assert order == pytest.approx(4, abs=0.5)
+    run = timed_run(
+        dp,
+        dp.DEFAULTS,
+        REPORT.y0,
+        5.0,
+        method="rk4",
+        form="lagrangian",
+        backend="compiled",
+        h=rk4[-1].setting["h"],
+    )
+    assert run
+    assert np.abs(run.end - truth.end).max() == rk4[-1].global_error
+    assert 4 * run.steps <= rk4[-1].work_rhs == run.work_rhs <= 4 * run.steps + 1
+
+
+def test_every_method_form_and_backend_is_charted() -> None:
+    found = set(combinations(dp))
+    assert {("verner98", "rational", b) for b in ("compiled", "python")} <= found
+    assert {method for method, _, backend in found if backend == "scipy"} == {*SCIPY}
+    assert ("gauss2", "hamiltonian", "compiled") in found
+    assert ("gauss2", "rational", "compiled") not in found  # no Jacobian
+    assert len(found) == len(list(combinations(dp))) == 15 * 3 * 2 + 8 * 2 * 2 + 6 * 3
+
+
+def test_runs_with_a_large_error_are_left_out(truth: Reference) -> None:
+    point_of = partial(measurement.point, find("report", load_module), truth)
+    options = {"method": "rk4", "form": "lagrangian", "backend": "compiled"}
+    run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, h=0.1, **options)
+    assert run
+    assert point_of({"h": 0.1}, run.work_seconds, run.work_rhs, run.end)
+    assert point_of({}, 1.0, None, np.full(4, nan)) is None
+    assert point_of({}, 1.0, None, run.end + 11) is None
+    # the error of a run is not known below that of the reference
+    exact = point_of({}, 1.0, None, truth.end)
+    assert exact
+    assert exact.global_error == truth.global_error
+
+
+def test_work_is_interpolated_and_lucky_runs_do_not_count() -> None:
+    errors, works = [1e-2, 1e-4, 1e-6], [1.0, 10.0, 100.0]
+    assert work_at(1e-3, errors, works) == pytest.approx(10**0.5)
+    assert isnan(work_at(1e-7, errors, works))
+    assert isnan(work_at(1.0, errors, works))
+    # the second run is lucky: a dearer one has a larger error
+    lucky = [1e-2, 1e-9, 1e-3, 1e-10], [*works, 1000.0]
+    assert work_at(1e-4, *lucky) == pytest.approx(100 ** (6 / 7) * 1000 ** (1 / 7))
+    assert work_at(2e-3, *lucky) == pytest.approx(10 ** (1 - np.log10(2)))
+    # even the least error is luck if no other run has it
+    assert work_at(1e-6, [1e-2, 1e-3, 1e-7, 1e-5, 1e-6], [1, 2, 3, 4, 5]) == pytest.approx(5)
+    assert isnan(work_at(1e-6, [*errors, 1e-5], [*works, 1e3]))
+    # runs dearer than the two best neighbours do not count
+    assert work_at(2e-6, [*errors, 2e-6, 1e-5], [*works, 1e3, 1e4]) == pytest.approx(100)
+    assert isnan(work_at(1e-6, [], []))
+
+
+def test_the_frontier_contains_the_cheapest_and_the_cost_of_alternatives() -> None:
+    found = frontier([
+        curve("a", "x", "c", point(1, 1e-1), point(10, 1e-3)),
+        curve("a", "x", "p", point(100, 1e-1), point(1000, 1e-3)),
+        curve("b", "x", "c", point(3, 1e-1), point(6, 1e-3)),
+        curve("b", "y", "c", point(2, 1e-1), point(30, 1e-3)),
+    ])  # fmt: skip
+    rough, middle, fine = found
+    assert [b.global_error for b in found] == [1e-1, 1e-2, 1e-3]
+    assert (rough.method, rough.form, rough.backend) == ("a", "x", "c")
+    assert rough.cost_ratios == {
+        "method": {"b": pytest.approx(2)},
+        "form": {"y": pytest.approx(2)},
+        "backend": {"p": pytest.approx(100)},
+    }
+    assert (fine.method, fine.work_seconds, fine.work_rhs) == ("b", 6, 600)
+    assert fine.cost_ratios["method"] == {"a": pytest.approx(10 / 6)}
+    assert middle.method == "a"  # 10^(1/2) against 18^(1/2)
+
+
+def test_shorter_steps_are_better_until_rounding_dominates() -> None:
+    def rk4(h: float) -> Point:
+        return Point({"h": h}, 1 / h, int(1 / h), h**4 + 1e-16 / h, 1.0)
+
+    steps = 2.0 ** -np.arange(2, 18)
+    (found,) = rounding_limits([curve("rk4", "lagrangian", "compiled", *map(rk4, steps))])
+    assert found.order == pytest.approx(4, abs=0.1)
+    assert found.h == pytest.approx((1e-16 / 4) ** (1 / 5), rel=0.5)
+    assert found.finest_error > 10 * found.global_error
+    # Euler's method, whose error does not fall yet
+    flat = [Point({"h": h}, 1 / h, int(1 / h), 1.0, 1.0) for h in steps]
+    (none,) = rounding_limits([curve("rk1", "lagrangian", "compiled", *flat)])
+    assert isnan(none.order)
+
+
+def test_a_rounding_limit_says_where_rounding_begins() -> None:
+    limit = RoundingLimit("rk4", 1e-3, 1e-12, 1e-5, 3e-11, 4.0)
+    assert "at h = 1.0e-03 s; by rounding it is 3.0e-11 at 1.0e-05 s" in str(limit)
+    assert str(replace(limit, finest_error=1.5e-12)).endswith("at the shortest step, 1.0e-05 s")
+    assert "no observed order" in str(replace(limit, order=nan))
+
+
+def test_in_the_report_s_scene_rounding_limits_rk4(
+    truth: Reference, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(19))
+    found = curves(find("report", load_module), truth, [("rk4", "lagrangian", "compiled")])
+    (limit,) = rounding_limits(found)
+    assert limit.order == pytest.approx(load("rk4").order, abs=0.3)
+    assert 1e-6 < limit.h < 1e-3
+    assert limit.global_error < 1e-11
+    assert limit.finest_error > 2 * limit.global_error
+
+
+@pytest.mark.long("a whole study")
+def test_a_small_energy_error_can_be_misleading(
+    long_truth: Reference, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 14))
+    one = find("long", load_module)
+    wanted = [("gauss2", "hamiltonian", "compiled"), ("verner98", "rational", "compiled")]
+    found = curves(one, long_truth, wanted)
+    case = misleading_energy(found, one, long_truth)
+    assert case
+    assert case.energy_error < 1e-7
+    assert case.global_error > wrong_above(one, long_truth) == 0.1
+    right = [c for c in found if c.method == "verner98"]
+    right = [replace(right[0], points=[p for p in right[0].points if p.global_error < 0.1])]
+    assert misleading_energy(right, one, long_truth) is None
+    # in small motion a small error is large
+    small = find("small", load_module)
+    assert wrong_above(small, Reference.of(small)) < 0.01
+
+
+def test_a_large_energy_error_is_not_misleading(truth: Reference) -> None:
+    found = curves(find("report", load_module), truth, [("rk1", "lagrangian", "compiled")])
+    assert min(p.energy_error for p in found[0].points) < 1
+    assert misleading_energy(found, find("report", load_module), truth) is None
+
+
+def test_installed_programs_have_curves(truth: Reference) -> None:
+    # the state of the fastest form, which holds sine and cosine of each angle
+    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
+
+    class Package(ModuleType):
+        @staticmethod
+        def lsoda(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
+            assert rtol == atol
+            return np.array([end, end + rtol]), True
+
+        @staticmethod
+        def dop853(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
+            return np.array([end, end]), False
+
+    def package(name: str) -> ModuleType | None:
+        return Package(name) if name == "numbalsoda" else None
+
+    lsoda, dop853 = peers.curves(find("report", load_module), truth, package)
+    assert (lsoda.method, lsoda.form, lsoda.backend) == ("lsoda", "rational", "numbalsoda")
+    for p in lsoda.points:
+        assert 0.9 < p.global_error / p.setting["rtol"] < 1.5
+    assert dop853.points == []
+    assert peers.curves(find("report", load_module), truth, lambda _: None) == []
+
+
+def test_energy_that_a_force_changes_is_not_misleading() -> None:
+    driven = load_module("driven_pendulum")
+    scene = Scene(driven, driven.DEFAULTS, (1.0, 0.0), 1e-6)
+    assert measurement.unit_of_energy(scene).is_relative
+    wrong = Curve("s", "dop853", "lagrangian", "compiled", [point(1.0, 1e-3, 0.0)])
+    wrong = replace(wrong, points=[replace(wrong.points[0], global_error=1.0)])
+    truth = Reference(np.array(scene.y0), 1e-15, {})
+    assert misleading_energy([wrong], scene, truth) is None
+
+
+def test_lsoda_gets_no_tolerance_of_which_it_warns(truth: Reference) -> None:
+    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
+    settings: dict[str, list[float]] = {"lsoda": [], "dop853": []}
+
+    def solver(name: str) -> Callable[..., tuple[np.ndarray, bool]]:
+        def solve(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
+            settings[name] += [rtol] if rtol not in settings[name] else []
+            return np.array([end]), True
+
+        return solve
+
+    program = ModuleType("numbalsoda")
+    vars(program).update({name: solver(name) for name in settings})
+    peers.curves(REPORT, truth, lambda name: program if name == "numbalsoda" else None)
+    assert settings["lsoda"] == pytest.approx(10.0 ** -np.arange(1, 13), abs=0)
+    assert settings["dop853"] == pytest.approx(10.0 ** -np.arange(1, 15), abs=0)
+
+
+def test_the_loop_for_numba_is_rk4(truth: Reference, monkeypatch: pytest.MonkeyPatch) -> None:
+    tuples = ModuleType("numba.np.unsafe.ndarray")
+    vars(tuples)["to_fixed_tuple"] = lambda stage, size: tuple(stage[:size])
+    monkeypatch.setitem(sys.modules, tuples.__name__, tuples)
+    monkeypatch.setattr(peers, "STEPS", np.array([500, 1000]))
+    monkeypatch.setattr(peers, "median_seconds", lambda _: 1e-3)
+    program = ModuleType("numba")
+    vars(program)["njit"] = lambda function: function
+    (one,) = peers.curves(REPORT, truth, lambda name: program if name == "numba" else None)
+    assert (one.backend, one.method) == ("numba", "rk4")
+    assert [(p.setting, p.work_rhs) for p in one.points] == [
+        ({"h": 0.01}, 2000),
+        ({"h": 0.005}, 4000),
+    ]
+    coarse, fine = (p.global_error for p in one.points)
+    assert fine < 1e-5
+    assert coarse / fine > 0.9 * 2**4
+
+
+@pytest.mark.parametrize(("combination", "longest"), [
+    (("rk4", "lagrangian", "compiled"), 0.5),  # of the report: until rounding dominates
+    (("rk4", "rational", "compiled"), 0.02),
+    (("rk4", "lagrangian", "python"), 0.1),
+    (("rk4_38", "lagrangian", "compiled"), 0.02),
+])  # fmt: skip
+def test_a_curve_ends_where_the_next_run_would_take_too_long(
+    combination: tuple[str, str, str],
+    longest: float,
+    truth: Reference,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    limits = {"compiled": 0.02, "python": 0.1, "scipy": 0.1}
+    monkeypatch.setattr(measurement, "LONGEST", limits)
+    monkeypatch.setattr(measurement, "LONGEST_REPORT", 0.5)
+
+    def run(*_: object, h: float, **__: object) -> TimedRun:
+        return TimedRun(1e-3 / h, 1, 1, truth.end)  # proportional to the number of steps
+
+    monkeypatch.setattr(measurement, "timed_run", run)
+    (one,) = curves(REPORT, truth, [combination])
+    *_, before, last = (p.work_seconds for p in one.points)
+    assert before == last / 2 <= longest / 2 < last <= longest
+
+
+class Expression:
+    """A number in another program's arithmetic, which the functions of ``math`` refuse."""
+
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+    def __neg__(self) -> "Expression":
+        return Expression(-self.value)
+
+
+def arithmetic(operation: Callable[[float, float], float]) -> Callable[..., Expression]:
+    def combined(one: Expression, other: "Expression | float") -> Expression:
+        return Expression(operation(one.value, getattr(other, "value", other)))
+
+    return combined
+
+
+for name in ("add", "sub", "mul", "truediv"):
+    setattr(Expression, f"__{name}__", arithmetic(getattr(operator, name)))
+    reflected = arithmetic(lambda a, b, name=name: getattr(operator, name)(b, a))
+    setattr(Expression, f"__r{name}__", reflected)
+
+
+@pytest.mark.parametrize("system", ["henon_heiles", "foucault_pendulum", "driven_pendulum"])
+def test_heyoka_gets_the_equations_of_every_system(system: str) -> None:
+    module, t = load_module(system), 0.3
+    form = Form(module, fastest_form(module), module.DEFAULTS)
+    state = form.from_ordinary(t, np.linspace(0.2, 0.9, len(module.STATE)))
+
+    def elementary(name: str) -> Callable[[Expression], Expression]:
+        return lambda x: Expression(getattr(math, name)(x.value))
+
+    functions = {name: staticmethod(elementary(name)) for name in ("sin", "cos", "sqrt")}
+    values = dict(zip(form.state, state, strict=True))
+    hy = type("Heyoka", (), {
+        "expression": Expression,
+        "time": Expression(t),
+        "par": [*map(Expression, module.DEFAULTS)],
+        "make_vars": staticmethod(lambda *names: [Expression(values[name]) for name in names]),
+        **functions,
+    })  # fmt: skip
+    variables, rates = zip(*heyoka.generated(hy, module), strict=True)
+    assert [x.value for x in variables] == state.tolist()
+    expected = form.rhs(t, state)
+    assert np.array([rate.value for rate in rates]) == pytest.approx(expected, rel=1e-14)
+
+
+def test_a_program_that_fails_loses_no_other_curve(
+    truth: Reference, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
+
+    def right(*_: object) -> Iterator[peers.Method]:
+        yield "right", lambda _: lambda: (end, None)
+
+    def fails_at_once(*_: object) -> Iterator[peers.Method]:
+        raise AttributeError("no attribute 'STATE_RATIONAL'")
+        yield
+
+    def fails_later(*_: object) -> Iterator[peers.Method]:
+        def run(tolerance: float) -> peers.Run:
+            if tolerance < 1e-3:
+                raise RuntimeError("out of memory")
+            return lambda: (end, None)
+
+        yield "first", run
+        yield "second", lambda _: lambda: (end, None)
+
+    programs = {"broken": fails_at_once, "partly": fails_later, "good": right}
+    monkeypatch.setattr(peers, "PEERS", programs)
+    monkeypatch.setattr("solvers.studies.work_precision.plots.PEERS", programs)
+    one = find("report", load_module)
+    broken, first, second, good = peers.curves(one, truth, ModuleType)
+    assert broken.failure == "AttributeError: no attribute 'STATE_RATIONAL'"
+    assert first.failure == "RuntimeError: out of memory"
+    assert 1 <= len(first.points) < len(second.points) == len(good.points)
+    assert not second.failure
+    study = SceneCurves.of(one, truth, [broken, first, second, good])
+    text = "\n".join(study.summary())
+    assert "broken failed: AttributeError: no attribute" in text
+    assert "partly first failed: RuntimeError: out of memory" in text
+    panel = study.plots()["work_precision_report"].axes[-1]
+    labels = [line.get_label() for line in panel.lines]
+    assert labels == ["broken (failed)", "partly first (failed)", "partly second", "good right"]
+
+
+SCENES = {
+    "driven_pendulum": "theta = '1 rad'",
+    "henon_heiles": "x = '0.1 m'\ny = '0.2 m'\nx_dot = '0.3 m/s'",
+    "rotating_hoop": "theta = '1 rad'",
+    "swinging_atwood": "r = '1 m'\ntheta = '1 rad'",
+}
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("system", SCENES)
+def test_systems_of_every_kind_are_charted(
+    system: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # driven, without an angle, the state of the single pendulum, no known equilibrium
+    wanted = [("dop853", "lagrangian", "compiled"), ("gauss2", "hamiltonian", "compiled")]
+    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(peers, "PEERS", {})
+    path = tmp_path / f"{system}.toml"
+    path.write_text(f"system = '{system}'\nduration = '0.2 s'\n[initial]\n{SCENES[system]}\n")
+    assert main(["chart", str(path), "--json", "--output", str(tmp_path)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    one = found["reference"]["scenes"][system]
+    assert one["global_error"] < 1e-14
+    assert max(one["differences"].values()) < 1e-12
+    assert [c["method"] for c in found["curves"]] == ["dop853", "gauss2"]
+    for c in found["curves"]:
+        last = c["points"][-1]
+        assert last["global_error"] < 1e-7
+        assert last["energy_error"] < 100 * last["global_error"]  # of 1 m or 1 rad, and in J
+    # the hoop starts below its equilibrium at the bottom, which is unstable
+    unit = "J" if system in ("swinging_atwood", "rotating_hoop") else "energy above rest"
+    assert found["energy_error_units"] == {system: unit}
+    runs = [curve("dop853", "lagrangian", "compiled", point(1.0, 1e-3))]
+    figure = plots.energy("", runs, 0.1, measurement.unit_of_energy(find(str(path), load_module)))
+    assert figure.axes[0].get_xlabel() == f"energy error at the end / {unit}"
+
+
+def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Path) -> None:
+    wanted = [
+        ("rk4", "lagrangian", "compiled"),
+        ("verner853", "rational", "compiled"),
+        ("verner853", "rational", "python"),
+        ("DOP853", "rational", "scipy"),
+    ]
+    found = curves(find("report", load_module), truth, wanted)
+    study = SceneCurves.of(find("report", load_module), truth, found)
+    figures = study.plots()
+    assert [*figures] == ["work_precision_report", "steps_report", "energy_report"]
+    for name, figure in figures.items():
+        assert sum(len(axes.lines) for axes in figure.axes) >= 1
+        save(figure, tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    text = "\n".join(study.summary())
+    assert "reference: Taylor series, 32 digits, own error" in text
+    assert "verner853, rational " in text
+    assert "rk4: error falls as h^4" in text
+
+
+def test_the_calls_of_numba_s_loop_are_no_finding(truth: Reference) -> None:
+    ours = curve("rk4", "rational", "compiled", point(1, 1e-1), point(2, 1e-3))
+    loop = curve("rk4", "rational", "numba", point(0.3, 1e-1), point(0.4, 1e-5))
+    lines = [*SceneCurves.of(REPORT, truth, [ours, loop]).summary()]
+    # the loop needs fewest calls for every error, and no other curve reaches the smallest ones
+    assert "in calls of the right-hand side: " in lines
+    assert all("numba" not in line for line in lines if line.startswith("in calls"))
+    (calls,) = (
+        line for line in SceneCurves.of(REPORT, truth, [ours]).summary() if line.startswith("in ca")
+    )
+    assert calls == "in calls of the right-hand side: 1e-01: 100 (rk4)"
+
+
+def test_a_record_measures_compiled_loops_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted = [("rk4", "lagrangian", backend) for backend in ("compiled", "python")]
+    other = curve("taylor", "lagrangian", "heyoka", point(1.0, 1e-3))
+    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(6))
+    monkeypatch.setattr(peers, "curves", lambda *_: [other])
+    single = load_module("single_pendulum")
+    scene = Scene(single, single.DEFAULTS, (1.0, 0.0), 0.2)
+    full, compiled = (_measured(scene, compiled_only=only) for only in (False, True))
+    assert [one.backend for one in full.curves] == ["compiled", "python", "heyoka"]
+    assert [one.backend for one in compiled.curves] == ["compiled"]
+    (row,) = json.loads(record([compiled]))
+    assert (row["scene"], row["system"], row["duration"]) == ("scene", "single_pendulum", 0.2)
+    assert row["spread"] == 1
+
+
+@pytest.mark.long("a whole study")
+def test_the_command_prints_curves_reference_and_frontier(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = [("rk4", "lagrangian", "compiled"), ("verner853", "rational", "compiled")]
+    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(peers, "PEERS", {})
+    assert main(["chart", "report", "single", "--json", "--output", str(tmp_path)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {(c["scene"], c["method"], c["form"], c["backend"]) for c in found["curves"]} == {
+        (name, *combination) for name in ("report", "single") for combination in wanted
+    }
+    for c in found["curves"]:
+        keys = {"work_seconds", "work_rhs", "global_error", "energy_error"}
+        assert all(keys <= set(p) for p in c["points"])
+    assert found["reference"]["method"] == "Taylor series, 32 digits"
+    assert 0 < found["reference"]["global_error"] < 1e-14
+    assert {row["method"] for row in found["frontier"]} <= {"rk4", "verner853"}
+    assert {Path(path).name for path in found["pictures"]} == {p.name for p in tmp_path.iterdir()}
+    assert main(["chart", "singel"]) == 2
+    assert "did you mean 'single'" in capsys.readouterr().err
+    file = tmp_path / "measured.json"
+    monkeypatch.setattr("solvers.scenes.models.method_choice.RECORD", file)
+    assert main(["chart", "single", "--record", "--output", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert "single pendulum from 2 rad, 10 s" in text
+    assert "plots: " in text
+    assert {method for method, *_ in wanted} == {*re.findall("rk4|verner853", file.read_text())}
+
+
+def test_a_scene_that_fails_loses_no_other(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(measurement, "combinations", lambda _: [("rk4", "lagrangian", "compiled")])
+    monkeypatch.setattr(peers, "PEERS", {})
+    reference = Reference.of
+
+    def fails(scene: Scene) -> Reference:
+        if scene.name == "report":
+            raise ArithmeticError("the equations are not finite")
+        return reference(scene)
+
+    monkeypatch.setattr(Reference, "of", fails)
+    assert main(["chart", "single", "report", "--json", "--output", str(tmp_path)]) == 3
+    output, errors = capsys.readouterr()
+    assert "the equations are not finite" in errors
+    found = json.loads(output)
+    assert [c["scene"] for c in found["curves"]] == ["single"]
+    assert [*found["reference"]["scenes"]] == ["single"]

@@ -1,0 +1,194 @@
+"""Advice on wrong formulas names the wrong term, and mends them."""
+
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+from advice_campaign import Outcome, outcome
+from formula_mutants import mutants
+from formula_truth import formulas, is_right
+
+from derive import Derivation, load
+from derive.verification.advice import MAX_LENGTH
+from derive.verification.model import Model
+from derive.verification.quantities import judge_formula
+from derive.verification.verdict import Verdict
+
+
+@cache
+def model(name: str) -> Model:
+    return Model(Derivation(load(name)), {})
+
+
+def judged(system: str, kind: str, key: str, text: str) -> Verdict:
+    result = judge_formula(model(system), "printed", text, kind, key)
+    assert result.verdict == "wrong"
+    return result
+
+
+DOUBLE = (
+    "m1*l1**2*theta1_dot**2/2 + m2*(l1**2*theta1_dot**2 + l2**2*theta2_dot**2 "
+    "+ 2*l1*l2*cos(theta2 - theta1)*theta1_dot*theta2_dot)/2"
+)
+CHAIN = (
+    "m1*l1**2*theta1_dot**2/2 + m2*((l1*theta1_dot*cos(theta1) + l2*theta2_dot*cos(theta2))**2"
+    " + (l1*theta1_dot*sin(theta1) + l2*theta2_dot*sin(theta2))**2)/2"
+    " + m3*((l1*theta1_dot*cos(theta1) + l2*theta2_dot*cos(theta2) + l3*theta3_dot*cos(theta3))**2"
+    " + (l1*theta1_dot*sin(theta1) + l2*theta2_dot*sin(theta2) + l3*theta3_dot*sin(theta3))**2)"
+)
+ACCELERATION = (
+    "(-g*(2*m1 + m2)*sin(theta1) - m2*g*sin(theta1 - 2*theta2) - 2*sin(theta1 - theta2)*m2"
+    "*(theta2_dot**2*l2 + theta1_dot**2*l1*cos(theta1 - theta2)))"
+    "/(l1*(2*m1 + m2 - m2*cos(2*theta1 - 2*theta2)))"
+)
+
+
+@pytest.mark.long("more cases of the same kind", keep=7)
+@pytest.mark.parametrize(("system", "kind", "key", "text", "wrong", "correct"), [
+    # g is missing in the last term of a web page: arsnumerandi.com/post/11
+    ("double_pendulum", "lagrangian", "", f"{DOUBLE} + (m1 + m2)*g*l1*cos(theta1)"
+     " + m2*l2*cos(theta2)", "m2*l2*cos(theta2)", "g*l2*m2*cos(theta2)"),
+    ("double_pendulum", "lagrangian", "", f"{DOUBLE} - (m1 + m2)*g*l1*cos(theta1)"
+     " + m2*g*l2*cos(theta2)", "-(m1 + m2)*g*l1*cos(theta1)", "(m1 + m2)*g*l1*cos(theta1)"),
+    ("double_pendulum", "lagrangian", "", f"{DOUBLE} + (m1 + m2)*g*l1*cos(theta1)",
+     "", "g*l2*m2*cos(theta2)"),
+    ("double_pendulum", "lagrangian", "", f"{DOUBLE} + (m1 + m2)*g*l1*cos(theta1)"
+     " + m2*g*l2*sin(theta2)", "m2*g*l2*sin(theta2)", "m2*g*l2*cos(theta2)"),
+    ("double_pendulum", "euler_lagrange", "", "(m1 + m2)*l1*theta1_ddot"
+     " + m2*l2*theta2_ddot*cos(theta1 - theta2) - m2*l2*theta2_dot**2*sin(theta1 - theta2)"
+     " + (m1 + m2)*g*sin(theta1) = 0", "-m2*l2*theta2_dot**2*sin(theta1 - theta2)",
+     "m2*l2*theta2_dot**2*sin(theta1 - theta2)"),
+    ("double_pendulum", "euler_lagrange", "", "l2*theta2_ddot"
+     " + l1*theta1_ddot*cos(theta1 - theta2) = l1*theta1_dot**2*sin(theta1 - theta2)"
+     " + g*sin(theta2)", "g*sin(theta2)", "-g*sin(theta2)"),
+    ("double_pendulum", "momenta", "theta2", "m2*l2**2*theta2_dot"
+     " + m2*l1*l2*theta1_dot*cos(theta1 + theta2)", "m2*l1*l2*theta1_dot*cos(theta1 + theta2)",
+     "m2*l1*l2*theta1_dot*cos(theta1 - theta2)"),
+    # the sign of a term in two brackets, and in a denominator
+    ("double_pendulum", "accelerations", "theta1", ACCELERATION.replace("l2 +", "l2 -"),
+     "-theta1_dot**2*l1*cos(theta1 - theta2)", "theta1_dot**2*l1*cos(theta1 - theta2)"),
+    ("double_pendulum", "accelerations", "theta1", ACCELERATION.replace("m2 - m2", "m2 + m2"),
+     "m2*cos(2*theta1 - 2*theta2)", "-m2*cos(2*theta1 - 2*theta2)"),
+    # one half is missing at the third mass
+    ("chain_3", "kinetic_energy", "", CHAIN, "m3", "m3/2"),
+    # the kinetic part stays
+    ("single_pendulum", "lagrangian", "", "m*(l**2*theta_dot**2/2 + g*l*sin(theta))",
+     "g*l*sin(theta)", "g*l*cos(theta)"),
+    ("single_pendulum", "energy", "", "m*l**2*theta_dot**2/2 - m*g*l*cos(theta) + m*g*theta",
+     "m*g*theta", "0"),
+    # a square is missing in a bracket that is itself squared
+    ("rotating_hoop", "kinetic_energy", "", "m*((R*theta_dot)**2 + (R*Omega*cos(theta))**2)/2",
+     "(R*Omega*cos(theta))**2", "(R*Omega*sin(theta))**2"),
+    ("elastic_pendulum", "accelerations", "theta", "(-g*sin(theta) - 2*r_dot*theta_dot)/(r + l)",
+     "l", "0"),
+    # a term that occurs twice is named by a larger one
+    ("henon_heiles", "potential_energy", "", "(x**2 + x**2 + 2*x**2*y - 2*y**3/3)/2",
+     "x**2 + x**2 + 2*x**2*y - 2*y**3/3", "y**2 + x**2 + 2*x**2*y - 2*y**3/3"),
+    ("henon_heiles", "potential_energy", "", "(x**2 + y**2 + 2*x**2*y)/2", "", "-y**3/3"),
+])  # fmt: skip
+def test_one_wrong_term_is_named_with_its_correction(
+    system: str, kind: str, key: str, text: str, wrong: str, correct: str
+) -> None:
+    (correction,) = judged(system, kind, key, text).corrections
+    assert (correction.wrong, correction.correct) == (wrong, correct)
+
+
+def test_several_wrong_terms_are_corrected_together() -> None:
+    text = "m*l**2*theta_dot**2/3 + m*g*l*sin(theta)"
+    result = judged("single_pendulum", "lagrangian", "", text)
+    assert [one.wrong for one in result.corrections] == [
+        "m*l**2*theta_dot**2/3",
+        "m*g*l*sin(theta)",
+    ]
+    for one in result.corrections:
+        assert text.count(one.wrong) == 1
+        text = text.replace(one.wrong, one.correct)
+    verdict = judge_formula(model("single_pendulum"), "mended", text, "lagrangian")
+    assert verdict.verdict in ("verified", "equivalent")
+
+
+def test_the_difference_is_given_where_no_term_mends_the_formula() -> None:
+    text = ACCELERATION.replace("l2 +", "l2 -").replace("m2 - m2*cos", "m2 + 2*m2*cos")
+    result = judged("double_pendulum", "accelerations", "theta1", text)
+    assert result.corrections == ()
+    right = f"{text} - ({result.difference})"
+    for formula in (right, result.correction):
+        verdict = judge_formula(model("double_pendulum"), "", formula, "accelerations", "theta1")
+        assert verdict.verdict == "verified"
+
+
+@pytest.mark.parametrize("term", [
+    "sqrt(-2)*m*theta", "tan(theta)**90", "exp(exp(9)*theta)", "sqrt(sin(theta) - 2)",
+    "log(-m)*theta", "(theta + m)**(1/3)", "sqrt(theta**2)*theta",
+    "theta/(theta - theta_dot)**20", "cos(sin(theta))", "theta**2*0.1",
+])  # fmt: skip
+def test_unusual_terms_get_advice_that_mends_or_none(term: str) -> None:
+    right = "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)"
+    result = judge_formula(model("single_pendulum"), "", f"{right} + {term}", "lagrangian")
+    assert result.verdict == "wrong"
+    if result.corrections:
+        assert [(one.wrong, one.correct) for one in result.corrections] == [(term, "0")]
+
+
+def test_a_very_long_formula_has_a_difference_only() -> None:
+    text = str(model("chain_12").derivation.lagrangian).replace("cos(theta1)", "sin(theta1)", 1)
+    assert len(text) > MAX_LENGTH
+    result = judged("chain_12", "lagrangian", "", text)
+    assert result.corrections == ()
+    assert "sin(theta1)" in result.difference
+    assert len(result.difference) < 200
+
+
+@pytest.mark.parametrize("error", ["1e-3", "1e-9", "1e-25"])
+def test_the_values_of_a_witness_differ(error: str) -> None:
+    result = judged("single_pendulum", "momenta", "theta", f"m*l**2*theta_dot*(1 + {error})")
+    printed, derived = result.witness.split(" instead of ")
+    assert printed != derived
+    state = dict(one.split(" = ") for one in result.state.split(", "))
+    assert set(state) == {"m", "l", "theta_dot"}
+
+
+def test_the_witness_of_an_equation_of_motion_is_its_value_along_a_motion() -> None:
+    result = judged("single_pendulum", "euler_lagrange", "", "theta_ddot = 2*g/l*sin(theta)")
+    assert result.witness.endswith(" instead of 0")
+    assert "theta_ddot" not in result.state
+
+
+SHARE = 0.95  # of the rejected mutants; none has advice that does not mend it
+
+
+def campaign(seed: int, count: int, path: Path) -> list[Outcome]:
+    return [outcome(mutant, path / "mutant.toml") for mutant in mutants(seed, count)]
+
+
+def check(outcomes: list[Outcome]) -> None:
+    rejected = [one for one in outcomes if one.verdict == "wrong"]
+    mended = [one for one in rejected if one.mends]
+    print(f"{len(outcomes)} mutants, {len(rejected)} rejected; the advice mends {len(mended)}")
+    single = [one for one in mended if len(one.advice) == 1]
+    named = [one for one in mended if one.names_mistake]
+    print(f"{len(single)} have one correction; {len(named)} corrections name the mistaken part")
+    for one in rejected:
+        if not one.mends:
+            print(one.mutant.mistake, one.mutant.text, one.advice, sep=" | ")
+    print(Counter(one.mutant.mistake for one in outcomes))
+    assert {one.verdict for one in outcomes} == {"wrong"}
+    assert not [one for one in rejected if one.advice and not one.mends]
+    assert len(mended) >= SHARE * len(rejected)
+
+
+def test_the_judge_of_the_campaign_accepts_the_correct_formulas() -> None:
+    assert all(is_right(formula, formula.text) for formula in formulas())
+
+
+@pytest.mark.long("many mutants")
+@pytest.mark.slow
+def test_advice_mends_mutants(tmp_path: Path) -> None:
+    check(campaign(0, 25, tmp_path))
+
+
+@pytest.mark.campaign
+@pytest.mark.timeout(3600)
+def test_advice_mends_600_mutants(tmp_path: Path) -> None:
+    check(campaign(1, 600, tmp_path))

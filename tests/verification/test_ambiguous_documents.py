@@ -1,0 +1,119 @@
+"""Documents with which several meanings of the letters agree."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from derive.verification.documents.files import judge_file
+from derive.verification.documents.hints import hints
+from derive.verification.documents.judged import JudgedDocument
+from solvers.app.cli import main
+from solvers.runge_kutta.order_conditions import order
+
+FIRST = r"""$$(m_1+m_2) l_1 \ddot\theta_1 + m_2 l_2 \ddot\theta_2 \cos(\theta_1-\theta_2)
+ + m_2 l_2 \dot\theta_2^2\sin(\theta_1-\theta_2) + (m_1+m_2) g \sin\theta_1 = 0$$"""
+SECOND = r"""$$l_2 \ddot\theta_2 + l_1 \ddot\theta_1 \cos(\theta_1-\theta_2)
+ - l_1 \dot\theta_1^2\sin(\theta_1-\theta_2) + g \sin\theta_2 = 0$$"""
+WRONG_FIRST = FIRST.replace("+ (m_1+m_2) g", "- (m_1+m_2) g")
+WRONG_SECOND = SECOND.replace("+ g", "- g")
+PENDULUM = r"$$\ddot\theta = -\frac gl\sin\theta$$"
+
+
+def judged(folder: Path, text: str) -> JudgedDocument:
+    path = folder / "document.md"
+    path.write_text(text)
+    return judge_file(str(path), order)[0]
+
+
+def verdicts(document: JudgedDocument) -> list[str]:
+    return [one.verdict for one in document.formulas]
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("text", [
+    f"{FIRST}\n\n{SECOND}",
+    PENDULUM,
+    r"$$x = l\sin\theta, y = l\cos\theta, V = m g y$$ $$\ddot\theta = \frac gl\sin\theta$$",
+    r"$$V = -m g l\cos\theta$$ $$\ddot\theta = -\frac gl\sin\theta + \theta$$",
+])  # fmt: skip
+def test_a_document_with_one_meaning_has_no_remarks(text: str, tmp_path: Path) -> None:
+    assert judged(tmp_path, text).remarks == ()
+
+
+def test_equations_that_are_both_wrong_hold_with_another_convention(tmp_path: Path) -> None:
+    document = judged(tmp_path, f"{WRONG_FIRST}\n\n{WRONG_SECOND}")
+    assert verdicts(document) == ["verified", "verified"]
+    assert document.convention == (
+        "theta_1 = pi - theta1, theta_2 = pi - theta2 (angles from upright)"
+    )
+    (usual,) = document.alternatives
+    assert usual.convention == "theta_1 = theta1, theta_2 = theta2 (angles from hanging)"
+    assert [(one.line, one.verdict, one.instead_of) for one in usual.differences] == [
+        (1, "wrong", "verified"), (4, "wrong", "verified"),
+    ]  # fmt: skip
+    assert r"+ g \sin" in usual.differences[1].correction
+
+
+def test_of_two_equations_that_contradict_each_other_either_can_be_wrong(tmp_path: Path) -> None:
+    document = judged(tmp_path, f"{FIRST}\n\n{WRONG_SECOND}")
+    assert verdicts(document) == ["verified", "wrong"]
+    assert document.convention == ""
+    (other,) = document.alternatives
+    assert [(one.line, one.verdict) for one in other.differences] == [(1, "wrong"), (4, "verified")]
+
+
+def test_another_correction_is_reported(tmp_path: Path) -> None:
+    text = r"""$$(M+m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$l\ddot\theta - \ddot x\cos\theta - g\sin\theta = 0$$"""
+    document = judged(tmp_path, text)
+    assert verdicts(document) == ["verified", "wrong"]
+    (other,) = document.alternatives
+    (changed,) = other.differences
+    assert changed.text == "line 2 (display 2) has another correction"
+    assert changed.correction not in ("", document.formulas[1].correction)
+
+
+def test_the_names_of_an_alternative_settle_it(tmp_path: Path) -> None:
+    document = judged(tmp_path, f"{WRONG_FIRST}\n\n{WRONG_SECOND}")
+    (usual,) = document.alternatives
+    path = tmp_path / "names.toml"
+    lines = [f'{letter} = "{text}"' for letter, text in usual.names.items()]
+    path.write_text("\n".join([f'system = "{usual.name}"', "[names]", *lines]))
+    settled = judge_file(document.file, order, hints(None, path))[0]
+    assert verdicts(settled) == ["wrong", "wrong"]
+    assert settled.alternatives == ()
+
+
+def test_names_hold_for_an_elongation(tmp_path: Path) -> None:
+    path, names = tmp_path / "document.md", tmp_path / "names.toml"
+    path.write_text(r"$$m\ddot x = m(\ell+x)\dot\theta^2 - k x + m g\cos\theta$$")
+    names.write_text('system = "elastic_pendulum"\n[names]\nx = "r - l"')
+    assert verdicts(judge_file(str(path), order, hints(None, names))[0]) == ["verified"]
+
+
+def test_systems_that_do_not_ship_have_names(tmp_path: Path) -> None:
+    path = tmp_path / "document.md"
+    path.write_text(r"$$m\ddot x + k x = 0$$")
+    document = judge_file(str(path), order, hints("oscillator", None))[0]
+    assert (document.system, verdicts(document)) == ("Mass on a spring", ["verified"])
+
+
+def test_alternatives_stand_in_text_json_and_pages(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "document.md"
+    path.write_text(PENDULUM.replace("-", ""))
+    for name in ("page.html", "page.tex"):
+        page = tmp_path / name
+        assert main(["verify", str(path), "--annotate", str(page)]) == 0
+        output = " ".join(capsys.readouterr().out.split())
+        assert "Letters: theta = pi - theta (angles from upright)" in output
+        assert "Ambiguous: with theta = theta (angles from hanging): line 1" in output
+        assert "Ambiguous: with theta = theta" in page.read_text()
+    assert main(["verify", str(path), "--json"]) == 0
+    (document,) = json.loads(capsys.readouterr().out)["documents"]
+    assert document["convention"] == "theta = pi - theta (angles from upright)"
+    (other,) = document["alternatives"]
+    assert (other["name"], other["names"]["theta"]) == ("single_pendulum", "theta")
+    assert other["differences"][0]["verdict"] == "wrong"

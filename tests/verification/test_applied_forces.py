@@ -1,0 +1,56 @@
+"""Equations of motion with forces whose letters have no meaning, and columns of columns."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.formulas.expression import parse
+from derive.verification.documents.files import judge_file
+from derive.verification.documents.judged import JudgedFormula
+from solvers.runge_kutta.order_conditions import order
+
+ROBOT = r"""
+$$\mathbf q = \begin{pmatrix} q_1 \\ q_2\end{pmatrix}$$
+$$\mathbf M = \begin{bmatrix} m_1 l_1^2 + m_2 (l_1^2 + 2 l_1 l_2 \cos q_2 + l_2^2) &
+  m_2 (l_1 l_2 \cos q_2 + l_2^2)\\ m_2 (l_1 l_2 \cos q_2 + l_2^2) & m_2 l_2^2 \end{bmatrix}$$
+$$V = -m_1 g l_1 \cos q_1 - m_2 g (l_1 \cos q_1 + l_2 \cos (q_1 + q_2))$$
+$$\mathbf C = \begin{bmatrix} -m_2 l_1 l_2 \dot q_2\sin q_2 & -m_2 l_1 l_2
+  (\dot q_1 + \dot q_2)\sin q_2 \\ m_2 l_1 l_2 \dot q_1 \sin q_2 & 0 \end{bmatrix}$$
+$$\mathbf G = \begin{bmatrix} (m_1 + m_2) g l_1 \sin q_1 + m_2 g l_2 \sin(q_1 + q_2) \\
+  m_2 g l_2 \sin(q_1 + q_2) \end{bmatrix}$$
+"""
+
+
+def last(folder: Path, text: str) -> JudgedFormula:
+    path = folder / "document.md"
+    path.write_text(text)
+    return judge_file(str(path), order)[0].formulas[-1]
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("equation", [
+    r"\mathbf M\ddot{\mathbf q} + \mathbf C\dot{\mathbf q} + \mathbf G = \mathbf B\mathbf u - F",
+    r"\ddot{\mathbf q} = \mathbf M^{-1}(\mathbf B\mathbf u - \mathbf C\dot{\mathbf q} - \mathbf G)",
+    r"\mathbf x = \begin{pmatrix}\mathbf q\\ \dot{\mathbf q}\end{pmatrix}$$ $$\dot{\mathbf x} ="
+    r"\begin{pmatrix}\dot{\mathbf q}\\ \mathbf M^{-1}(\mathbf u - \mathbf C\dot{\mathbf q} -"
+    r"\mathbf G)\end{pmatrix}",
+])  # fmt: skip
+def test_unknown_terms_of_an_equation_are_applied_forces(equation: str, tmp_path: Path) -> None:
+    one = last(tmp_path, f"{ROBOT}$${equation}$$")
+    assert (one.verdict, one.note[-18:]) == ("verified", " as applied forces")
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("equation", [
+    r"\mathbf M\ddot{\mathbf q} + \mathbf C\dot{\mathbf q} - \mathbf G = \mathbf B\mathbf u",
+    r"\mathbf P\ddot{\mathbf q} + \mathbf C\dot{\mathbf q} + \mathbf G = 0",
+    r"\mathbf B\mathbf u + \mathbf F = 0",
+])  # fmt: skip
+def test_equations_that_do_not_hold_otherwise_are_not_verified(
+    equation: str, tmp_path: Path
+) -> None:
+    assert last(tmp_path, f"{ROBOT}$${equation}$$").verdict == "context"
+
+
+def test_a_column_of_columns_is_one_column() -> None:
+    assert parse("((1, 2), (3, 4, 5))", {}).shape == (5, 1)

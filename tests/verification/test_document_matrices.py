@@ -1,0 +1,87 @@
+"""Matrices and columns of documents: by their entries, of small motions, of state spaces."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.verification.documents.files import judge_file
+from derive.verification.documents.judged import JudgedFormula
+from solvers.runge_kutta.order_conditions import order
+
+CART = r"""
+$$(M+m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$l\ddot\theta + \ddot x\cos\theta - g\sin\theta = 0$$
+$$\ddot\theta = \frac{(M+m) g}{M l}\theta - \frac{F}{M l}$$
+"""
+STATES = r"""
+$$A = \begin{bmatrix} 0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \\ 0 & -\frac{m g}{M} & 0 & 0 \\
+  0 & \frac{(M+m) g}{M l} & 0 & 0 \end{bmatrix}$$
+$$B = \begin{bmatrix} 0 \\ 0 \\ \frac{1}{M} \\ -\frac{1}{M l} \end{bmatrix}$$
+"""
+PAIRS = r"""
+$$A = \begin{bmatrix} 0 & 1 & 0 & 0 \\ 0 & 0 & -\frac{m g}{M} & 0 \\ 0 & 0 & 0 & 1 \\
+  0 & 0 & \frac{(M+m) g}{M l} & 0 \end{bmatrix}$$
+"""
+ENTRIES = r"""
+$$V = -m_1 g a\cos\alpha - m_2 g (a\cos\alpha + b\cos\beta)$$
+$$T = \tfrac12 m_1 a^2\dot\alpha^2 + \tfrac12 m_2 (a^2\dot\alpha^2 + b^2\dot\beta^2
+  + 2 a b\dot\alpha\dot\beta\cos(\alpha-\beta))$$
+$$D_{11} = (m_1 + m_2) a^2, \quad D_{12} = m_2 a b\cos(\alpha-\beta), \quad D_{22} = m_2 b^2$$
+$$f_1 = -m_2 a b\dot\beta^2\sin(\alpha-\beta) - (m_1 + m_2) g a\sin\alpha$$
+$$f_2 = m_2 a b\dot\alpha^2\sin(\alpha-\beta) - m_2 g b\sin\beta$$
+$$D\begin{pmatrix}\ddot\alpha\\ \ddot\beta\end{pmatrix} = \vec f$$
+"""
+SMALL = r"""
+$$M_0 = \begin{pmatrix} (m_1 + m_2) a^2 & m_2 a b \\ m_2 a b & m_2 b^2 \end{pmatrix}$$
+$$K = \begin{pmatrix} (m_1 + m_2) g a & 0 \\ 0 & m_2 g b \end{pmatrix}$$
+$$M_0\ddot{\vec u} + K\vec u = 0$$
+"""
+
+
+def judged(folder: Path, text: str) -> list[JudgedFormula]:
+    path = folder / "document.md"
+    path.write_text(text)
+    return list(judge_file(str(path), order)[0].formulas)
+
+
+def wrong(folder: Path, text: str) -> list[str]:
+    """The wrong terms, after a check that all other formulas are correct."""
+    formulas = judged(folder, text)
+    verdicts = {one.verdict for one in formulas}
+    assert verdicts <= {"verified", "definition", "wrong"}, formulas
+    return [one.wrong_term for one in formulas if one.verdict == "wrong"]
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("text", [CART + STATES, CART + PAIRS, ENTRIES, ENTRIES + SMALL])
+def test_matrices_of_the_system_are_verified(text: str, tmp_path: Path) -> None:
+    assert wrong(tmp_path, text) == []
+    assert judged(tmp_path, text)[-1].verdict == "verified"
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize(
+    ("text", "old", "new", "term"),
+    [
+        (CART + STATES, r"-\frac{m g}{M}", r"\frac{m g}{M}", r"\frac{m g}{M}"),
+        (CART + STATES, r"-\frac{1}{M l}", r"-\frac{1}{m l}", "m"),
+        (CART + PAIRS, r"(M+m) g}{M l} & 0", r"(M+m) g}{M} & 0", "g"),
+        (ENTRIES, r"D_{12} = m_2", r"D_{12} = m_1", "m_1"),
+        (ENTRIES, r"f_2 = m_2 a", r"f_2 = -m_2 a", r"-m_2 a b\dot\alpha^2\sin(\alpha-\beta)"),
+        (ENTRIES + SMALL, r"& m_2 b^2 \end", r"& m_2 b^3 \end", "b^3"),
+        (ENTRIES + SMALL, r"& m_2 g b \end", r"& m_1 g b \end", "m_1"),
+    ],
+)
+def test_wrong_entries_are_found(text: str, old: str, new: str, term: str, tmp_path: Path) -> None:
+    assert text.count(old) == 1
+    assert term in wrong(tmp_path, text.replace(old, new))[0]
+
+
+def test_a_letter_of_a_state_is_defined(tmp_path: Path) -> None:
+    text = CART + r"$$x = [x, \dot x, \theta, \dot\theta]$$"
+    assert judged(tmp_path, text)[-1].note == "x denotes a state here"
+
+
+def test_other_matrices_are_definitions(tmp_path: Path) -> None:
+    text = CART + r"$$Q = \begin{pmatrix} 1 & 0 \\ 0 & m \end{pmatrix}$$"
+    assert judged(tmp_path, text)[-1].verdict == "definition"

@@ -1,0 +1,148 @@
+"""Right formulas in rarer spellings and with rarer forces are not called wrong."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.document import Document
+from derive.reading.documents import read_document
+from derive.reading.latex.reader import formulas
+from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letter_search import letters_of
+from derive.verification.documents.statements import Occurrence, Translated, translated
+
+PENDULUM = r"""
+$$x = l\sin\theta(t), \quad y = -l\cos\theta(t)$$
+$$\dot x = l\dot\theta(t)\cos\theta(t)$$
+"""
+SPRING = r"""
+$$L = \frac m2(\dot r^2 + r^2\dot\theta^2) + m g r\cos\theta - \frac k2 (r - a)^2$$
+"""
+SPHERE = r"""
+$$L = \frac m2 l^2(\dot\theta^2 + \dot\phi^2\sin^2\theta) + m g l\cos\theta$$
+$$p = m l^2\dot\phi\sin^2\theta$$
+"""
+
+
+def judged(tmp_path: Path, text: str, suffix: str = ".md") -> JudgedDocument:
+    file = tmp_path / f"notes{suffix}"
+    file.write_text(text, encoding="utf-8")
+    return judge_document(read_document(file))
+
+
+def verdicts(tmp_path: Path, text: str, suffix: str = ".md") -> list[str]:
+    return [formula.verdict for formula in judged(tmp_path, text, suffix).formulas]
+
+
+def last(tmp_path: Path, text: str) -> str:
+    return verdicts(tmp_path, text)[-1]
+
+
+def test_brackets_behind_a_function_of_time_can_hold_a_factor(tmp_path: Path) -> None:
+    moving = PENDULUM.replace(r"y = -l", r"y = b\sin(w t) - l")
+    T = (
+        r"$$T = \frac m2 (l\dot\theta)^2 + \frac m2 (b w\cos(w t))^2"
+        r" + m l\dot\theta(b w\sin\theta\cos(w t))$$"
+    )
+    assert last(tmp_path, moving + T) == "verified"
+    assert last(tmp_path, moving + T.replace(r"\sin\theta\cos", r"\sin\theta\sin")) == "wrong"
+
+
+def test_a_square_before_the_time_is_that_of_a_function(tmp_path: Path) -> None:
+    assert last(tmp_path, PENDULUM + r"$$T = \frac{m l^2}2 \dot\theta^2(t)$$") == "verified"
+    assert last(tmp_path, PENDULUM + r"$$T = \frac{m l^2}3 \dot\theta^2(t)$$") == "wrong"
+
+
+@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("rates", [
+    (r"\frac bm\dot r", r"\frac bm\dot\theta"),  # drag on the mass
+    (r"\frac bm\dot r", r"\frac b{m r^2}\dot\theta"),  # on both coordinates
+    (r"b\dot r", r"b\dot\theta"),  # by the mass matrix
+])  # fmt: skip
+def test_friction_of_every_usual_kind_is_recognised(rates: tuple[str, str], tmp_path: Path) -> None:
+    accelerations = (
+        (
+            r"$$\ddot r = r\dot\theta^2 + g\cos\theta - \frac km (r - a) - {}$$"
+            r"$$\ddot\theta = -\frac{{2\dot r\dot\theta}}r - \frac gr\sin\theta - {}$$"
+        )
+        .replace(r"\frac{{2", r"FRAC")
+        .replace("}}r", "END")
+    )
+    text = accelerations.replace("{}", rates[0], 1).replace("{}", rates[1], 1)
+    text = text.replace("FRAC", r"\frac{2").replace("END", "}r")
+    assert verdicts(tmp_path, SPRING + text) == ["verified"] * 3
+    unequal = text.replace(rates[1], r"3" + rates[1])
+    assert "wrong" in verdicts(tmp_path, SPRING + unequal)
+
+
+def test_conserved_momenta_are_constants_of_an_effective_potential(tmp_path: Path) -> None:
+    potential = (
+        r"$$W = -\frac gl\cos\theta + \frac{p^2}{2 m^2 l^4\sin^2\theta}$$"
+        r"$$\ddot\theta = -SCALE\frac{\partial W}{\partial\theta}$$"
+    )
+    assert last(tmp_path, SPHERE + potential.replace("SCALE", "")) == "verified"
+    assert last(tmp_path, SPHERE + potential.replace("SCALE", "2")) == "wrong"
+
+
+def test_small_motions_without_a_system_are_no_double_pendulum(tmp_path: Path) -> None:
+    text = r"$$m\ddot\epsilon + k\epsilon = 0, \quad (l + m g/k)\ddot\theta + g\theta = 0$$"
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_steps_in_time_are_no_equations_of_motion(tmp_path: Path) -> None:
+    steps = r"$$\dot\theta = \dot\theta + h\ddot\theta$$ $$\theta_{k+1} = \theta_k + h\omega_k$$"
+    pendulum = r"$$V = -m g l\cos\theta$$ $$\ddot\theta = -\frac gl\sin\theta$$"
+    assert verdicts(tmp_path, pendulum + steps) == ["verified", "verified", "context", "context"]
+
+
+@pytest.mark.parametrize("numbers", ["", ", (1.2)", ". (7)"])
+@pytest.mark.parametrize("parts", [
+    r"$$T = \frac m2 l^2\dot\theta^2, V = -m g l\cos\theta = {}$$",
+    r"$$T = \frac m2 l^2\dot\theta^2, V = -m g l\cos\theta =$$ $$= {}$$",
+])  # fmt: skip
+def test_displays_with_numbers_and_continued_displays_are_judged(
+    numbers: str, parts: str, tmp_path: Path
+) -> None:
+    head, tail = parts.split("{}")
+    text = head + r"-m g l + 2 m g l\sin^2\frac\theta 2" + numbers + tail
+    assert verdicts(tmp_path, text) == ["verified", "verified"]
+    document = judged(tmp_path, text.replace("2 m g l", "m g l"))
+    assert [one.verdict for one in document.formulas] == ["verified", "wrong"]
+
+
+def test_one_open_bracket_spoils_one_row_of_an_environment(tmp_path: Path) -> None:
+    rows = r"\begin{eqnarray} K.E. &=& \frac m2 l^2\dot\theta^2 \\ P.E. &=& -m g l\cos\theta \\ "
+    text = rows + r"L &=& (K.E. - P.E. \end{eqnarray}"
+    assert verdicts(tmp_path, text, ".tex") == ["verified", "verified", "unreadable"]
+
+
+def test_uniform_rods_are_recognised_by_their_numbers(tmp_path: Path) -> None:
+    text = (
+        r"$$\frac 43 m l^2\ddot\theta = m g l\sin\theta - m l\ddot x\cos\theta$$"
+        r"$$(M + m)\ddot x = F + m l\dot\theta^2\sin\theta - m l\ddot\theta\cos\theta$$"
+    )
+    assert verdicts(tmp_path, text) == ["verified", "verified"]
+    assert "wrong" in verdicts(tmp_path, text.replace("F + m", "F - m"))
+
+
+def test_statements_about_all_coordinates_name_no_further_one(tmp_path: Path) -> None:
+    file = tmp_path / "notes.md"
+    rate = r"\frac{d}{dt}\frac{\partial L}{\partial\dot q_i}"
+    general = rf"$${rate} = \frac{{\partial L}}{{\partial q_i}}$$"
+    file.write_text(rf"{general} $$L = \frac m2 (\dot x_1^2 + \dot y_1^2)$$", encoding="utf-8")
+    statements = read_statements(read_document(file))
+    letters = letters_of(statements.formulas, statements.derivatives)
+    assert {*letters.coordinates} == {"x_1", "y_1"}
+
+
+def test_general_momenta_beside_named_coordinates_are_judged(tmp_path: Path) -> None:
+    text = r"""$$\dot q_i = \frac{\partial H}{\partial p_i}, \quad T = \frac m2 l^2\dot\phi_1^2,
+    \quad V = -m g l\cos\phi_1$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
+def read_statements(document: Document) -> Translated:
+    trees = [tree for one in document.displays for tree in formulas(one.latex)]
+    places = [Occurrence(n, 1, 1, 0, 0, "", tree) for n, tree in enumerate(trees, 1)]
+    return translated(places)
