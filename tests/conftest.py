@@ -21,6 +21,8 @@ from sharing import Shared
 
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
+from solvers.integration.compiled import extended
+from solvers.integration.compiled.kernel import kernel
 from solvers.scenes.reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep
@@ -37,7 +39,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile with less optimisation, and let all workers choose the same cases."""
-    cheap_compiler.install()
+    flags = cheap_compiler.LONG if config.getoption("long") else cheap_compiler.SHORT
+    cheap_compiler.install(flags)
     os.environ.setdefault(SEED, date.today().isoformat())
 
 
@@ -96,9 +99,15 @@ def large_module() -> Callable[[str], ModuleType]:
 
 
 @pytest.fixture
-def optimised(monkeypatch: pytest.MonkeyPatch) -> None:
+def optimised(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Compile as users do."""
+    loops = (kernel, extended.kernel)
     cheap_compiler.remove(monkeypatch)
+    for loop in loops:
+        loop.cache_clear()
+    yield
+    for loop in loops:
+        loop.cache_clear()
 
 
 @pytest.fixture(scope="session", autouse=True)

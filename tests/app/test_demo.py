@@ -78,6 +78,7 @@ def test_all_stages_fit_on_one_screen(demo: tuple[str, Path]) -> None:
     assert {path.name for path in page.parent.iterdir()} == {"demo.html", "flips"}
 
 
+@pytest.mark.long("the whole demonstration")
 def test_the_page_fits_every_screen_without_console_messages(opened: Any) -> None:
     wide, room = opened.execute_script(
         "for (const one of document.querySelectorAll('details')) one.open = true;"
@@ -94,6 +95,7 @@ def test_the_page_fits_every_screen_without_console_messages(opened: Any) -> Non
     assert hidden == []
 
 
+@pytest.mark.long("the whole demonstration")
 def test_no_formula_is_cut_on_a_wide_screen(opened: Any) -> None:
     cut, width = opened.execute_script("""
         for (const one of document.querySelectorAll('details')) one.open = true;
@@ -103,6 +105,7 @@ def test_no_formula_is_cut_on_a_wide_screen(opened: Any) -> None:
     assert cut == [] or width < 1280
 
 
+@pytest.mark.long("the whole demonstration")
 def test_charts_follow_the_colours_of_the_page(opened: Any) -> None:
     corner = """
         const done = arguments[0], images = [...document.querySelectorAll('img')];
@@ -140,6 +143,7 @@ def test_charts_follow_the_colours_of_the_page(opened: Any) -> None:
                 assert dark == 0
 
 
+@pytest.mark.long("the whole demonstration")
 def test_formulas_charts_and_motion_are_rendered(opened: Any) -> None:
     sizes = opened.execute_script(
         "for (const one of document.querySelectorAll('details')) one.open = true;"
@@ -156,6 +160,7 @@ def test_formulas_charts_and_motion_are_rendered(opened: Any) -> None:
     assert opened.execute_script("return document.querySelectorAll('#panels canvas').length") == 2
 
 
+@pytest.mark.long("the whole demonstration")
 def test_the_space_key_plays_a_visible_motion_and_scrolls_elsewhere(opened: Any) -> None:
     from selenium.webdriver import ActionChains
 
@@ -178,6 +183,7 @@ def test_the_space_key_plays_a_visible_motion_and_scrolls_elsewhere(opened: Any)
     assert after > before
 
 
+@pytest.mark.long("the whole demonstration")
 def test_every_misprint_is_followed_by_its_correction(demo: tuple[str, Path]) -> None:
     page = demo[1].read_text(encoding="utf-8")
     verdict = page.partition("All misprints")[2].partition("</details>")[0]
@@ -193,6 +199,7 @@ def test_every_misprint_is_followed_by_its_correction(demo: tuple[str, Path]) ->
         assert page.count(f"<strong>{words}") == 1
 
 
+@pytest.mark.long("the whole demonstration")
 def test_methods_are_ordered_by_cost_and_two_programs_agree(demo: tuple[str, Path]) -> None:
     page = demo[1].read_text(encoding="utf-8")
     rows = page.partition("<th>times as long</th>")[2].partition("</table>")[0]
@@ -204,6 +211,7 @@ def test_methods_are_ordered_by_cost_and_two_programs_agree(demo: tuple[str, Pat
     assert 0 < float(apart[0]) < 1e-9
 
 
+@pytest.mark.long("the whole demonstration")
 def test_every_number_states_its_method_and_command(demo: tuple[str, Path]) -> None:
     page = demo[1].read_text(encoding="utf-8")
     rows = re.findall(r"<tr>(.*?)</tr>", page.partition('id="numbers"')[2])[1:]
@@ -301,6 +309,7 @@ def test_tables_of_four_columns_are_stacked_on_narrow_screens() -> None:
     assert kinds == ["<table", '<table class="stacks"', '<table class="stacks"']
 
 
+@pytest.mark.long("the whole demonstration")
 def test_the_page_is_written_atomically(demo: tuple[str, Path], tmp_path: Path) -> None:
     (tmp_path / "demo.html").mkdir()
     with pytest.raises(OSError, match=r"demo\.html"):

@@ -40,6 +40,7 @@ def test_the_table_of_longest_steps_is_true(report_steps: dict[str, CriticalStep
         assert cells[3] == pytest.approx(step.measured, rel=accuracy)
 
 
+@pytest.mark.long("critical steps of all methods")
 def test_the_growth_of_oscillations_is_true(report_steps: dict[str, CriticalStep]) -> None:
     growth = {name: step.growth_measured for name, step in report_steps.items()}
     assert f"by {100 * (np.exp(growth['rk1']) - 1):.0f} % per step" in PROSE
@@ -59,6 +60,7 @@ def test_the_exponent_and_the_horizons_are_true() -> None:
     assert f"after {upright(sp).measured:.3f} s" in PROSE
 
 
+@pytest.mark.long("a whole study")
 def test_the_crossovers_of_stiff_scenes_are_true() -> None:
     methods = ("rk4", "verner853", "gauss2", "gauss3")
     costs = Stiffness((10.0, 30.0, 100.0), methods).run(load)

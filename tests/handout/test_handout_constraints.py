@@ -110,6 +110,7 @@ def test_formulas_of_eliminated_coordinates_are_listed_and_verified(
     }
 
 
+@pytest.mark.long("the document of a large system")
 def test_formulas_that_follow_from_the_constraints_are_verified(
     crank: list[JudgedFormula],
 ) -> None:
@@ -117,6 +118,7 @@ def test_formulas_that_follow_from_the_constraints_are_verified(
     assert {verdicts[one] for one in FOLLOWING} == {"verified"}
 
 
+@pytest.mark.long("the document of a large system")
 @pytest.mark.parametrize(("wrong", "term", "correction"), AGAINST)
 def test_a_formula_against_the_constraints_is_wrong(
     wrong: str, term: str, correction: str, crank: list[JudgedFormula]

@@ -1,8 +1,7 @@
 """The C compiler of the tests: less optimisation, and each library compiled once.
 
-Most of the time of a compilation is optimisation, which only tests of speed would notice.
-``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does, so that rounding errors are
-the same in nearly all places.
+Most of the time of a compilation is optimisation, which only tests of speed would notice. In the
+long part of the tests, ``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does.
 """
 
 import os
@@ -12,7 +11,9 @@ import time
 import pytest
 from folders import ROOT
 
-FOLDER = ROOT / "out" / "tests" / "cc"
+PLACE = ROOT / "out" / "tests"
+#: Flags of the two parts of the tests.
+SHORT, LONG = "-Og", "-O1 -fexpensive-optimizations"
 #: Libraries that no test has used for these seconds are removed.
 UNUSED = 7 * 86_400.0
 SCRIPT = """#!/bin/sh
@@ -24,7 +25,7 @@ case "$*" in
         touch '{folder}/libraries/'"$key"
         exit 0
     fi
-    '{compiler}' "$@" -O1 -fexpensive-optimizations || exit
+    '{compiler}' "$@" {flags} || exit
     cp library.so '{folder}/libraries/'"$key.$$"
     mv '{folder}/libraries/'"$key.$$" '{folder}/libraries/'"$key"
     ;;
@@ -35,27 +36,34 @@ esac
 """
 
 
-def install() -> None:
-    """Put the script before the system's compiler in the path; without a compiler do nothing."""
-    paths = os.environ["PATH"].split(os.pathsep)
-    compiler = shutil.which("cc", path=os.pathsep.join(p for p in paths if p != str(FOLDER)))
-    if compiler is None or paths[0] == str(FOLDER):
+def install(flags: str) -> None:
+    """Put a script before the system's compiler in the path; without a compiler do nothing."""
+    os.environ["PATH"] = _without(os.environ["PATH"])
+    compiler = shutil.which("cc")
+    if compiler is None:
         return
-    libraries, script = FOLDER / "libraries", FOLDER / "cc"
+    folder = PLACE / "-".join(["cc", *flags.replace("-", "").split()])
+    libraries, script = folder / "libraries", folder / "cc"
     libraries.mkdir(parents=True, exist_ok=True)
     for library in libraries.iterdir():
         if library.stat().st_mtime < time.time() - UNUSED:
             library.unlink(missing_ok=True)
-    text = SCRIPT.format(compiler=compiler, folder=FOLDER)
+    text = SCRIPT.format(compiler=compiler, folder=folder, flags=flags)
     # a script with another time is another compiler, whose libraries are built anew
     if not script.is_file() or script.read_text(encoding="utf-8") != text:
-        beside = FOLDER / f"cc.{os.getpid()}"
+        beside = folder / f"cc.{os.getpid()}"
         beside.write_text(text, encoding="utf-8")
         beside.chmod(0o755)
         beside.replace(script)
-    os.environ["PATH"] = os.pathsep.join([str(FOLDER), *paths])
+    os.environ["PATH"] = os.pathsep.join([str(folder), os.environ["PATH"]])
 
 
 def remove(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a test compile as users do."""
-    monkeypatch.setenv("PATH", os.environ["PATH"].removeprefix(f"{FOLDER}{os.pathsep}"))
+    monkeypatch.setenv("PATH", _without(os.environ["PATH"]))
+
+
+def _without(path: str) -> str:
+    """A path without the scripts."""
+    folders = path.split(os.pathsep)
+    return os.pathsep.join(one for one in folders if not one.startswith(str(PLACE)))

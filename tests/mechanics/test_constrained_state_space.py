@@ -60,6 +60,7 @@ def test_bars_by_their_positions_are_the_double_bar_pendulum() -> None:
     assert sp.simplify(both * space.A * both.inv() - expected).is_zero_matrix
 
 
+@pytest.mark.long("equilibria in symbols with two constraints")
 def test_the_rods_of_a_double_pendulum_have_its_equilibria_and_oscillations() -> None:
     d = Derivation(rods())
     found = d.equilibria()

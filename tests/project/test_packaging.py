@@ -75,6 +75,7 @@ def test_the_wheel_holds_every_file_of_the_packages(wheel: Path) -> None:
     assert suffixes >= {".c", ".h", ".js", ".css", ".html", ".toml", ".json", ".pyi", ".typed"}
 
 
+@pytest.mark.long("builds the wheel twice")
 def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
     with tarfile.open(build(ROOT, "sdist", tmp_path / "sdist")) as archive:
         archive.extractall(tmp_path, filter="data")

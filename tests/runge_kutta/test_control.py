@@ -123,6 +123,7 @@ def test_an_estimate_blind_to_half_of_the_step_exceeds_this_bound() -> None:
     assert error_over_estimate(replace(tableau, b_hat=b_hat, b_low=())) > 300
 
 
+@pytest.mark.long("motions of many systems")
 def test_errors_of_the_default_method_stay_near_the_tolerance() -> None:
     # bobs that come close to each other bend the spring's force within a part of a step
     starts = np.random.default_rng(1).uniform(-1, 1, (4, 12))

@@ -47,6 +47,7 @@ def test_doubles_suffice_near_their_limit(scene: Scene) -> None:
     assert error <= selection.model.error_estimate <= scene.accuracy
 
 
+@pytest.mark.long("long motions")
 def test_a_named_method_has_compensated_sums_where_it_needs_them() -> None:
     scene = Scene(dp, dp.DEFAULTS, (2.0, 2.5, 0, 0), 10.0, accuracy=1e-9, method="verner98")
     model = selected(scene).model

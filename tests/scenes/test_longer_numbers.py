@@ -108,6 +108,7 @@ def test_every_check_has_a_perturbation_of_its_own(monkeypatch: pytest.MonkeyPat
     assert seeds == [0, 1, 2, 3]
 
 
+@pytest.mark.long("long motions with many digits")
 def test_rounding_errors_of_constants_count() -> None:
     rng = np.random.default_rng(5)
     starts = [*SIMILAR, *rng.uniform(-2.5, 2.5, (12, 4)).tolist()]

@@ -100,6 +100,7 @@ def test_the_error_of_the_reference_is_at_least_its_last_rounding(
     assert found.global_error == np.spacing(np.abs(found.end).max())
 
 
+@pytest.mark.long("a whole study")
 def test_curves_contain_the_error_relative_to_the_reference(truth: Reference) -> None:
     wanted = [
         ("rk4", "lagrangian", "compiled"),
@@ -221,6 +222,7 @@ def test_a_rounding_limit_says_where_rounding_begins() -> None:
     assert "no observed order" in str(replace(limit, order=nan))
 
 
+@pytest.mark.long("a whole study")
 def test_in_the_report_s_scene_rounding_limits_rk4(
     truth: Reference, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -559,6 +561,7 @@ def test_the_command_prints_curves_reference_and_frontier(
     assert {method for method, *_ in wanted} == {*re.findall("rk4|verner853", file.read_text())}
 
 
+@pytest.mark.long("a whole study")
 def test_a_scene_that_fails_loses_no_other(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

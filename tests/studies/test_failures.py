@@ -62,6 +62,7 @@ def test_rk3_and_rk4_grow_beyond_their_interval_and_not_within(method: str) -> N
         assert found.measured == pytest.approx(found.predicted, rel=1e-4)
 
 
+@pytest.mark.long("a whole study")
 def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
     methods = ("rk4", "verner853", "gauss2", "radau3")
     costs = stiffness.Stiffness((30.0, 300.0), methods).run(load)
@@ -108,6 +109,7 @@ def test_the_crossover_is_where_costs_are_equal() -> None:
     assert np.isnan(stiffness.crossover(costs[:4], "family", "work_seconds"))
 
 
+@pytest.mark.long("a whole study")
 def test_energy_drifts_steadily_with_rk_and_stays_bounded_with_gauss() -> None:
     cases = [case for case in CASES if case[0] in ("rk4", "verner853", "gauss1", "gauss2")]
     for found in EnergyDrift(2000, tuple(cases)).run(load):
@@ -158,6 +160,7 @@ def test_the_standard_error_of_a_mean_is_that_of_repeated_means() -> None:
     assert np.mean([m.error for m in means]) == pytest.approx(spread, rel=0.15)
 
 
+@pytest.mark.long("a study of chaos")
 def test_a_small_difference_grows_as_variational_equations_predict(
     chaotic: ChaosResults,
 ) -> None:
@@ -169,6 +172,7 @@ def test_a_small_difference_grows_as_variational_equations_predict(
     assert apart.rate == pytest.approx(exponent.value, rel=0.3)
 
 
+@pytest.mark.long("a study of chaos")
 def test_trajectories_are_lost_at_the_predicted_horizon_and_energy_is_not(
     chaotic: ChaosResults,
 ) -> None:
@@ -180,6 +184,7 @@ def test_trajectories_are_lost_at_the_predicted_horizon_and_energy_is_not(
         assert found.energy_error < 1000 * found.tolerance
 
 
+@pytest.mark.long("a study of chaos")
 def test_beyond_the_horizon_means_agree_unless_energy_drifts(chaotic: ChaosResults) -> None:
     *accurate, drifting = chaotic.statistics
     assert len(accurate) == len(LONG_RUNS) - 1
@@ -204,6 +209,7 @@ def test_errors_near_upright_grow_as_the_motion_amplifies_them() -> None:
         assert row.error < 10 * separatrix.TOLERANCE * row.amplification
 
 
+@pytest.mark.long("a whole study")
 def test_on_the_separatrix_runs_depart_when_their_energy_predicts() -> None:
     found = [row for row in separatrix.departures(sp) if abs(row.defect) > 1e-13]
     assert len(found) > 8
@@ -218,6 +224,7 @@ def test_a_pendulum_at_the_number_nearest_to_pi_falls() -> None:
     assert 15 < found.measured < 20
 
 
+@pytest.mark.long("a study of chaos")
 def test_errors_exceed_tolerances_as_the_motion_grows(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -124,6 +124,7 @@ def test_a_mass_at_the_end_of_a_bar_is_part_of_its_link() -> None:
     assert about_joint == pytest.approx(3.0 * 2.0**2 / 3 + 1.0 * 2.0**2)
 
 
+@pytest.mark.long("derives a large mechanism")
 def test_the_textbook_s_squeezer_is_the_generated_one() -> None:
     module = load("andrews_squeezer")
     times = np.linspace(0.0, squeezer.END, 7)

@@ -127,6 +127,7 @@ def test_a_fall_is_found_exactly_among_touches() -> None:
         assert nonnegative_interval(p) == pytest.approx(expected, rel=1e-15)
 
 
+@pytest.mark.long("a whole study")
 def test_the_command_prints_every_method_of_the_scenes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,6 +187,7 @@ def test_without_a_scene_the_command_studies_where_methods_fail(
     assert {"stability_report.png", *plots} <= drawn
 
 
+@pytest.mark.long("critical steps of all methods")
 @pytest.mark.parametrize("method", [name for name in names() if not load(name).lower])
 def test_the_critical_step_is_what_the_interval_predicts(
     method: str, report_steps: dict[str, CriticalStep]

@@ -29,6 +29,9 @@ from solvers.sweeps.pool import Pool
 from solvers.sweeps.run import sweep
 from solvers.sweeps.sweep import Sweep
 
+# kinds of arithmetic differ in fused products, which a compiler forms where it optimises
+pytestmark = pytest.mark.usefixtures("optimised")
+
 ANGLES = np.linspace(-3, 3, 5)
 MAPS = {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}
 DEFINITION = Sweep(dp, Grid({"theta1": ANGLES, "theta2": ANGLES}), MAPS, 0.5)

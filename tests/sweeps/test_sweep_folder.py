@@ -118,6 +118,7 @@ def cluster() -> Iterator[Cluster]:
                 worker.wait()
 
 
+@pytest.mark.long("processes of a cluster")
 @pytest.mark.filterwarnings("default")  # of Dask's own
 def test_a_cluster_that_loses_a_worker_has_the_same_results(
     cluster: Cluster, tmp_path: Path, expected: dict[str, bytes]

@@ -50,6 +50,7 @@ def test_eigenvalues_are_those_of_the_benchmark(module: ModuleType) -> None:
             assert error < 1e-12 * max(1.0, abs(value)), (speed, value, error)
 
 
+@pytest.mark.long("derives the bicycle")
 def test_it_falls_at_low_speed_and_runs_by_itself_between_weave_and_capsize(
     module: ModuleType,
 ) -> None:

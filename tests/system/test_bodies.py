@@ -418,6 +418,7 @@ def rod(inertia: tuple[object, ...], constraints: list[sp.Expr]) -> System:
 SPIN = w * velocity(z) - z * velocity(w) + y * velocity(x) - x * velocity(y)  # about the rod
 
 
+@pytest.mark.long("compiles loops of a body in space")
 def test_a_rod_that_cannot_spin_moves_as_a_spherical_pendulum() -> None:
     module, pendulum = build(rod((A, A, 0), [SPIN])), generated.spherical_pendulum
     strict = STRICT | {"t_eval": [0.0, 1.0, 2.0, 3.0]}

@@ -84,6 +84,7 @@ def furuta_state(alpha: float, theta: float, turn: float, swing: float) -> Array
     return joint_state(two_hinges(), angles | {"a1_dot": turn, "a2_dot": turn, "b2_dot": swing})
 
 
+@pytest.mark.long("derives bodies by all their coordinates")
 def test_two_hinges_are_furutas_pendulum() -> None:
     module, shipped = two_hinges(), load("furuta_pendulum")
     assert set(module.MULTIPLIERS) >= {"A_torque_x", "A_torque_y", "B_torque_y", "B_torque_z"}
@@ -236,6 +237,7 @@ def universal_joint() -> System:
             *hinge("B", (0, 0, 0), (0, 0, 0), axes, shafts[1], "z")])  # fmt: skip
 
 
+@pytest.mark.long("derives bodies by all their coordinates")
 def test_a_universal_joint_has_hookes_ratio() -> None:
     # oracle: tan φ = cos β tan ψ, of shafts whose forks hold perpendicular arms of the cross
     module = build(universal_joint())

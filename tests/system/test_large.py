@@ -60,6 +60,7 @@ def test_loops_solve_the_textbook_equations(chain: ModuleType) -> None:
         )
 
 
+@pytest.mark.long("derives a chain of many links")
 def test_derivatives_and_hamilton_s_form_use_the_loops(chain: ModuleType) -> None:
     y, params = state(5)
     steps = y[:, None] + 1e-30j * np.eye(2 * N)

@@ -131,6 +131,7 @@ def test_unusual_terms_get_advice_that_mends_or_none(term: str) -> None:
         assert [(one.wrong, one.correct) for one in result.corrections] == [(term, "0")]
 
 
+@pytest.mark.long("a very long formula")
 def test_a_very_long_formula_has_a_difference_only() -> None:
     text = str(model("chain_12").derivation.lagrangian).replace("cos(theta1)", "sin(theta1)", 1)
     assert len(text) > MAX_LENGTH

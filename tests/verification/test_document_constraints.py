@@ -52,6 +52,7 @@ def judged(folder: Path, text: str, system: str) -> JudgedDocument:
     return judge_document(read_document(path), hints(system, None))
 
 
+@pytest.mark.long("the document of a rolling disc")
 def test_a_rolling_disc_with_multipliers_is_verified(tmp_path: Path) -> None:
     formulas = judged(tmp_path, MULTIPLIERS, "rolling_disc").formulas
     assert [one.verdict for one in formulas] == ["verified"] * 7
@@ -66,6 +67,7 @@ def test_another_sign_of_a_multiplier_is_wrong(tmp_path: Path) -> None:
     assert r"\lambda_1" in wrong[0].wrong_term
 
 
+@pytest.mark.long("a long substitution")
 def test_a_rolling_disc_by_substitution_is_wrong(tmp_path: Path) -> None:
     formulas = judged(tmp_path, SUBSTITUTION, "rolling_disc").formulas
     verdicts = [one.verdict for one in formulas]
