@@ -122,6 +122,7 @@ def test_formulas_are_numbered_without_gaps(documents, name: str) -> None:
     assert len(numbers) > 15
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_number_is_in_every_format(documents, name: str) -> None:
     count = len([*documents(name).equations])

@@ -85,6 +85,7 @@ def test_derivations_and_pictures_are_shown_as_such() -> None:
     assert "image/png" in kinds["06_your_own_system"]
 
 
+@pytest.mark.long("a kernel of Jupyter")
 @pytest.mark.parametrize("planted", ["assert 1 > 2", "warnings.warn('anything')"])
 def test_a_claim_that_does_not_hold_or_a_warning_is_noticed(planted: str, tmp_path: Path) -> None:
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(planted)])

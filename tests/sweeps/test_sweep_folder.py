@@ -447,6 +447,7 @@ import sys; from solvers.app.cli import main; sys.exit(main(['sweep', {str(path)
     assert files(tmp_path / "full") == files(tmp_path / "whole")
 
 
+@pytest.mark.long("a sweep of several seconds in another process")
 def test_an_interrupted_sweep_stops_at_once_and_resumes(tmp_path: Path) -> None:
     path = write_sweep(tmp_path, LONG)
     command = [

@@ -165,6 +165,7 @@ def newton_euler(state: Array) -> tuple[Array, Array]:
     return solution[:8], np.array(forces)
 
 
+@pytest.mark.long("derives the bicycle")
 def test_accelerations_and_forces_are_those_of_newton_and_euler(module: ModuleType) -> None:
     # oracle: balances of the four bodies in numbers, without Lagrange
     rng = np.random.default_rng(5)
