@@ -247,7 +247,7 @@ def test_the_exit_code_states_the_kind_of_error(
 
 
 def test_a_closed_pipe_causes_no_traceback() -> None:
-    command = f"{Path(sys.executable).parent}/holonomic derive --check single_pendulum"
+    command = f"'{Path(sys.executable).parent}/holonomic' derive --check single_pendulum"
     run = subprocess.run(
         f"{command} | true; echo ${{PIPESTATUS[0]}}",
         shell=True,

@@ -133,10 +133,16 @@ def fake_compiler(folder: Path, script: str) -> tuple[str, ...]:
         ("exit 0", "wrote no library"),
         (": > library.so", "wrote no library"),
         ("echo text > library.so", "does not work: .*file too short"),
-        ("echo 'int other;' > source.c; {cc} $@", "does not work: .*undefined symbol: LIBRARY_KEY"),
-        ("echo 'char LIBRARY_KEY[] = {{1, 0}};' > source.c; {cc} $@", "it is another one"),
-        ("{cc} $@; truncate -s 9000 library.so", "does not work: "),
-        ("{cc} $@; printf '\\267' | dd of=library.so bs=1 seek=18 conv=notrunc", "does not work: "),
+        (
+            "echo 'int other;' > source.c; '{cc}' $@",
+            "does not work: .*undefined symbol: LIBRARY_KEY",
+        ),
+        ("echo 'char LIBRARY_KEY[] = {{1, 0}};' > source.c; '{cc}' $@", "it is another one"),
+        ("'{cc}' $@; truncate -s 9000 library.so", "does not work: "),
+        (
+            "'{cc}' $@; printf '\\267' | dd of=library.so bs=1 seek=18 conv=notrunc",
+            "does not work: ",
+        ),
         ("sleep 60; true", "did not end within 1 s"),
         ("yes >&2", "did not end within 1 s"),
         ("sleep 2 & exit 1", "exit 1"),
@@ -259,7 +265,7 @@ def test_a_hanging_compiler_is_known_to_other_processes_for_some_time(
     mark.unlink()
     os.mkfifo(mark)
     assert in_another_process() == 6
-    Path(hanging[0]).write_text(f"#!/bin/sh\nexec {shutil.which('cc')} $@\n")
+    Path(hanging[0]).write_text(f"#!/bin/sh\nexec '{shutil.which('cc')}' $@\n")
     monkeypatch.setattr(compilation, "PATIENCE", 20.0)
     monkeypatch.setattr(compiler, "_attempts", compilation.Attempts())
     assert answer(build(SOURCE).path) == 42  # the mark is that of another file
@@ -274,7 +280,7 @@ def fails(k: int) -> bool:
 def test_an_invalid_program_does_not_stop_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = counting(tmp_path, f"exec {shutil.which('cc')} $@")
+    own = counting(tmp_path, f"exec '{shutil.which('cc')}' $@")
     monkeypatch.setattr(compiler, "compilers", lambda: iter([own]))
     for _ in range(2):
         with pytest.raises(NoCompilerError, match="#error here"):
@@ -288,7 +294,7 @@ def test_a_slow_compiler_that_works_is_given_time(
 ) -> None:
     monkeypatch.setattr(compilation, "PATIENCE", 0.2)
     monkeypatch.setattr(compilation, "PROBE_LIMIT", 20)
-    script = f"grep -q trial source.c || sleep 0.6\nexec {shutil.which('cc')} $@"
+    script = f"grep -q trial source.c || sleep 0.6\nexec '{shutil.which('cc')}' $@"
     monkeypatch.setattr(compiler, "compilers", lambda: iter([counting(tmp_path, script)]))
     assert answer(build(SOURCE).path) == 42
 

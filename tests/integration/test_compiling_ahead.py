@@ -15,7 +15,7 @@ print(integrate(dp, (0, 1), (1.0, 0.5, 0.0, 0.0), {}).run)
 """
 #: A compiler that waits until another one runs, for the time of 100 short pauses at most.
 WAITING = """#!/bin/sh
-grep -q trial source.c && exec {cc} "$@"
+grep -q trial source.c && exec '{cc}' "$@"
 touch {folder}/running-$$
 for i in $(seq 100); do
     [ -e {folder}/together ] && break
@@ -23,7 +23,7 @@ for i in $(seq 100); do
     sleep 0.1
 done
 rm {folder}/running-$$
-exec {cc} "$@"
+exec '{cc}' "$@"
 """
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")

@@ -35,7 +35,8 @@ def test_make_check_covers_ci() -> None:
     checked = read("Makefile").partition("\ncheck:")[2].partition("\n\n")[0]
     for line in read(".ci/run").splitlines():
         if line.startswith("make "):
-            assert {*line.split()[1:]} <= {*checked.split(), "demo"}
+            targets = {one for one in line.split()[1:] if not one.startswith(".")}
+            assert targets <= {*checked.split(), "demo"}
         elif line.startswith(".venv/bin/holonomic"):
             assert line.removeprefix(".venv/bin/") in checked.replace("$(BIN)/", "")
 
