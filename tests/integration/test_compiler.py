@@ -10,6 +10,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from shlex import quote
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ from solvers.studies.benchmarks.double_pendulum import _peak_library
 
 SOURCE = "int answer(void);\nint answer(void) { return 42; }\n"
 
+CC = quote(str(shutil.which("cc")))
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 
 
@@ -134,13 +136,13 @@ def fake_compiler(folder: Path, script: str) -> tuple[str, ...]:
         (": > library.so", "wrote no library"),
         ("echo text > library.so", "does not work: .*file too short"),
         (
-            "echo 'int other;' > source.c; '{cc}' $@",
+            "echo 'int other;' > source.c; {cc} $@",
             "does not work: .*undefined symbol: LIBRARY_KEY",
         ),
-        ("echo 'char LIBRARY_KEY[] = {{1, 0}};' > source.c; '{cc}' $@", "it is another one"),
-        ("'{cc}' $@; truncate -s 9000 library.so", "does not work: "),
+        ("echo 'char LIBRARY_KEY[] = {{1, 0}};' > source.c; {cc} $@", "it is another one"),
+        ("{cc} $@; truncate -s 9000 library.so", "does not work: "),
         (
-            "'{cc}' $@; printf '\\267' | dd of=library.so bs=1 seek=18 conv=notrunc",
+            "{cc} $@; printf '\\267' | dd of=library.so bs=1 seek=18 conv=notrunc",
             "does not work: ",
         ),
         ("sleep 60; true", "did not end within 1 s"),
@@ -152,7 +154,7 @@ def test_after_a_failing_compiler_the_next_is_used_with_a_notice(
     script: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     working = (str(shutil.which("cc")),)
-    broken = fake_compiler(tmp_path, script.format(cc=working[0]))
+    broken = fake_compiler(tmp_path, script.format(cc=CC))
     if {"sleep", "yes"} & {*script.split()}:
         monkeypatch.setattr(compilation, "PATIENCE", 0.5)
         monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.5)
