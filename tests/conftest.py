@@ -21,8 +21,6 @@ from sharing import Shared
 
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
-from solvers.integration.compiled import extended
-from solvers.integration.compiled.kernel import kernel
 from solvers.scenes.reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep
@@ -99,15 +97,10 @@ def large_module() -> Callable[[str], ModuleType]:
 
 
 @pytest.fixture
-def optimised(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def optimised() -> Iterator[None]:
     """Compile as users do."""
-    loops = (kernel, extended.kernel)
-    cheap_compiler.remove(monkeypatch)
-    for loop in loops:
-        loop.cache_clear()
-    yield
-    for loop in loops:
-        loop.cache_clear()
+    with cheap_compiler.as_users():
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -133,7 +126,8 @@ def module(derivation: Derivation) -> ModuleType:
 @pytest.fixture(scope="session")
 def report_steps(shared: Shared) -> dict[str, CriticalStep]:
     """Critical steps of all methods for the scene of the report."""
-    steps = shared("report_steps", lambda: SceneStability.of(find("report", load_module)).steps)
+    with cheap_compiler.as_users():  # roundings decide
+        steps = shared("report_steps", lambda: SceneStability.of(find("report", load_module)).steps)
     return {step.method: step for step in steps}
 
 

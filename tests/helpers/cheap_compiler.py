@@ -7,9 +7,14 @@ long part of the tests, ``-fexpensive-optimizations`` fuses products and sums as
 import os
 import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 from folders import ROOT
+
+from solvers.integration.compiled import extended
+from solvers.integration.compiled.kernel import kernel
 
 PLACE = ROOT / "out" / "tests"
 #: Flags of the two parts of the tests.
@@ -58,9 +63,17 @@ def install(flags: str) -> None:
     os.environ["PATH"] = os.pathsep.join([str(folder), os.environ["PATH"]])
 
 
-def remove(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let a test compile as users do."""
-    monkeypatch.setenv("PATH", _without(os.environ["PATH"]))
+@contextmanager
+def as_users() -> Iterator[None]:
+    """Compile with the optimisation of users in this context."""
+    loops = kernel, extended.kernel  # those of this process
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PATH", _without(os.environ["PATH"]))
+        for loop in loops:
+            loop.cache_clear()
+        yield
+        for loop in loops:
+            loop.cache_clear()
 
 
 def _without(path: str) -> str:
