@@ -29,6 +29,10 @@ ROOT = Path(__file__).parents[1]
 TIMEOUT = 100
 #: Most tests of a line; more of them reach the most general lines only.
 MOST_TESTS = 120
+#: Exit codes of pytest: all tests passed, and there was none.
+PASSED = (0, 5)
+#: Folders of tests that have not the name of the room.
+OTHER_FOLDERS = {"C": "integration", "derive/commands": "app", "derive/systems": "system"}
 COMPARISONS = {
     ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==",
     ast.In: "not in", ast.NotIn: "in", ast.Is: "is not", ast.IsNot: "is",
@@ -55,14 +59,24 @@ def _reached(number):
             file.write(test.rpartition(" (")[0] + "\\n")
 builtins._reached = _reached
 """
-#: A plugin of pytest that selects the tests of a file.
+#: A plugin of pytest that selects the tests of a file, without those that fail anyway.
 SELECTION = """
 import os
 from pathlib import Path
+SELECTED, FAILED = (os.environ.get(name) for name in ("SELECTED", "FAILED"))
+def lines(path):
+    return Path(path).read_text(encoding="utf-8").splitlines() if path else []
 def pytest_collection_modifyitems(config, items):
-    wanted = Path(os.environ["SELECTED"]).read_text(encoding="utf-8").splitlines()
-    order = {name: k for k, name in enumerate(wanted)}
-    items[:] = sorted((i for i in items if i.nodeid in order), key=lambda i: order[i.nodeid])
+    order, failed = {name: k for k, name in enumerate(lines(SELECTED))}, set(lines(FAILED))
+    chosen = [one for one in items if one.nodeid not in failed]
+    if order:
+        chosen = [one for one in chosen if one.nodeid in order]
+        chosen.sort(key=lambda one: order[one.nodeid])
+    items[:] = chosen
+def pytest_runtest_logreport(report):
+    if report.failed and "REACHED" in os.environ:
+        with open(os.path.join(os.environ["REACHED"], "failed"), "a", encoding="utf-8") as file:
+            file.write(report.nodeid + "\\n")
 """
 
 
@@ -206,7 +220,7 @@ def pytest(project: Path, *arguments: str, **environment: str) -> int:
     own = {"PYTHONPATH": str(project), "XDG_CACHE_HOME": str(project.parent / "cache")}
     limits = f"timeout={TIMEOUT}", f"faulthandler_timeout={TIMEOUT + 20}"
     options = ["-q", "-p", "no:cacheprovider", *(f"--override-ini={limit}" for limit in limits)]
-    command = [sys.executable, "-m", "pytest", *options, *arguments]
+    command = [sys.executable, "-m", "pytest", *options, "-p", "selection", *arguments]
     quiet = subprocess.DEVNULL
     return subprocess.run(command, cwd=project, env=os.environ | own | environment,
         stdout=quiet, stderr=quiet, stdin=quiet, check=False).returncode  # fmt: skip
@@ -225,7 +239,10 @@ def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> 
             lines[mutant.line - 1] = mutant.applied(lines, f"(_reached({number}) or ({own}))")
             (project / mutant.file).write_bytes(b"\n".join(lines) + b"\n")
     workers = ("--numprocesses", "auto", "--dist", "worksteal")
+    (reached / "failed").touch()
     pytest(project, *workers, *options, REACHED=str(reached))
+    failed = (reached / "failed").read_text().splitlines()
+    print(f"{len(set(failed))} tests fail without a mistake and do not count", flush=True)
     tests = [
         [*dict.fromkeys(filter(None, (reached / str(n)).read_text().splitlines()))]
         if (reached / str(n)).exists() else []
@@ -237,22 +254,23 @@ def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> 
 
 def is_noticed(mutant: Mutant, tests: Sequence[str], project: Path, options: Sequence[str]) -> bool:
     """Whether a test fails with a mistake in a copy, which is undone."""
-    path = project / mutant.file
+    path, failed = project / mutant.file, str(project.parents[1] / "reached" / "failed")
     original = path.read_bytes()
     lines = original.splitlines()
     lines[mutant.line - 1] = mutant.applied(lines)
     path.write_bytes(b"\n".join(lines) + b"\n")
-    room = project / "tests" / ("integration" if mutant.room == "C" else mutant.room.split("/")[1])
+    room = project / "tests" / OTHER_FOLDERS.get(mutant.room, mutant.room.rpartition("/")[2])
     try:
         if tests:
             selected = project.parent / f"{project.name}.txt"
             selected.write_text("\n".join(tests), encoding="utf-8")
             files = sorted({test.partition("::")[0] for test in tests})
-            arguments = ("-x", "-p", "selection", *options, *files)
-            if pytest(project, *arguments, SELECTED=str(selected)) not in (0, 5):
+            arguments = ("-x", *options, *files)
+            if pytest(project, *arguments, SELECTED=str(selected), FAILED=failed) not in PASSED:
                 return True
         others = [str(room)] if room.is_dir() else []
-        return bool(others) and pytest(project, "-x", *options, *others) not in (0, 5)
+        code = pytest(project, "-x", *options, *others, FAILED=failed) if others else 0
+        return code not in PASSED
     finally:
         path.write_bytes(original)
 
