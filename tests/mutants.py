@@ -27,22 +27,27 @@ from tempfile import TemporaryDirectory
 ROOT = Path(__file__).parents[1]
 #: Seconds after which a test that does not end has noticed a mistake.
 TIMEOUT = 100
-#: Most tests of a line; more of them reach the most general lines only.
+#: Most tests of a line, half of them those that reach few other lines, half those that reach many.
 MOST_TESTS = 120
 #: Exit codes of pytest: all tests passed, and there was none.
 PASSED = (0, 5)
 #: Folders of tests that have not the name of the room.
 OTHER_FOLDERS = {"C": "integration", "derive/commands": "app", "derive/systems": "system"}
-COMPARISONS = {
-    ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==",
-    ast.In: "not in", ast.NotIn: "in", ast.Is: "is not", ast.IsNot: "is",
-}  # fmt: skip
+#: Fields of nodes of Python that hold no code of the program.
+OTHER_FIELDS = ("annotation", "returns", "type_params", "decorator_list")
+#: Packages without tests, since they time other programs, which few users install.
+LEFT_OUT = "solvers/studies/benchmarks/"
+#: Arguments that change no result: checks of lengths, and the style of drawings and of output.
+STYLE = ("strict", "flush", "zorder", "alpha", "linewidth", "fontsize", "markersize", "pad", "dpi")
+#: Comparisons with another value at equality.
+COMPARISONS = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">"}
 OPERATORS = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*", ast.FloorDiv: "*",
     ast.Pow: "*", ast.Mod: "+", ast.MatMult: "*"}  # fmt: skip
 #: Pieces of a line of C and what replaces them.
 C_PIECES = {
-    r" \+ ": " - ", r" - ": " + ", r"(?<=\w)\*(?=\w)": "/", r" < ": " <= ", r" <= ": " < ",
-    r" > ": " >= ", r" >= ": " > ", r" == ": " != ", r" != ": " == ", r" && ": " || ",
+    r" \+ ": " - ", r" - ": " + ", r"(?<=\w)\*(?=\w)": "/", r"(?<=; \w) < ": " <= ",
+    r" < ": " >= ", r" <= ": " > ", r" > ": " <= ", r" >= ": " < ", r" == ": " != ",
+    r" != ": " == ", r" && ": " || ",
     r" \|\| ": " && ", r"\+\+": "--", r" \+= ": " -= ", r"\b0\.5\b": "0.6", r"\b2\.0\b": "3.0",
     r"\blane_fabs\(": "(", r"\bfabs\(": "(", r" & ~": " & ", r"(?<= = )-(?=\w)": "",
     r"\b1\.0\b": "2.0", r"\[0\]": "[1]",
@@ -116,16 +121,12 @@ def python_mutants(file: str) -> Iterator[Mutant]:
     def visit(node: ast.AST) -> Iterator[ast.AST]:
         yield node
         for name, value in ast.iter_fields(node):
-            if name in ("annotation", "returns", "type_params") or isinstance(node, ast.JoinedStr):
+            if name in OTHER_FIELDS or isinstance(node, ast.JoinedStr):
                 continue
             for child in value if isinstance(value, list) else [value]:
-                # `strict` is itself a check
-                is_check = isinstance(child, ast.keyword) and child.arg == "strict"
-                if (
-                    isinstance(child, ast.AST)
-                    and not isinstance(child, ast.pattern)
-                    and not is_check
-                ):
+                is_style = isinstance(child, ast.keyword) and child.arg in STYLE
+                is_code = isinstance(child, ast.AST) and not isinstance(child, ast.pattern)
+                if is_code and not is_style:
                     yield from visit(child)
 
     for node in visit(ast.parse(source)):
@@ -146,7 +147,9 @@ def replacements(node: ast.expr, own: str, line: bytes) -> Iterator[str]:
 
     match node:
         case ast.Compare(left=left, ops=[op], comparators=[right]):
-            yield f"({part(left)} {COMPARISONS[type(op)]} {part(right)})"
+            yield f"(not {own})"
+            if type(op) in COMPARISONS and (is_count(left) or is_count(right)):
+                yield f"({part(left)} {COMPARISONS[type(op)]} {part(right)})"
         case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
             is_text = any(isinstance(x, ast.Constant | ast.JoinedStr) and not isinstance(
                 getattr(x, "value", ""), int | float) for x in (left, right))  # fmt: skip
@@ -165,6 +168,16 @@ def replacements(node: ast.expr, own: str, line: bytes) -> Iterator[str]:
             yield f"({own} + 1)"
         case ast.IfExp(test=test, body=body, orelse=orelse):
             yield f"({part(orelse)} if {part(test)} else {part(body)})"
+
+
+def is_count(node: ast.expr) -> bool:
+    """Whether an expression is a whole number; other numbers are hardly ever equal."""
+    match node:
+        case ast.Constant(value=value):
+            return type(value) is int
+        case ast.Call(func=ast.Name(id=name)):
+            return name in ("len", "int")
+    return False
 
 
 def c_mutants(file: str) -> Iterator[Mutant]:
@@ -186,7 +199,8 @@ def chosen(count: int, seed: int) -> list[Mutant]:
     for file in files.splitlines():
         kinds = {".py": python_mutants, ".h": c_mutants, ".c": c_mutants}
         # systems are data, which are compared with other sources as a whole
-        if (kind := kinds.get(Path(file).suffix)) and file.count("/") > 1:
+        is_code = file.count("/") > 1 and not file.startswith(LEFT_OUT)
+        if is_code and (kind := kinds.get(Path(file).suffix)):
             for mutant in kind(file):
                 place = (file, mutant.line)
                 everywhere[mutant.room].setdefault(place, []).append(mutant)
@@ -227,7 +241,7 @@ def pytest(project: Path, *arguments: str, **environment: str) -> int:
 
 
 def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> list[list[str]]:
-    """The tests that reach each mistake in Python, first those that reach few others."""
+    """Tests that reach each mistake in Python, first those that reach few others."""
     project, reached = copy(place / "probed"), place / "reached"
     reached.mkdir()
     (project / "sitecustomize.py").write_text(PROBE)
@@ -238,6 +252,15 @@ def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> 
             own = lines[mutant.line - 1][mutant.start : mutant.end].decode()
             lines[mutant.line - 1] = mutant.applied(lines, f"(_reached({number}) or ({own}))")
             (project / mutant.file).write_bytes(b"\n".join(lines) + b"\n")
+    outside: dict[tuple[str, int], list[str]] = defaultdict(list)
+    for number, mutant in enumerate(mutants):
+        for start in starts_of_functions(mutant):
+            outside[mutant.file, start].append(f"_reached({number}); ")
+    for (name, start), probes in sorted(outside.items(), reverse=True):
+        lines = (project / name).read_bytes().splitlines()
+        indent = len(lines[start - 1]) - len(lines[start - 1].lstrip())
+        lines.insert(start - 1, b" " * indent + "".join(probes).encode())
+        (project / name).write_bytes(b"\n".join(lines) + b"\n")
     workers = ("--numprocesses", "auto", "--dist", "worksteal")
     (reached / "failed").touch()
     pytest(project, *workers, *options, REACHED=str(reached))
@@ -249,7 +272,30 @@ def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> 
         for n in range(len(mutants))
     ]  # fmt: skip
     frequency = Counter(test for names in tests for test in names)
-    return [sorted(names, key=frequency.__getitem__)[:MOST_TESTS] for names in tests]
+    for names in tests:
+        names.sort(key=frequency.__getitem__)
+        del names[MOST_TESTS // 2 : -MOST_TESTS // 2]
+    return tests
+
+
+def starts_of_functions(mutant: Mutant) -> list[int]:
+    """Lines at which functions of the file start, if the mistake is outside of functions.
+
+    Python runs its line once a process, and all functions of the file may depend on it.
+    """
+    starts: list[int] = []
+    if mutant.room == "C":
+        return starts
+    for node in ast.walk(ast.parse((ROOT / mutant.file).read_bytes())):
+        if isinstance(node, ast.FunctionDef):
+            body = node.body[1:] if ast.get_docstring(node) is not None else node.body
+            if node.body[0].lineno <= mutant.line <= (node.end_lineno or 0):
+                return []
+            if body and body[0].lineno > node.lineno:
+                first = body[0]
+                decorators = getattr(first, "decorator_list", None) or [first]
+                starts.append(min(one.lineno for one in decorators))
+    return starts
 
 
 def is_noticed(mutant: Mutant, tests: Sequence[str], project: Path, options: Sequence[str]) -> bool:
