@@ -27,7 +27,7 @@ SCRIPT = """#!/bin/sh
 # {compiler}, with less optimisation; libraries that were compiled before are copied
 case "$*" in
 *" -shared -o library.so source.c -lm")
-    key=$( (echo "$*"; cat source.c) | sha256sum | cut -c1-32)
+    key=$( (echo "$* {flags}"; cat source.c) | sha256sum | cut -c1-32)
     if cp '{folder}/libraries/'"$key" library.so 2> /dev/null; then
         touch '{folder}/libraries/'"$key"
         exit 0
@@ -49,7 +49,7 @@ def install(flags: str) -> None:
     compiler = shutil.which("cc")
     if compiler is None:
         return
-    folder = PLACE / "-".join(["cc", *flags.replace("-", "").split()])
+    folder = PLACE / ("short" if flags == SHORT else "long")
     libraries, script = folder / "libraries", folder / "cc"
     libraries.mkdir(parents=True, exist_ok=True)
     for library in libraries.iterdir():
