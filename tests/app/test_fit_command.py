@@ -41,7 +41,9 @@ def test_a_table_with_units_and_gaps_gives_values_files_and_a_scene(
     assert results["degrees_of_freedom"] == len(T) - 10 - 3
     files = {kind: Path(path) for kind, path in results["files"].items()}
     assert files["plot"].read_bytes()[1:4] == b"PNG"
-    table = list(csv.DictReader(files["table"].read_text().splitlines()))
+    heads, *_ = lines = files["table"].read_text().splitlines()
+    assert heads == "run,t,theta measured,theta fitted,theta residual"
+    table = list(csv.DictReader(lines))
     assert len(table) == len(T)
     assert table[25]["theta residual"] == ""
     scene = tomllib.loads(files["scene"].read_text())

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+import generated.four_bar as four_bars
 import generated.rolling_disc as disc
 from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
@@ -95,6 +96,16 @@ def test_four_bar_linkages_have_freudenstein_s_angles_in_both_branches(
     ).y[2] == pytest.approx(other[2], abs=1e-12)
     assert "from the constraints: q2 = " in repr(start)
     assert "another solution, for guesses near it: q2 = " in repr(start)
+
+
+def test_two_positions_of_the_crank_near_a_dead_centre_are_distinct() -> None:
+    rocker = consistent_start(four_bars, {"phi": 0.5}, {}).y[2]
+    start = consistent_start(four_bars, {"chi": rocker}, {}, guess={"phi": 0.5})
+    (other,) = start.others
+    guess = dict(zip(("psi", "chi"), other[1:], strict=True))
+    near = consistent_start(four_bars, {"phi": other[0]}, {}, guess=guess)
+    assert near.y[:3] == pytest.approx(other, abs=1e-9)
+    assert 0.1 < abs(other[0] - start.y[0]) < 0.2
 
 
 def test_slider_cranks_have_the_closed_form(crank: GeneratedModule) -> None:

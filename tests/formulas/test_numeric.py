@@ -35,6 +35,11 @@ def test_identities_are_zero_and_small_terms_are_not(identity: sp.Expr) -> None:
     assert not EVALUATOR(identity + y / 10**25).is_zero
 
 
+@pytest.mark.parametrize("value", [sp.Rational(-3, 7), sp.Float("-0.1", 50)])
+def test_bounds_of_errors_do_not_depend_on_the_sign(value: sp.Expr) -> None:
+    assert EVALUATOR(value).error == EVALUATOR(-value).error > 0
+
+
 def test_values_agree_with_those_of_sympy() -> None:
     expression = sp.sqrt(x) * sp.tan(y) ** 3 / (x - sp.exp(m)) + sp.log(x) + sp.cos(x / y)
     expected = expression.subs({x: sp.Rational(-3, 7), y: sp.Rational(5, 4), m: 2}).evalf(80)

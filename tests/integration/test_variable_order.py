@@ -167,6 +167,17 @@ def test_the_polynomial_of_another_order_predicts_the_stages() -> None:
             assert len(calls) == method.stages  # one iteration
 
 
+def test_the_order_rises_only_where_the_iteration_contracts_fast() -> None:
+    choice = OrderChoice(2, index=1)
+    choice.advance(0.01, 1.0)
+    assert choice.index == 1
+    choice.advance(0.0, 1.0)
+    assert choice.index == 1  # the last contraction counts by half
+    choice.advance(0.0, 1.0)
+    choice.advance(0.0, 1.0)
+    assert choice.index == 0
+
+
 def test_the_rule_of_the_order() -> None:
     choice = OrderChoice(3)
     for _ in range(3):

@@ -295,6 +295,11 @@ def test_matplotlib_gets_a_temporary_folder_where_there_is_no_home(
     monkeypatch.setenv(VARIABLE, str(tmp_path))
     provide_matplotlib_folder()
     assert os.environ[VARIABLE] == str(tmp_path)
+    monkeypatch.delenv(VARIABLE)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    for _ in range(2):  # Matplotlib's own folders do not exist at first
+        provide_matplotlib_folder()
+        assert VARIABLE not in os.environ
 
 
 def test_a_command_with_plots_names_all_folders_where_nothing_can_be_written(

@@ -17,7 +17,7 @@ from solvers.app.cli import main
 from solvers.equations.module import has_constraints, inputs
 from solvers.io.notation import axis_label
 from solvers.io.quantity import QuantityError, quantity
-from solvers.io.units import with_unit
+from solvers.io.units import dimension, with_unit
 from solvers.scenes.summary import summary
 from solvers.sweeps import map_kinds
 
@@ -49,6 +49,12 @@ def test_every_unit_of_a_system_file_is_read(tmp_path: Path) -> None:
     for unit in units(load(path)).values():
         for number in NUMBERS:
             assert quantity(f"{number} {unit}", unit) == number
+
+
+@pytest.mark.parametrize("units", ["m cm mm km", "kg g", "s ms us min", "rad deg turn"])
+def test_units_of_a_quantity_have_its_dimension(units: str) -> None:
+    first, *others = units.split()
+    assert {dimension(unit)[1] for unit in others} == {dimension(first)[1]}
 
 
 @pytest.mark.parametrize(("text", "unit", "value"), [

@@ -128,6 +128,7 @@ def test_rows_modulo_a_prime_have_the_null_space_of_rationals() -> None:
     rows = [[1, 2, 3], [2, 4, 6], [1, 0, 1]]
     assert len(echelon(rows)) == 2
     assert null_space(rows, 3) == [[1, 1, PRIME - 1]]
+    assert null_space([[1, 0, 0], [0, 1, 3]], 3) == [[0, 1, pow(-3, -1, PRIME)]]
 
 
 def test_unknown_names_are_refused_with_the_nearest() -> None:

@@ -116,6 +116,9 @@ def test_attractors_have_colours_and_a_legend(basins: Sweep, tmp_path: Path) -> 
     (panel,) = figure(results).axes
     labels = [text.get_text().partition(",")[0] for text in panel.get_legend().get_texts()]
     assert labels[-2:] == ["1: period 1", "2: period 1"]
+    states = [record["states"][0] for record in results.records["b"]]
+    drawn = [line.get_xydata()[0].tolist() for line in panel.lines if line.get_marker() == "o"]
+    assert drawn == [[state["x"], state["x_dot"]] for state in states]
     assert json.loads((tmp_path / "b_attractors.json").read_text()) == results.records["b"]
 
 

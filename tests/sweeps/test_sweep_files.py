@@ -1,6 +1,7 @@
 """Files in a sweep's folder that are not what they should be: repeated, refused or kept."""
 
 import hashlib
+import json
 import os
 from collections.abc import Callable
 from io import BytesIO
@@ -16,7 +17,7 @@ from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
 from solvers.sweeps import worker
 from solvers.sweeps.axes import Grid
-from solvers.sweeps.folder import DIGITS, FolderError
+from solvers.sweeps.folder import DIGITS, FORMAT, FolderError
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.reading import find
 from solvers.sweeps.run import partial_results, sweep
@@ -80,7 +81,12 @@ def brackets(path: Path) -> None:
     path.write_text("[" * 200_000)
 
 
-@pytest.mark.parametrize("plant", [fifo, endless, brackets, Path.mkdir])
+def without_a_digest(path: Path) -> None:
+    keys = {"format": FORMAT, "chunk": 1, "motions": 1, "definition": {}, "arithmetic": {}}
+    path.write_text(json.dumps(keys))
+
+
+@pytest.mark.parametrize("plant", [fifo, endless, brackets, without_a_digest, Path.mkdir])
 def test_a_manifest_that_is_no_file_or_too_deep_is_refused(
     plant: Callable[[Path], Any], tmp_path: Path
 ) -> None:
