@@ -1,5 +1,6 @@
 """Fixtures that several tests use, and the selection and order of the tests."""
 
+import gc
 import os
 import shutil
 import signal
@@ -40,6 +41,12 @@ def pytest_configure(config: pytest.Config) -> None:
     flags = cheap_compiler.LONG if config.getoption("long") else cheap_compiler.SHORT
     cheap_compiler.install(flags)
     os.environ.setdefault(SEED, date.today().isoformat())
+
+
+def pytest_collection_finish() -> None:
+    """Collect garbage less often: what the tests' files hold stays, and SymPy makes little."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 def pytest_report_header(config: pytest.Config) -> str:
