@@ -44,7 +44,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Collect garbage less often: what the tests' files hold stays, and SymPy makes little."""
+    """Collect garbage less often, and never what importing the tests' files created."""
     gc.freeze()
     gc.set_threshold(20_000, 20, 20)
 
