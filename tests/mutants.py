@@ -32,11 +32,12 @@ MOST_TESTS = 120
 #: Exit codes of pytest: all tests passed, and there was none.
 PASSED = (0, 5)
 #: Folders of tests that have not the name of the room.
-OTHER_FOLDERS = {"C": "integration", "derive/commands": "app", "derive/systems": "system"}
+OTHER_FOLDERS = {"C": "integration", "derive/commands": "app"}
 #: Fields of nodes of Python that hold no code of the program.
 OTHER_FIELDS = ("annotation", "returns", "type_params", "decorator_list")
-#: Packages without tests, since they time other programs, which few users install.
-LEFT_OUT = "solvers/studies/benchmarks/"
+#: Packages without tests, since they time other programs, which few users install; and systems,
+#: which are data, compared with other sources as a whole.
+LEFT_OUT = ("solvers/studies/benchmarks/", "derive/systems/")
 #: Arguments that change no result: checks of lengths, and the style of drawings and of output.
 STYLE = ("strict", "flush", "zorder", "alpha", "linewidth", "fontsize", "markersize", "pad", "dpi")
 #: Comparisons with another value at equality.
@@ -198,7 +199,6 @@ def chosen(count: int, seed: int) -> list[Mutant]:
     files = subprocess.check_output(["git", "ls-files", "derive", "solvers"], cwd=ROOT, text=True)
     for file in files.splitlines():
         kinds = {".py": python_mutants, ".h": c_mutants, ".c": c_mutants}
-        # systems are data, which are compared with other sources as a whole
         is_code = file.count("/") > 1 and not file.startswith(LEFT_OUT)
         if is_code and (kind := kinds.get(Path(file).suffix)):
             for mutant in kind(file):

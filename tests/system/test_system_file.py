@@ -204,6 +204,7 @@ def test_invalid_constraints_are_refused(line: str, words: str, tmp_path: Path) 
     (("Omega = {", '"os;rm" = {'), "'os;rm' cannot be a name"),
     (("Omega = {", "volatile = {"), "'volatile' cannot be a name"),
     (("value = 1, unit", "value = -1, unit"), "parameters.m = -1.0 must be a positive number"),
+    (("value = 1, unit", "value = 0, unit"), "parameters.m = 0.0 must be a positive number"),
     (("value = 1, unit", "valu = 1, unit"), "unknown key 'valu' in parameters.m"),
     (("value = 1, unit", "value = inf, unit"), "parameters.m"),
     (("value = 1, unit", "value = true, unit"), "must be a text in quotes"),
