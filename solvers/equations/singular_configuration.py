@@ -29,7 +29,7 @@ def check_constraints(
     for name, params, y0 in motions:
         if y0 is None:
             continue
-        condition, weakest = _condition(module, params, y0, t)
+        condition, weakest = condition_of_constraints(module, params, y0, t)
         text = (
             f"{name}the constraints of {module.SYSTEM} have condition {condition:.0e} (of G M⁻¹ "
             f"Gᵀ) at the start: {weakest} nearly depends on the others, as at a toggle point"
@@ -43,7 +43,7 @@ def check_constraints(
             warnings.warn(f"{text}; {lost}", SingularConfigurationWarning, stacklevel=stacklevel)
 
 
-def _condition(
+def condition_of_constraints(
     module: GeneratedModule, params: Sequence[float], y0: Sequence[float], t: float
 ) -> tuple[float, str]:
     """The condition with rows of G of the size 1 at generic states, and the weakest constraint."""

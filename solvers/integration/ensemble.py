@@ -167,6 +167,7 @@ def ensemble(
             run.run_compiled(program, threads)
         else:
             run.run_one_by_one()
+        run.pass_singularities()
     except KeyboardInterrupt as interruption:
         raise Interrupted(result) from interruption
     if run.stop.is_set:

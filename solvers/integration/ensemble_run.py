@@ -15,6 +15,7 @@ from solvers.integration.ensemble_times import EnsembleTimes
 from solvers.integration.events import Extremum
 from solvers.integration.inputs import History, held_table, segments
 from solvers.integration.problem import EventFunction, Outcome, Problem
+from solvers.integration.rerun import rerun
 from solvers.integration.solution import Array, Status
 from solvers.integration.stop_flag import StopFlag
 
@@ -105,13 +106,10 @@ class EnsembleRun:
     def run_one_by_one(self) -> None:
         """Integrate the motions in Python."""
         try:
-            for k, start in enumerate(self.states):
+            for k in range(len(self.states)):
                 if self.stop.is_set:
                     return
-                params = self.params[k % len(self.params)].tolist()
-                span, samples = (self.times.begin, self.times.end(k)), self.times.samples_of(k)
-                problem = self.problem.with_params(params)
-                problem = replace(problem, start=start, span=span, samples=samples)
+                problem = self._motion(k)
                 outcome = Outcome.at_start(problem)
                 try:
                     python_loop.run(problem, outcome, self.stop)
@@ -120,6 +118,18 @@ class EnsembleRun:
         finally:
             if self.problem.form.name == "variational":
                 self._set_growth(self.result.y.T[:, len(self.result.units) // 2 :])
+
+    def pass_singularities(self) -> None:
+        """Repeat motions that reach singular configurations, one by one through these."""
+        for k in np.flatnonzero(self.result.status == Status.SINGULAR).tolist():
+            if not self.stop.is_set:
+                self._store(rerun(self._motion(k)), k)
+
+    def _motion(self, k: int) -> Problem:
+        """The problem of motion `k`."""
+        span, samples = (self.times.begin, self.times.end(k)), self.times.samples_of(k)
+        problem = self.problem.motion(k, self.states, self.params)
+        return replace(problem, span=span, samples=samples)
 
     def _store(self, outcome: Outcome, k: int) -> None:
         """Copy the results of motion `k`."""

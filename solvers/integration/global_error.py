@@ -6,7 +6,7 @@ import numpy as np
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import has_perturbation
-from solvers.integration import compiled_loop, python_loop
+from solvers.integration import compiled_loop, passage
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.solution import Array
 from solvers.runge_kutta.catalogue import load
@@ -42,10 +42,7 @@ def global_error_estimate(problem: Problem, t: Array, y: Array) -> Array:
     )
     tighter, program = compiled_loop.select(tighter, lanes=False)
     outcome = Outcome.at_start(tighter)
-    if program:
-        compiled_loop.run(tighter, outcome, program)
-    else:
-        python_loop.run(tighter, outcome)
+    passage.run(tighter, outcome, program)
     states, result = outcome.rows()[1], np.full_like(y, np.nan)
     result[:, : len(states)] = np.abs(y[:, : len(states)] - states.T)
     return result

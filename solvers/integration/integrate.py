@@ -12,7 +12,7 @@ from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import Values
-from solvers.integration import compiled_loop, python_loop, validation
+from solvers.integration import compiled_loop, passage, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
 from solvers.integration.inputs import Controller, Held
@@ -145,10 +145,7 @@ def integrate(
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)
     try:
-        if program:
-            compiled_loop.run(problem, outcome, program)
-        else:
-            python_loop.run(problem, outcome)
+        passage.run(problem, outcome, program)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
     instability = step_instability(problem, outcome)

@@ -26,6 +26,7 @@ from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.inputs import given
 from solvers.integration.problem import SHORTEST, Options, Problem
+from solvers.integration.rerun import rerun
 from solvers.integration.singularity import singularity
 from solvers.integration.solution import Status
 from solvers.integration.step_stability import diagnosis
@@ -192,6 +193,9 @@ class Prepared:
         while STATUSES[code] is None:
             code = self._single(self._task, start, end, None, self._to)
         y, status = self._unpack(self._end), STATUSES[code]
+        if status is Status.SINGULAR:
+            outcome = rerun(self._problem_of(start, end))
+            status, y = outcome.status, tuple(outcome.end[1].tolist())
         if status is not Status.FINISHED:
             assert status is not None
             raise self._failure(status.without_events, start, end, y)

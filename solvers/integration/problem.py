@@ -16,6 +16,9 @@ from solvers.runge_kutta.tableau import Tableau
 
 #: The shortest step, in units of the spacing of floating-point times.
 SHORTEST = 10
+#: Part of a motion's longest step below which its constraints may be singular: steps become as
+#: short as the distance from such a configuration.
+COLLAPSE = 1e-2
 EventFunction = Callable[[float, Array], float]
 
 
@@ -101,6 +104,12 @@ class Problem:
             return []
         lagrangian = self.form.in_form("lagrangian")
         return [Switch(lagrangian, k, level) for k, level in enumerate(self.levels)]
+
+    @property
+    def collapse(self) -> float:
+        """Part of the longest step below which constraints may be singular; 0 without these."""
+        watches = self.form.has_constraints and self.h is None and self.schedule is None
+        return COLLAPSE * watches
 
     @property
     def backend(self) -> str | None:

@@ -83,6 +83,7 @@ def _run(
     except NotFiniteError:
         return Status.NOT_FINITE, h
     shortest, failures, first = shortest_step(begin, end), 0, outcome.steps
+    longest_accepted = 0.0
     if problem.h is None:
         longest = abs(end - begin)
         h = min(h, longest) if h else attempts.first_step_size(point, end, shortest)
@@ -93,6 +94,8 @@ def _run(
         if outcome.steps == problem.max_steps:
             return Status.STEP_LIMIT, h
         t = _step_end(problem, point.t, h, outcome.steps - first)
+        if h < problem.collapse * longest_accepted and t != end:
+            return Status.SINGULAR, h
         if abs(t - point.t) < shortest and t != end:
             return Status.STEP_TOO_SMALL, h
         attempts = orders.attempts
@@ -108,6 +111,7 @@ def _run(
                 orders.choice.lower()
             continue
         outcome.steps, failures = outcome.steps + 1, 0
+        longest_accepted = max(longest_accepted, abs(t - point.t))
         if stops:
             return Status.EVENT, h
         point = trial.end

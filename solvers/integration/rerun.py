@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 
-from solvers.integration import compiled_loop, python_loop
+from solvers.integration import compiled_loop, passage
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.problem import Outcome, Problem
 
@@ -13,8 +13,5 @@ def rerun(problem: Problem) -> Outcome:
     if problem.backend != "python" and not compiled_loop.obstacle(problem):
         with suppress(NoCompilerError):  # the first run has reported it
             program = compiled_loop.loop(problem)
-    if program:
-        compiled_loop.run(problem, outcome, program)
-    else:
-        python_loop.run(problem, outcome)
+    passage.run(problem, outcome, program)
     return outcome

@@ -71,7 +71,7 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
 def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag) -> Status:
     if problem.span[0] == problem.span[1]:
         return Status.FINISHED
-    solver = _solver(problem, outcome, recorder.y)
+    solver, longest = _solver(problem, outcome, recorder.y), 0.0
     while solver.status == "running":
         if stop.is_set:
             return Status.INTERRUPTED
@@ -87,6 +87,9 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag)
             return Status.NOT_FINITE
         if ends:
             return Status.EVENT
+        longest = max(longest, solver.step_size)
+        if solver.step_size < problem.collapse * longest and solver.status == "running":
+            return Status.SINGULAR
     return Status.FINISHED
 
 

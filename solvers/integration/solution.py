@@ -38,6 +38,10 @@ class Status(Enum):
         "the stage equations of the next step could not be solved: reduce h, or let method radau "
         "control the steps, without h"
     )
+    SINGULAR = (
+        "the motion approaches a configuration at which constraints depend on each other, beyond "
+        "which it is not known"
+    )
     OUTSIDE_DOMAIN = "a coordinate that must be positive fell to 0"
     UNDETERMINED = (
         "at jumps of the forces, these determine no motion: replace sign(v) by tanh(v/w) with a "

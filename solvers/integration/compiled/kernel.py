@@ -109,6 +109,7 @@ class Batch:
             rtol=problem.rtol,
             atol=float(problem.atol),
             fixed_h=problem.h or 0.0,
+            collapse=problem.collapse,
             max_steps=problem.max_steps,
             samples=-1 if problem.samples is None else len(problem.samples),
             times=self._times.ctypes.data,

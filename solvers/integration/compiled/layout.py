@@ -16,7 +16,7 @@ MAX_EVENTS = 8
 #: The numbers of ``enum Status`` in C, in order; the first two are of unfinished motions.
 STATUSES = (
     *(None, None, Status.FINISHED, Status.EVENT, Status.STEP_LIMIT, Status.NOT_FINITE),
-    *(Status.STEP_TOO_SMALL, Status.NO_CONVERGENCE, Status.UNDETERMINED),
+    *(Status.STEP_TOO_SMALL, Status.NO_CONVERGENCE, Status.UNDETERMINED, Status.SINGULAR),
 )
 UNFINISHED = ("WAITING", "RUNNING")
 

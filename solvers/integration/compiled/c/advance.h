@@ -53,6 +53,11 @@ static __attribute__((noinline)) mask advance(Lanes *lanes, mask *accepted, mask
     motion->rejected += select(advancing & ~*accepted, one, splat(0.0));
     motion->reductions = select(*accepted, splat(0.0), motion->reductions);
     mask attention = *failed | last | ~advancing | less_than(lane_fabs(motion->h), motion->min_h);
+    if (CORRECTIONS > 0) {
+        const real longest = lane_fmax(motion->longest, lane_fabs(lanes->h));
+        motion->longest = select(*accepted, longest, motion->longest);
+        attention |= less_than(lane_fabs(motion->h), task->collapse*motion->longest);
+    }
     mask several = {0};
     mask crossed = {0};
     if (task->event_count) {

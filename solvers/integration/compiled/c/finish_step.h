@@ -26,6 +26,9 @@ static enum Status status(const Lanes *lanes, int lane)
     if (LANE(motion->steps, lane) >= (double)task->max_steps) {
         return STEP_LIMIT;
     }
+    if (h < task->collapse*LANE(motion->longest, lane) && h < left) {
+        return SINGULAR;
+    }
     return h < LANE(motion->min_h, lane) && h < left ? STEP_TOO_SMALL : RUNNING;
 }
 

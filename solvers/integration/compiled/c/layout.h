@@ -35,6 +35,7 @@ typedef struct {
     real t_end;                 /* or the end of the inputs in params, if these are held */
     real held;                  /* number of times that held inputs have changed */
     real min_h;                 /* shortest step */
+    real longest;               /* longest accepted step */
     real last_switch;           /* time at which signs of switching functions changed last */
     real brief_parts;           /* number of such changes in next to no time */
     real recent;                /* functions that changed then, a bit each */
@@ -81,6 +82,7 @@ typedef struct {
     double rtol;
     double atol;
     double fixed_h;             /* length of fixed steps, or 0 for step control */
+    double collapse;            /* part of the longest step below which constraints are singular */
     int64_t max_steps;
     int64_t samples;            /* number of sample times, or -1 for the end of every step */
     const double *times;
