@@ -188,6 +188,11 @@ def test_characters_beyond_ascii_are_declared_in_latex() -> None:
     ]
 
 
+def test_tables_repeat_their_heads_on_every_page(documents) -> None:
+    text = tex(documents("double_pendulum"))
+    assert "coordinate & unit & meaning \\\\\n\\hline\n\\endhead\n$\\theta_1$ & rad &" in text
+
+
 @needs_latex
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["blank", "mistakes"])

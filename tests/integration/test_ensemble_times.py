@@ -81,6 +81,16 @@ def test_extremes_are_those_of_the_occurrences_that_are_not_skipped(backend: str
         assert_allclose(one.y_events[1, k, 0], [every.min(), every.max()], atol=1e-7)
 
 
+@pytest.mark.parametrize("backend", ["compiled", "python"])
+def test_extremes_of_an_angle_count_whole_turns(backend: str) -> None:
+    start, event = [2.5, -3.0, 0.0, 0.0], Extremum(dp, "theta2_dot")
+    y0 = np.array(start)[:, np.newaxis]
+    one = ensemble(dp, (0, 4), y0, dp.DEFAULTS, events=event, occurrences=2, backend=backend)
+    every = integrate(dp, (0, 4), start, dp.DEFAULTS, events=event).y_events[0][:, 1]
+    assert every.max() - every.min() > 2 * np.pi
+    assert_allclose(one.y_events[1, 0, 0], [every.min(), every.max()], atol=1e-6)
+
+
 @pytest.mark.parametrize(("options", "words"), [
     ({"t_span": (0, ENDS[:5])}, r"t_span\[1\] has 5 rows, but y0 has 11 motions"),
     ({"t_span": (0, ENDS), "t_eval": TIMES[:4]}, "t_eval has 4 rows, but y0 has 11"),

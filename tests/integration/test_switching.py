@@ -199,6 +199,15 @@ def test_kinks_of_time_and_of_nested_functions_are_switches(backend: str) -> Non
     assert abs(ends[0] - ends[1]).max() < 1e-10
 
 
+@pytest.mark.parametrize("relation", [sp.Gt, sp.Ge, sp.Lt, sp.Le, sp.Eq, sp.Ne])
+def test_a_force_acts_on_its_side_of_a_jump(relation: type[sp.Rel]) -> None:
+    force = sp.Piecewise((2, relation(x, a)), (3, True))
+    module = oscillator(f"jump_{relation.__name__}".lower(), force=force)
+    for value in (-1.0, 0.25, 0.5, 0.75):
+        expected = float(force.subs({x: value, a: 0.5})) - value
+        assert module.rhs(0.0, (value, 0.0), module.DEFAULTS)[1] == expected
+
+
 @pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_steps_cross_kinks_of_roots_and_powers(backend: str) -> None:
