@@ -8,7 +8,12 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.equilibrium import equilibrium_state
-from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.equations.module import (
+    GeneratedModule,
+    depends_on_time,
+    function,
+    has_function,
+)
 
 Array = NDArray[np.float64]
 
@@ -32,6 +37,12 @@ class EnergyUnit:
     def is_relative(self) -> bool:
         """Whether errors are relative to the energy above rest."""
         return self.name == ABOVE_REST
+
+
+def conserves_energy(module: GeneratedModule) -> bool:
+    """Whether the energy of every motion is constant."""
+    changes = has_function(module, "power") or depends_on_time(module, "energy")
+    return has_function(module, "energy") and not changes
 
 
 def energy_unit(module: GeneratedModule, params: Sequence[float], first: float) -> EnergyUnit:

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from solvers.equations.energy import conserves_energy
 from solvers.equations.mass_matrix import examined
-from solvers.integration.energy_change import EnergyWarning, changed_energy, conserves_energy
+from solvers.integration.energy_change import EnergyWarning, changed_energy
 from solvers.integration.predictability import (
     PredictabilityWarning,
     is_ignored,

@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.forms import Form
-from solvers.equations.module import GeneratedModule, depends_on_time, has_function
 from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.solution import Array
 
@@ -17,12 +16,6 @@ TOLERABLE = 1.0
 
 class EnergyWarning(PredictabilityWarning):
     """The energy of a motion that conserves it has changed by more than itself."""
-
-
-def conserves_energy(module: GeneratedModule) -> bool:
-    """Whether the energy of every motion is constant."""
-    changes = has_function(module, "power") or depends_on_time(module, "energy")
-    return has_function(module, "energy") and not changes
 
 
 def energies(form: Form, y: Array) -> Array:

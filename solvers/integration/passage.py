@@ -13,11 +13,11 @@ from functools import partial
 import numpy as np
 import scipy
 
+from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
 from solvers.equations.singular_configuration import condition_of_constraints
 from solvers.integration import compiled_loop, python_loop
 from solvers.integration.compiled.kernel import Kernel
-from solvers.integration.energy_change import conserves_energy
 from solvers.integration.problem import Outcome, Problem, shortest_step
 from solvers.integration.recorder import Recorder
 from solvers.integration.solution import Array, Status

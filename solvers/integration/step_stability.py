@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.energy import conserves_energy
 from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.module import has_function
-from solvers.integration.energy_change import changed_energy, conserves_energy
+from solvers.integration.energy_change import changed_energy
 from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.predictability import PredictabilityWarning
 from solvers.integration.problem import Outcome, Problem
