@@ -15,6 +15,7 @@ from solvers.references.taylor import taylor
 from solvers.scenes.models import double_precision, integration_run, longer_numbers
 from solvers.scenes.models.double_precision import sufficient
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError
+from solvers.scenes.models.method_choice import MethodChoice
 from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
@@ -72,6 +73,14 @@ def test_one_inaccurate_check_counts_for_nothing_and_two_do(
     assert sufficient(motion, 1e-9)[1] <= 4 * expected < 1e-9
     bad.add("tsit54")  # then only one method agrees with itself
     assert sufficient(motion, 1e-9)[1] > 1e-3
+
+
+def test_errors_are_estimated_at_the_times_that_are_returned() -> None:
+    scene = Scene(dp, {}, {"theta1": 1.0, "theta2": 2.0}, 1.0, samples=37)
+    motion = motion_of(scene)
+    run = IntegrationRun(motion, MethodChoice("gauss8", "rational", ""), 1e-9)
+    assert {*scene.times.tolist()} <= {*double_precision.check_times(run).tolist()}
+    assert {*motion.sample_times.tolist()} <= {*double_precision.check_times(run).tolist()}
 
 
 def test_runs_that_do_not_reach_the_end_are_no_checks(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -70,12 +70,13 @@ def _finished(motion: Motion, choice: MethodChoice) -> IntegrationRun:
 
 
 def check_times(run: IntegrationRun) -> Array:
-    """Times at which the run is compared: ends and middles of its steps, and evenly spread ones."""
+    """Times at which a run is compared: samples, ends and middles of steps, evenly spread ones."""
     times, _ = run.integrate(None)
     if len(times) > MOST_SAMPLES:
         times = times[np.unique((len(times) * golden_points(MOST_SAMPLES)).astype(int))]
     # steps are dense where the motion is fast; between two of them it may be faster
-    return np.unique([*times, *(times[1:] + times[:-1]) / 2, *run.motion.sample_times])
+    middles, motion = (times[1:] + times[:-1]) / 2, run.motion
+    return np.unique([*times, *middles, *motion.sample_times, *motion.times])
 
 
 def _choices(motion: Motion) -> list[MethodChoice]:

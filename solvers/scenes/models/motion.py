@@ -27,6 +27,7 @@ class Motion:
     y0: tuple[float, ...]
     duration: float  # in s
     requested: tuple[int, ...]  # indices of components of the state
+    times: tuple[float, ...] = ()  # of the samples that are returned
 
     @property
     def n_coordinates(self) -> int:

@@ -93,7 +93,8 @@ def _closed_form(model: type[ClosedForm], motion: Motion) -> ClosedForm:
 
 def motion_of(scene: Scene) -> Motion:
     """The motion of a scene, without requested components that have no inertia."""
-    motion = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.requested)
+    times = tuple(scene.times.tolist())
+    motion = Motion(scene.module, scene.params, scene.y0, scene.duration, scene.requested, times)
     n = motion.n_coordinates
     requested = tuple(k for k in scene.requested if k % n in motion.inertial)
     if not requested:
