@@ -26,8 +26,9 @@ from solvers.integration.step_states import Curve
 #: Integrates a problem up to its end, or up to a step that collapses.
 Loop = Callable[[Problem, Outcome], None]
 
-#: Smallest singular value of constraints, of the size 1 elsewhere, that is near a singularity.
-NEAR = 0.02
+#: A smallest singular value of constraints, usually of the size 1, that is near a singularity, and
+#: one at which a motion ends that no polynomial continues, since its states lose their digits.
+NEAR, LOST = 0.02, 1e-5
 #: Tolerances of the past motion: the smallest by which its steps get away from rounding errors.
 PAST = (1e-13, 1e-12, 1e-11, 1e-10)
 #: Times from the singularity at which polynomials begin and end, in units of that from the start;
@@ -37,8 +38,6 @@ CHEBYSHEV = (1 - np.cos(np.linspace(0, np.pi, 8))) / 2
 #: Largest estimate of the error on the other side, in units of the tolerances; largest distance
 #: there from the constraints, in units of the estimate, and of rounding errors of coordinates.
 LARGEST, ROUNDING = 100.0, 1e-13
-#: Smallest singular value at which digits remain, if steps get there.
-LOST = 1e-5
 #: Most doublings of a duration.
 DOUBLINGS = 60
 
@@ -51,7 +50,7 @@ def run(problem: Problem, outcome: Outcome, program: Kernel | None) -> None:
     """
     loop = partial(compiled_loop.run, program=program) if program else python_loop.run
     loop(problem, outcome)
-    while outcome.status is Status.SINGULAR and outcome.steps < problem.max_steps:
+    while outcome.status is Status.SINGULAR:
         part = _remaining(problem, outcome)
         if _approaches(part):
             passages = (_passage(part, loop, tolerance) for tolerance in PAST)
@@ -74,7 +73,7 @@ def _remaining(problem: Problem, outcome: Outcome) -> Problem:
     direction, samples = np.sign(end - begin), problem.samples
     if samples is not None:
         samples = samples[direction * samples > direction * t]
-    steps = problem.max_steps - outcome.steps
+    steps = max(problem.max_steps - outcome.steps, 0)
     return replace(problem, span=(t, end), start=y, samples=samples, max_steps=steps)
 
 
