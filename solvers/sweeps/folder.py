@@ -30,7 +30,7 @@ from solvers.sweeps.arithmetic import DIGEST
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import chunk_length
 
-MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 4
+MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 5
 #: Bytes of the largest manifest.
 MAX_BYTES = 1_000_000
 #: Hexadecimal digits of a digest in a file's name.
