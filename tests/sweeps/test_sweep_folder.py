@@ -276,7 +276,7 @@ def test_a_changed_manifest_is_refused(
     (tmp_path / "sweep.json").write_text(changed)
     with pytest.raises(
         FolderError,
-        match=r"is no manifest of a sweep|contains another sweep|in format 1, .* reads format 4",
+        match=r"is no manifest of a sweep|contains another sweep|in format 1, .* reads format 5",
     ):
         sweep(DEFINITION, tmp_path)
     assert files(tmp_path) == expected | {"sweep.json": changed.encode()}
