@@ -114,7 +114,7 @@ class QuaternionForm(ProjectionForm):
         graph, changes = self._graph, [self._graph.zero for _ in self._n]
         formulas = [one.formula for one in self._system.conditions]
         of, rows = dict(zip(formulas, residuals, strict=True)), self._constraint_jacobian
-        for norm, indices in zip(self._quasi.norms, self._indices, strict=True):
+        for norm, indices in zip(self._derivation.quaternion_norms, self._indices, strict=True):
             row = rows[formulas.index(norm)]
             factor = graph.let(of[norm] / graph.sum([(row[k] * self._q[k], 1) for k in indices]))
             for k in indices:
@@ -122,7 +122,7 @@ class QuaternionForm(ProjectionForm):
         missing = [
             graph.sum([(of[one], -1), *((a * x, -1) for a, x in zip(row, changes, strict=True))])
             for one, row in zip(formulas, rows, strict=True)
-            if one not in self._quasi.norms
+            if one not in self._derivation.quaternion_norms
         ]
         if not missing:
             return changes

@@ -25,8 +25,9 @@ from derive.mechanics.outputs import outputs as output_formulas
 from derive.mechanics.point import Formula, Point
 from derive.mechanics.state_space import StateSpace, state_space
 from derive.system.constraints import Constraint
-from derive.system.parts import SystemDefinitionError, formula
+from derive.system.parts import PointMass, SystemDefinitionError, formula
 from derive.system.prescribed import motions
+from derive.system.rigid_body import RigidBody
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean
 
@@ -36,6 +37,14 @@ if TYPE_CHECKING:
 
 class RedundancyWarning(UserWarning):
     """Constraints follow from others, and are left out."""
+
+
+def _with_conditions(mass: PointMass, kept: Sequence[Constraint]) -> PointMass:
+    """The body without conditions of its orientation that are left out of the constraints."""
+    if not isinstance(mass, RigidBody) or not mass.axes:
+        return mass
+    conditions = tuple(one for one in mass.conditions if any(c.is_multiple(one) for c in kept))
+    return replace(mass, orientation=replace(mass.axes, conditions=conditions))
 
 
 def warn_of_redundancy(system: System, redundant: Sequence[Constraint]) -> None:
@@ -112,7 +121,9 @@ class Derivation(CyclicCoordinates):
         kept, redundant = independent(Constraints(self.system))
         if redundant:
             warn_of_redundancy(self.system, redundant)
-            object.__setattr__(self, "system", replace(self.system, constraints=kept))
+            masses = [_with_conditions(mass, kept) for mass in self.system.masses]
+            system = replace(self.system, masses=masses, constraints=kept)
+            object.__setattr__(self, "system", system)
             object.__setattr__(self, "redundant", redundant)
 
     def _check_inputs(self) -> None:

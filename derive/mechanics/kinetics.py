@@ -105,6 +105,17 @@ class Kinetics:
         """Whether the orientation of a body is a unit quaternion."""
         return any(body.quaternion for body in self.bodies)
 
+    @cached_property
+    def quaternion_norms(self) -> dict[sp.Expr, tuple[sp.Symbol, ...]]:
+        """The constraint of each unit quaternion, or the multiple of it that the system has."""
+        norms = {body.conditions[0]: body.quaternion for body in self.bodies if body.quaternion}
+        return {
+            one.formula: parts
+            for norm, parts in norms.items()
+            for one in self.system.conditions
+            if one.is_multiple(norm)
+        }
+
     def angular_velocity(self, body: RigidBody) -> Matrix:
         """Angular velocity ω of a body in space, a column of components in body axes."""
         pairs = zip(self.variables, self.rates, strict=True)

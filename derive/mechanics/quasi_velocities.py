@@ -41,12 +41,6 @@ class QuasiVelocities:
         return tuple(dict.fromkeys(body.quaternion for body in bodies if body.quaternion))
 
     @cached_property
-    def norms(self) -> dict[sp.Expr, tuple[sp.Symbol, ...]]:
-        """The constraint of each quaternion."""
-        bodies = self.derivation.bodies
-        return {body.conditions[0]: body.quaternion for body in bodies if body.quaternion}
-
-    @cached_property
     def halves(self) -> dict[tuple[sp.Symbol, ...], tuple[sp.Symbol, ...]]:
         """Symbols of half the angular velocity of each quaternion."""
         return {
@@ -130,7 +124,7 @@ class QuasiVelocities:
     def has_singular_mass_matrix(self) -> bool:
         """Whether some motions that keep the norms move no mass, as the spin of a thin rod."""
         d = self.derivation
-        rows = [k for k, one in enumerate(d.system.conditions) if one.formula in self.norms]
+        rows = [k for k, one in enumerate(d.system.conditions) if one.formula in d.quaternion_norms]
         G = d.constraint_jacobian.extract(rows, [*range(len(d.system.q))])
         return is_singular(d.system, d.mass_matrix + G.T * G)
 
@@ -161,7 +155,7 @@ class QuasiVelocities:
         return tuple(
             self._shortened(rate.xreplace(names))
             for one, rate in pairs
-            if one.formula not in self.norms
+            if one.formula not in d.quaternion_norms
         )
 
     @cached_property

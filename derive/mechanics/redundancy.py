@@ -196,12 +196,13 @@ class Closure:
     def independent_rows(self, configurations: Sequence[Configuration]) -> list[int]:
         """Rows of G that at one configuration or more do not depend on those before them.
 
-        Constraints of coordinates precede others, which may follow from them.
+        Norms of quaternions, without which equations are solved, precede other constraints; those
+        of velocities, which may follow from those of coordinates, come last.
         """
         matrices = [self._rows(at) for at in configurations]
         bases = [np.empty((0, len(self.scales))) for _ in matrices]
         kept = []
-        for k in sorted(range(len(self.conditions)), key=lambda k: k not in self.of_coordinates):
+        for k in sorted(range(len(self.conditions)), key=self._precedence):
             is_independent = False
             for c, matrix in enumerate(matrices):
                 rest = matrix[k] - bases[c].T @ (bases[c] @ matrix[k])
@@ -212,6 +213,10 @@ class Closure:
             if is_independent:
                 kept.append(k)
         return sorted(kept)
+
+    def _precedence(self, k: int) -> tuple[bool, bool]:
+        is_norm = self.conditions[k].formula in self.equations.quaternion_norms
+        return k not in self.of_coordinates, not is_norm
 
     def _rows(self, at: Configuration) -> Array:
         """G with rows of the size 1 at a generic configuration."""

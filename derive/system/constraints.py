@@ -63,6 +63,10 @@ class Constraint:
         """The multiplier."""
         return sp.Symbol(self.name, real=True)
 
+    def is_multiple(self, value: sp.Expr) -> bool:
+        """Whether the formula is a number times another one."""
+        return bool(sp.cancel(self.formula / value).is_number)
+
     def with_formula(self, value: sp.Expr) -> Self:
         """The same constraint with another formula."""
         return replace(self, formula=value)
@@ -86,7 +90,7 @@ def constraints(
             result.append(Constraint(a - b, f"pin_{k}_{axis}", "N", meaning))
     for k, condition in enumerate(dict.fromkeys(of_bodies), 1):
         # a system that is a copy of another has them
-        if not any(sp.cancel(one.formula / condition).is_number for one in result):
+        if not any(one.is_multiple(condition) for one in result):
             meaning = "keeps the coordinates of a body those of an orientation"
             result.append(Constraint(condition, f"rigid_{k}", "J", meaning))
     return tuple(result)

@@ -8,6 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.integrate import solve_ivp
 
 import generated.free_body
 import generated.heavy_top as heavy_top
@@ -47,6 +48,7 @@ GRAVITY = Parameter(g, "m/s^2", 9.81, "gravity")
 MOMENTS = [Parameter(s, "kg m^2", v, "moment") for s, v in ((A, 1.0), (B, 2.0), (C, 2.5))]
 NINE = [Coordinate(s, "1", "of the matrix") for s in sp.symbols("r1:10", real=True)]
 MATRIX = rotation_matrix(sp.Matrix(3, 3, [one.symbol for one in NINE]).tolist())
+NORM = w**2 + x**2 + y**2 + z**2 - 1
 TOP = [Parameter(m, "kg", 1.2, "mass"), Parameter(length, "m", 0.5, "of the centre"), GRAVITY]
 
 
@@ -446,6 +448,47 @@ def test_a_copy_of_a_system_has_each_norm_once() -> None:
     system = free(ORIENTATIONS["quaternion"], KAPPA)
     assert replace(system) == system
     assert [one.name for one in system.conditions] == ["rigid_1"]
+
+
+@pytest.mark.parametrize("is_first", [True, False])
+@pytest.mark.filterwarnings("ignore:constraints of system 'satellite'")
+def test_a_reaction_wheel_turns_about_an_axis_of_a_body(is_first: bool) -> None:
+    axes = quaternion(w, x, y, z)
+    turned = rotation_matrix((axes.matrix * rotations("z", [phi]).matrix).tolist())
+    bodies = [
+        RigidBody(3, (0, 0, 0), (A, B, C), axes),
+        RigidBody(1, (0, 0, 0), (1, 1, 1.5), turned),
+    ]
+    system = System("satellite", "", [*KAPPA, ANGLES[0]], MOMENTS,
+        bodies[:: -1 if is_first else 1], potential=0)  # fmt: skip
+    assert Derivation(system).degrees_of_freedom == 4
+    module, rates, wheel = build(system), np.array([0.7, -1.1, 0.9]), 5.0
+    start = (1, 0, 0, 0, 0.3, 0, *rates / 2, wheel)
+    motion = integrate(module, (0, 3), start, {}, rtol=1e-11, atol=1e-11)
+    for function in (module.angular_momentum_many, module.energy_many):
+        values = np.atleast_2d(function(motion.t, motion.y, module.DEFAULTS))
+        assert abs(values - values[:, :1]).max() < 1e-10 * abs(values).max()
+    # Euler's equations of both bodies as one, whose wheel keeps its momentum about its axis
+    own, across = 1.5 * (wheel + rates[2]), np.array([2.0, 3.0, 2.5])
+
+    def euler(t: float, state: np.ndarray) -> list[float]:
+        omega, real, vector = state[:3], state[3], state[4:7]
+        torque = -np.cross(omega, across * omega + [0, 0, own])
+        turn = (real * omega + np.cross(vector, omega)) / 2
+        return [*torque / across, -vector @ omega / 2, *turn, own / 1.5 - omega[2]]
+
+    expected = solve_ivp(euler, (0, 3), [*rates, *start[:5]], "DOP853", rtol=1e-12, atol=1e-12)
+    assert motion.y[:5, -1] == pytest.approx(expected.y[3:, -1], abs=1e-9)
+
+
+@pytest.mark.parametrize("norm", [NORM, 3 * NORM, sp.sqrt(NORM + 1) - 1])
+@pytest.mark.filterwarnings("ignore:constraints of system 'normed'")
+def test_a_quaternion_may_have_its_norm_as_a_constraint(norm: sp.Expr) -> None:
+    system = free(quaternion(w, x, y, z), KAPPA)
+    start = (1, 0, 0, 0, 0, 0.3, 0.2, -0.1)
+    given = derived(replace(system, name="normed", constraints=[norm]))
+    rates = [one.rhs(0.0, start, one.DEFAULTS) for one in (given, derived(system))]
+    assert rates[0] == pytest.approx(rates[1], abs=1e-15)
 
 
 def test_a_positive_component_of_a_quaternion_may_follow_from_the_others() -> None:
