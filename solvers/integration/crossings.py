@@ -119,7 +119,7 @@ def approach(
     """
     there = value(extremum.part)
     tried = [(there, extremum.part)]
-    if there * before > 0 and abs(there) < UNCERTAIN * abs(there - extremum.value):
+    if np.sign(there) == np.sign(before) and abs(there) < UNCERTAIN * abs(there - extremum.value):
         sign = np.sign(before)
 
         def size(part: float) -> float:

@@ -135,7 +135,7 @@ class Recorder:
             if value == 0:
                 continue  # which side it is on is decided by the next extremum
             time = self.t + part * h
-            if before * value < 0:
+            if np.sign(before) * np.sign(value) < 0:  # a product of tiny values may be 0
                 yield Bracket(begin, before, time, value, h)
             before, begin = value, time
         if before != 0 and np.sign(before) != np.sign(after):

@@ -186,7 +186,9 @@ def _consistent(
 
     The first sign that disagrees is changed, again and again, between 1, 0 and -1 (K. G. Murty,
     Linear Algebra and its Applications 7 (1974) 65: this ends if all principal minors of the matrix
-    of rates by signs have the sign of friction).
+    of rates by signs have the sign of friction). Friction without a lever arm changes its rate by
+    rounding errors alone: then the sign by which the function would stay 0 is none, or is beyond
+    the one that disagrees.
     """
     signs = signs.copy()
     for _ in range(MOST_CHANGES * len(signs)):
@@ -200,7 +202,8 @@ def _consistent(
             break
         k, sign = wrong[0], signs[wrong[0]]
         signs[k] = 0.0 if sign else np.sign(motion.signs[k])
-        if sign and not np.isfinite(form.with_signs(signs).switching(t, y).signs).all():
+        stays = form.with_signs(signs).switching(t, y).signs
+        if sign and not (np.isfinite(stays).all() and sign * stays[k] < 1):
             signs[k] = -sign  # the rate does not depend on the sign
     raise UndeterminedError
 

@@ -4,7 +4,7 @@ from functools import cache
 
 import sympy as sp
 
-from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
+from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System, velocity
 from solvers.app.modules import build
 from solvers.equations.module import GeneratedModule
 
@@ -26,6 +26,36 @@ def block() -> GeneratedModule:
 
 
 BELT = {"K": 1.0, "F": 1.0, "V": 0.4, "c": 0.2}
+
+
+@cache
+def slider_crank(*, keep_coordinates: bool) -> GeneratedModule:
+    """A crank of 0.1 m with a torque P, a rod of 0.3 m, and a slider with friction F."""
+    phi, psi = sp.symbols("phi psi", real=True)
+    a, b = sp.symbols("a b", positive=True)
+    arm, rod = (r * sp.Matrix([sp.cos(q), sp.sin(q)]) for r, q in ((a, phi), (b, psi)))
+    masses = [
+        RigidBody(2, (0, 0), sp.Rational(1, 100), phi),
+        RigidBody(2, tuple(arm + rod / 2), b**2 / 6, psi),
+    ]
+    return build(
+        System(
+            *("slider_crank", "", [Coordinate(q, "rad", "") for q in (phi, psi)] + [X]),
+            [
+                Parameter(s, *part, "")
+                for s, part in {
+                    a: ("m", 0.1),
+                    b: ("m", 0.3),
+                    P: ("N m", 0.5),
+                    F: ("N", 1.0),
+                }.items()
+            ],
+            [*masses, PointMass(1, (x, 0))],
+            *(sp.S.Zero, None, sp.S.Zero, (P, 0, -F * sp.sign(v))),
+            coincide=[(tuple(arm + rod), (x, 0))],
+            keep_coordinates=keep_coordinates,
+        )
+    )
 
 
 @cache

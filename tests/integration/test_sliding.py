@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from cart_pole import cart_pole
-from friction import BELT, X, Y, block, stacked, v, w, x, y
+from friction import BELT, X, Y, block, slider_crank, stacked, v, w, x, y
 from scipy.linalg import solve_continuous_are
 from scipy.optimize import brentq
 
@@ -125,6 +125,33 @@ def test_the_period_of_stick_and_slip_on_a_belt(backend: str) -> None:
     assert motion.y[:, 2] == pytest.approx((place(3.0), speed(3.0)), abs=1e-9)
     assert motion.y[:, 1] == pytest.approx((1.0, 0.4), abs=1e-9)
     assert motion.y[:, 3] == pytest.approx((1.0, 0.4), abs=1e-9)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("keep_coordinates", [False, True])
+@pytest.mark.parametrize(
+    ("phi", "rate"), [(0.0, 0.0), (0.0, -5.0), (pi, 0.0), (pi, -7.0), (1e-9, 0.0)]
+)
+def test_friction_has_no_lever_arm_at_dead_centres(
+    phi: float, rate: float, keep_coordinates: bool, backend: str
+) -> None:
+    module, torque = slider_crank(keep_coordinates=keep_coordinates), 0.5 if rate == 0 else -0.5
+    rates = (rate, -rate * cos(phi) / 3, 0.0)  # rates and places of the crank, rod and slider
+    start = dict(zip(("phi_dot", "psi_dot", "x_dot"), rates, strict=True))
+    start |= {"phi": phi, "psi": -sin(phi) / 3, "x": 0.1 * cos(phi) + 0.3}
+    y = [start[name] for name in module.STATE]
+    motion = integrate(module, (0, 1), y, {"P": torque}, rtol=1e-11, atol=1e-11, backend=backend)
+    assert motion.status is Status.FINISHED
+    end, turned = motion.y[0, -1], abs(motion.y[0, -1] - round(phi / pi) * pi)
+    assert turned > pi  # on and on, past the next dead centre
+    halves = turned // pi
+    places = [
+        0.1 * cos(q) + sqrt(0.09 - (0.1 * sin(q)) ** 2) for q in (turned + phi, halves * pi + phi)
+    ]
+    path = 0.2 * halves + abs(places[0] - places[1])
+    work = torque * (end - phi) - path  # friction is 1 N
+    energies = module.energy_many(motion.t[[0, -1]], motion.y[:, [0, -1]], module.params(P=torque))
+    assert energies[1] - energies[0] == pytest.approx(work, abs=1e-8)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

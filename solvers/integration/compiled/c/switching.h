@@ -60,7 +60,8 @@ static double direction_of(const Motion *motion, int lane)
 
 /* Change signs of functions at 0, always the first that disagrees, between 1, 0 and -1, until each
    moves to the side of its sign or stays (K. G. Murty, Linear Algebra and its Applications 7 (1974)
-   65); 0 if they do not. */
+   65); 0 if they do not. Friction without a lever arm changes its rate by rounding errors alone: then
+   the sign by which the function would stay 0 is none, or is beyond the one that disagrees. */
 static int make_consistent(const Motion *motion, int lane, const int *is_active, double *signs)
 {
     const double direction = direction_of(motion, lane);
@@ -91,7 +92,7 @@ static int make_consistent(const Motion *motion, int lane, const int *is_active,
         for (int j = 0; j < SWITCHES; j++) {
             check += LANE(sliding.signs[j], lane) - LANE(sliding.signs[j], lane);
         }
-        if (check != 0) {   /* the rate does not depend on the sign */
+        if (check != 0 || !(sign*LANE(sliding.signs[k], lane) < 1)) {   /* the rate does not depend on the sign */
             signs[k] = -sign;
         }
     }
