@@ -10,11 +10,28 @@ from derive.system.system import System
 
 #: A pivot below this fraction of its diagonal entry, with 50 digits, is zero.
 TINY = sp.Float("1e-30")
+#: Values near defaults differ from them by about the inverse of this part.
+NEAR = 10**6
 
 
 def check_independence(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> None:
-    """Eliminate M(q, t) at a generic state; a zero pivot identifies a dependent coordinate."""
-    rows = _generic_values(system, mass_matrix)
+    """Eliminate M(q, t) at a generic state; a zero pivot identifies a dependent coordinate.
+
+    Parameters have values near their defaults, where bodies are admissible, or unrelated ones if
+    M is not positive there.
+    """
+    faults = []
+    for is_near in (True, False):
+        rows = _generic_values(system, mass_matrix, is_near=is_near)
+        if not (fault := _fault(system, mass_matrix, rows)):
+            return
+        faults.append(fault)
+    raise SystemDefinitionError(faults[0])
+
+
+def _fault(
+    system: System, mass_matrix: sp.ImmutableDenseMatrix, rows: list[list[sp.Expr]]
+) -> str | None:
     diagonal = [row[k] for k, row in enumerate(rows)]
     for k, q in enumerate(system.q):
         if not rows[k][k].is_real or not rows[k][k] > diagonal[k] * TINY:
@@ -24,12 +41,13 @@ def check_independence(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> 
             elif k:
                 others = ", ".join(s.name for s in system.q[:k])
                 reason = f"moves the masses only in ways in which {others} can move them"
-            raise SystemDefinitionError(
+            return (
                 f"coordinate {q.name!r} of system {system.name!r} {reason}: {_way_out(system, q)}"
             )
         for i in range(k + 1, len(rows)):
             ratio = rows[i][k] / rows[k][k]
             rows[i] = [a - ratio * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return None
 
 
 def is_singular(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> bool:
@@ -54,10 +72,15 @@ def _way_out(system: System, q: sp.Symbol) -> str:
     return "omit it, or let a position depend on it"
 
 
-def _generic_values(system: System, mass_matrix: sp.ImmutableDenseMatrix) -> list[list[sp.Expr]]:
+def _generic_values(
+    system: System, mass_matrix: sp.ImmutableDenseMatrix, *, is_near: bool
+) -> list[list[sp.Expr]]:
     """The mass matrix in numbers, at the first of several states where it is real."""
     symbols = (*system.params, *system.q, TIME)
     values = {s: sp.Rational(7 * k + 3, 5 * k + 4) for k, s in enumerate(symbols)}
+    for one in system.parameters_and_inputs if is_near else ():
+        if one.default:  # no relation of the defaults, such as equal lengths, holds between values
+            values[one.symbol] = sp.Rational(one.default) * (1 + values[one.symbol] / NEAR)
     n = mass_matrix.rows
     # a thread limits coordinates from above; a wheel's axis limits them from below
     for size in (sp.Rational(1, 8), sp.Integer(5), sp.Integer(1)):

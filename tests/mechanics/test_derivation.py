@@ -1,11 +1,13 @@
 """Each step of a derivation against an independent calculation."""
 
+from dataclasses import replace
+
 import pytest
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, Lagrangian, Particle, Point, ReferenceFrame
 from sympy.physics.mechanics import dynamicsymbols as dynamic
 
-from derive import TIME, Coordinate, Derivation, Parameter, PointMass, System
+from derive import TIME, Coordinate, Derivation, Parameter, PointMass, RigidBody, System
 from derive.codegen.functions import contents
 from derive.formulas.zero import vanishes
 from derive.mechanics.reduction import collected, reduced
@@ -265,6 +267,24 @@ def test_a_superfluous_coordinate_is_refused(position: tuple[sp.Expr, ...], mess
     )
     with pytest.raises(SystemDefinitionError, match=message):
         Derivation(redundant)
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_an_inertia_may_be_a_difference_that_is_positive_by_default(first: int) -> None:
+    """Parallel axes: the moment J is about the pivot."""
+    theta, g = sp.symbols("theta g", real=True)
+    J, m, r = sp.symbols("J m r", positive=True)
+    values = {J: (0.15, "kg m^2"), m: (1.0, "kg"), r: (0.25, "m"), g: (9.81, "m/s^2")}
+    given = [Parameter(s, unit, value, "") for s, (value, unit) in values.items()]
+    body = RigidBody(m, (r * sp.sin(theta), -r * sp.cos(theta)), J - m * r**2, theta)
+    centred = replace(body, position=(0, 0))
+    angle = [Coordinate(theta, "rad", "")]
+    for one, expected in ((body, J), (centred, J - m * r**2)):
+        system = System("pendulum", "", angle, [*given[first:], *given[:first]], [one])
+        assert Derivation(system).mass_matrix[0] == expected
+    heavy = [replace(one, default=3.0) if one.symbol == m else one for one in given]
+    with pytest.raises(SystemDefinitionError, match="no inertia that is a positive number"):
+        Derivation(System("pendulum", "", angle, heavy, [centred]))
 
 
 def test_three_dimensions_and_a_custom_potential() -> None:
