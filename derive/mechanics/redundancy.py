@@ -24,9 +24,11 @@ from derive.system.symbols import TIME
 
 Array: TypeAlias = NDArray[np.float64]
 
-#: Most guesses, and configurations that decide together.
+#: Most guesses of usual size, and configurations that decide together; then other sizes, for
+#: constraints whose lengths are numbers, and guesses of each.
 GUESSES, ENOUGH = 60, 8
-#: Most Gauss-Newton steps, their largest change of a coordinate, and most halvings of a step.
+OTHER_SIZES, OTHER_GUESSES = (10.0, 0.1, 100.0, 0.01, 1000.0), 6
+#: Most Gauss-Newton steps, their largest change of coordinates of usual size, and most halvings.
 STEPS, LARGEST, HALVINGS = 100, 0.5, 10
 #: The ratio of residuals after a step and before it above which there is no solution near.
 SLOWEST = 0.98
@@ -116,10 +118,11 @@ class Closure:
 
     @cached_property
     def scales(self) -> Array:
-        """Sizes of the coordinates: 1 rad, or the largest parameter of the same unit."""
+        """Sizes of the coordinates: 1, or the constraints' largest parameter of the same unit."""
         system = self.equations.system
+        used = set().union(*(one.formula.free_symbols for one in self.conditions))
         sizes: dict[str, float] = {}
-        for one in system.parameters:
+        for one in (parameter for parameter in system.parameters if parameter.symbol in used):
             sizes[one.unit] = max(sizes.get(one.unit, 0.0), abs(one.default))
         return np.array(
             [(one.unit != "rad" and sizes.get(one.unit)) or 1.0 for one in system.coordinates]
@@ -133,16 +136,18 @@ class Closure:
         values = {p.symbol: sp.Float(p.default) for p in system.parameters_and_inputs}
         given = [sp.sympify(x).xreplace(values) for x in system.equilibrium or ()]
         rows = [np.array(given, float)] if given else []
-        reach = np.where([one.unit == "rad" for one in system.coordinates], pi, self.scales)
-        for _ in range(GUESSES):
+        is_angle = np.array([one.unit == "rad" for one in system.coordinates])
+        others = [size for size in OTHER_SIZES for _ in range(OTHER_GUESSES) if not is_angle.all()]
+        for size in (*[1.0] * GUESSES, *others):
+            reach = np.where(is_angle, pi, self.scales * size)
             row = reach * rng.uniform(-1, 1, len(reach))
             rows.append(np.where([q.is_positive for q in system.q], np.abs(row), row))
         return [Configuration(row, times[k % len(times)]) for k, row in enumerate(rows)]
 
     @cached_property
     def sizes(self) -> Array:
-        """Sizes of the constraints of coordinates at the guesses."""
-        rows = [self._numbers(at) for at in self.guesses]
+        """Sizes of the constraints of coordinates at the guesses of usual size."""
+        rows = [self._numbers(at) for at in self.guesses[:GUESSES]]
         h = len(self.of_coordinates)
         values = np.abs(np.array(rows)[:, :h])
         finite = np.where(np.isfinite(values), values, 0.0).max(axis=0, initial=0.0)
@@ -151,13 +156,14 @@ class Closure:
     def closed(self, start: Configuration, rows: Sequence[int]) -> tuple[Configuration, Array]:
         """A configuration near `start` that satisfies these rows, and all residuals there."""
         now, (residuals, _, jacobian) = start, self.values(start)
+        longest = LARGEST * max(1.0, np.abs(start.q / self.scales).max() / pi)
         chosen = [self.of_coordinates.index(k) for k in rows if k in self.of_coordinates]
         for _ in range(STEPS):
             matrix = jacobian[self.of_coordinates][chosen] / self.sizes[chosen, np.newaxis]
             if not (np.isfinite(matrix).all() and np.isfinite(residuals).all()):
                 break
             step = -np.linalg.lstsq(matrix, residuals[chosen], rcond=1e-10)[0]
-            step *= LARGEST / max(LARGEST, np.abs(step).max(initial=0.0))
+            step *= longest / max(longest, np.abs(step).max(initial=0.0))
             for _ in range(HALVINGS):
                 trial = Configuration(now.q + step * self.scales, now.t)
                 values = self.values(trial)
@@ -224,7 +230,9 @@ class Closure:
 
     @cached_property
     def _row_sizes(self) -> Array:
-        sizes = np.array([np.linalg.norm(self.values(at)[2], axis=1) for at in self.guesses])
+        sizes = np.array(
+            [np.linalg.norm(self.values(at)[2], axis=1) for at in self.guesses[:GUESSES]]
+        )
         finite = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
         return np.where(finite > 0, finite, 1.0)
 

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +77,28 @@ def loop_in_space() -> System:
         constraints=[*rods, p[1], q[1], p[1] - 2 * q[1]])  # fmt: skip
 
 
+def ring_of_links(n: int, *, relative: bool) -> System:
+    """Links from the origin back to it, with a mass at each joint."""
+    q = sp.symbols(f"q1:{n + 1}", real=True)
+    angles = [sum(q[: k + 1]) for k in range(n)] if relative else q
+    ends = [
+        [sum(at(angle)[axis] for angle in angles[:k]) for axis in (0, 1)] for k in range(1, n + 1)
+    ]
+    return System("links", "A ring of links", [Coordinate(s, "rad", "") for s in q], PARAMETERS,
+        [PointMass(m, end) for end in ends], coincide=[(ends[-1], (0, 0))])  # fmt: skip
+
+
+def ring_of_masses(n: int, rod: float | sp.Expr) -> System:
+    """Masses in the plane, joined by rods; the radius of the earth is no size of theirs."""
+    points = [sp.symbols(f"x{k} y{k}", real=True) for k in range(n)]
+    rods = [(a - c) ** 2 + (b - d) ** 2 - sp.sympify(rod) ** 2
+            for (a, b), (c, d) in pairwise([*points, points[0]])]  # fmt: skip
+    earth = Parameter(sp.Symbol("R", positive=True), "m", 6.4e6, "radius of the earth")
+    coordinates = [Coordinate(s, "m", "") for point in points for s in point]
+    return System("masses", "A ring of masses", coordinates, [*PARAMETERS, earth],
+        [PointMass(m, point) for point in points], constraints=rods)  # fmt: skip
+
+
 def names(system: System) -> tuple[list[str], list[str]]:
     """Names of the constraints that remain, and of those left out."""
     derivation = Derivation(system)
@@ -115,6 +138,33 @@ def test_redundant_constraints_are_left_out(system: System, left_out: list[str])
 ])  # fmt: skip
 def test_independent_constraints_remain(system: System) -> None:
     assert names(system) == ([one.name for one in system.conditions], [])
+
+
+@pytest.mark.parametrize(("system", "freedom"), [
+    *((ring_of_links(n, relative=relative), n - 2)
+      for relative in (False, True) for n in (4, 5, 6, 8)),
+    *((ring_of_masses(n, rod), n) for rod in (length, 20.0, 0.01) for n in (3, 4, 5, 6)),
+])  # fmt: skip
+def test_rings_keep_all_constraints_and_move(system: System, freedom: int) -> None:
+    assert Derivation(system).degrees_of_freedom == freedom
+    module, rng = build(system), np.random.default_rng(3)
+    turns = 2 * np.pi * np.arange(len(system.masses)) / len(system.masses)
+    if system.name == "links":  # a regular polygon, up to an angle of each link
+        place = rng.normal(scale=0.05, size=len(turns)) + turns
+        if system.masses[-1].position[0].has(sum(system.q)):
+            place = np.diff(place, prepend=0.0)
+    else:
+        size = float(sp.sqrt(-system.conditions[0].formula.subs(dict.fromkeys(system.q, 0))
+            .subs(length, 0.5))) / 2 / np.sin(np.pi / len(turns))  # fmt: skip
+        place = size * np.ravel([np.cos(turns), np.sin(turns)], "F")
+    y0 = np.concatenate([place, 0.1 * rng.normal(size=len(place))])
+    for _ in range(9):
+        y0 = y0 + module.correction(0.0, y0, module.DEFAULTS)
+    motion = integrate(module, (0, 1), y0, module.DEFAULTS, **OPTIONS)
+    energies = module.energy_many(motion.t, motion.y, module.DEFAULTS)
+    assert np.ptp(energies) < 1e-8 * np.abs(energies).max()
+    residuals = module.constraints_many(motion.t, motion.y, module.DEFAULTS)
+    assert np.abs(residuals).max() < 1e-8
 
 
 @pytest.mark.parametrize(("system", "message"), [
