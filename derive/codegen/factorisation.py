@@ -16,16 +16,27 @@ from derive.codegen.node import Let, Node
 
 Rows = Sequence[Sequence[Node]]
 
-#: From this size on a loop is as fast as straight-line code, which grows with the cube.
+#: From this size on a loop is as fast as straight-line code, which grows with the cube, unless
+#: most entries are 0.
 LARGE = 16
+MOST_UPDATES = sum(k**2 for k in range(LARGE))
 
 #: Multipliers with more factors than this are named.
 SHORT = 3
 
 
 def factorisation(graph: Graph, matrix: Rows) -> "Loops | Factorisation":
-    """The factorisation of a symmetric positive definite matrix; its size decides which."""
-    return (Loops if len(matrix) >= LARGE else Factorisation)(graph, matrix)
+    """The factorisation of a symmetric positive definite matrix; its updates decide which."""
+    return (Loops if _updates(matrix) >= MOST_UPDATES else Factorisation)(graph, matrix)
+
+
+def _updates(matrix: Rows) -> int:
+    """Entries that the elimination changes: few, if most entries are 0 and remain so."""
+    coupled = [{i for i in range(k) if not row[i].is_number(0)} for k, row in enumerate(matrix)]
+    for others in reversed(coupled):
+        for i in others:
+            coupled[i] |= {j for j in others if j < i}
+    return sum(len(others) ** 2 for others in coupled)
 
 
 class Loops:

@@ -2,13 +2,14 @@
 
 import math
 import random
+from functools import cache
 
 import pytest
 import sympy as sp
 
 from derive.codegen import operation as op
 from derive.codegen.assignments import Assignments, Notation
-from derive.codegen.factorisation import Factorisation
+from derive.codegen.factorisation import LARGE, Factorisation, factorisation
 from derive.codegen.graph import Graph
 from derive.codegen.lowering import Lowering
 from derive.codegen.node import Node
@@ -22,6 +23,7 @@ FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt, "exp": math.ex
 def evaluated(lowering: Lowering, values: dict[str, float]) -> list[float]:
     """The outputs by plain recursion: no names, texts or order of the generator."""
 
+    @cache
     def value(number: int) -> float:
         operation = lowering.operations[number]
         inner = [value(n) for n in operation.operands]
@@ -139,15 +141,34 @@ def test_the_factorisation_solves_symmetric_systems(n: int) -> None:
     values = {f"m{min(i, j)}{max(i, j)}": numbers[i][j] for i in range(n) for j in range(n)}
     values |= {f"r{i}": generator.uniform(-1, 1) for i in range(n)}
     matrix = [[graph.leaf(f"m{min(i, j)}{max(i, j)}") for j in range(n)] for i in range(n)]
-    factorisation = Factorisation(graph, matrix)
-    x = evaluated(
-        Lowering(factorisation.solve([graph.leaf(f"r{i}") for i in range(n)]), ()), values
-    )
+    factors = Factorisation(graph, matrix)
+    x = evaluated(Lowering(factors.solve([graph.leaf(f"r{i}") for i in range(n)]), ()), values)
     for i in range(n):
         assert sum(m * v for m, v in zip(numbers[i], x, strict=True)) == pytest.approx(
             values[f"r{i}"]
         )
-    assert all(pivot > 0 for pivot in evaluated(Lowering(factorisation.pivots, ()), values))
+    assert all(pivot > 0 for pivot in evaluated(Lowering(factors.pivots, ()), values))
+
+
+def test_the_factorisation_of_a_ring_takes_operations_in_proportion_to_its_size() -> None:
+    def solved(n: int) -> tuple[Lowering, dict[str, float]]:
+        graph, beside = Graph(), {1, n - 1}
+        names = [[f"m{min(i, j)}_{max(i, j)}" for j in range(n)] for i in range(n)]
+        matrix = [
+            [graph.leaf(names[i][j]) if abs(i - j) in {0, *beside} else graph.zero
+             for j in range(n)] for i in range(n)
+        ]  # fmt: skip
+        values = {name: 4.0 - 3 * (i != j) for i, row in enumerate(names)
+                  for j, name in enumerate(row)}  # fmt: skip
+        right = [graph.leaf(f"r{i}") for i in range(n)]
+        values |= {f"r{i}": float(i) for i in range(n)}
+        return Lowering(factorisation(graph, matrix).solve(right), ()), values
+
+    (small, _), (large, values) = solved(LARGE), solved(2 * LARGE)
+    assert large.cost[0] < 2.2 * small.cost[0]
+    x = evaluated(large, values)
+    for i, value in enumerate(x):  # oracle: each row of the matrix
+        assert x[i - 1] + 4 * value + x[(i + 1) % len(x)] == pytest.approx(i, abs=1e-12)
 
 
 def test_common_lengths_of_rows_and_columns_are_factored_out() -> None:
