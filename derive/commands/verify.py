@@ -107,9 +107,9 @@ def _marks(results: Mapping[str, Judged | None]) -> Iterator[str]:
     total: Counter[VerdictName] = Counter()
     rows: list[list[object]] = []
     for name, judged in results.items():
-        marks = Counter(_verdicts(judged)) if judged else None
+        marks = Counter(_verdicts(judged) if judged else ())
         file = name if len(name) <= FILE_WIDTH else f"...{name[3 - FILE_WIDTH :]}"
-        rows.append([file, *(marks and marks[verdict] for verdict in COUNTED)])
-        total.update(marks or {})
+        rows.append([file, *(marks[verdict] if judged else None for verdict in COUNTED)])
+        total.update(marks)
     rows.append(["total", *(total[verdict] for verdict in COUNTED)])
     return text_table({"file": "", **dict.fromkeys(COUNTED, "d")}, rows)

@@ -116,6 +116,19 @@ def test_a_missing_document_is_refused_and_the_others_are_judged(
     assert "line 9  wrong" in output
 
 
+def test_a_document_without_formulas_is_counted_beside_others(
+    pendulum: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "empty.md"
+    path.write_text("A text.")
+    assert main(["verify", pendulum, str(path)]) == 1
+    output = capsys.readouterr().out
+    assert "line 9  wrong" in output
+    assert "no formulas" in output
+    *_, document, _total = output.splitlines()
+    assert document.split()[1:] == ["0"] * 5
+
+
 UNREADABLE = r"$$\int\theta$$"
 
 
