@@ -17,8 +17,17 @@ REAL = frozenset((int, float, np.float64))
 Defaults: TypeAlias = Mapping[str, float | Array]
 
 
-def real_numbers(name: str, values: object, unit: str = "", *, finite: bool = True) -> Array:
-    """`values`, of any shape, as a new array of real numbers that are finite, unless allowed."""
+class NotFiniteNumberError(ValueError, ArithmeticError):
+    """NaN or infinity in place of a number; from a user's function, it ends a run that began."""
+
+
+def real_numbers(
+    name: str, values: object, unit: str = "", *, finite: bool = True, nan: bool = False
+) -> Array:
+    """`values`, of any shape, as a new array of real numbers that are finite, unless allowed.
+
+    Not `finite` allows infinity, `nan` allows all values.
+    """
     kind = "finite real number" if finite else "real number"
     allowed = f"must be a {kind}{unit and f' in {unit}'}, such as 1.0"
     if invalid := _not_real(values):
@@ -33,8 +42,8 @@ def real_numbers(name: str, values: object, unit: str = "", *, finite: bool = Tr
     except OverflowError as error:
         raise ValueError(f"{name} = {shortened(values)} {allowed}, below 1.8e308") from error
     unusable = ~np.isfinite(array) if finite else np.isnan(array)
-    if unusable.any():
-        raise ValueError(f"{_first(name, array, unusable)} {allowed}")
+    if unusable.any() and not nan:
+        raise NotFiniteNumberError(f"{_first(name, array, unusable)} {allowed}")
     return array
 
 
@@ -74,13 +83,15 @@ def positive(name: str, value: object, *, finite: bool = True) -> float:
     return number
 
 
-def quantity(module: GeneratedModule, name: str, values: object, *, absent: bool = True) -> Array:
+def quantity(
+    module: GeneratedModule, name: str, values: object, *, absent: bool = True, nan: bool = False
+) -> Array:
     """Values, of any shape, of a parameter or component of the state, as the module declares it.
 
     Where parts may be `absent`, a positive parameter may be 0, such as a mass that does not exist.
     """
     unit = module.UNITS.get(name, "")
-    array = real_numbers(name, values, unit)
+    array = real_numbers(name, values, unit, nan=nan)
     if name in module.POSITIVE:
         wrong = array < 0 if absent and name in module.PARAMETERS else array <= 0
         if wrong.any():
@@ -89,7 +100,13 @@ def quantity(module: GeneratedModule, name: str, values: object, *, absent: bool
 
 
 def quantities(
-    module: GeneratedModule, what: str, names: Sequence[str], values: Values, defaults: Defaults
+    module: GeneratedModule,
+    what: str,
+    names: Sequence[str],
+    values: Values,
+    defaults: Defaults,
+    *,
+    nan: bool = False,
 ) -> Array:
     """Values of the quantities `names`, the first axis; a mapping is completed by `defaults`.
 
@@ -105,7 +122,7 @@ def quantities(
             return real_numbers(what, values)
     if len(given) != len(names):
         return real_numbers(what, values)
-    columns = [quantity(module, *pair) for pair in zip(names, given, strict=True)]
+    columns = [quantity(module, *pair, nan=nan) for pair in zip(names, given, strict=True)]
     try:
         return np.array(np.broadcast_arrays(*columns) if given is not values else columns)
     except ValueError as error:

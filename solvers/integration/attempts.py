@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from solvers.equations.quantities import NotFiniteNumberError
 from solvers.integration.solution import Array
 from solvers.runge_kutta.continuous_extension import bernstein_values
 from solvers.runge_kutta.newton import Stages
@@ -15,7 +16,7 @@ from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Step, Stepper
 
 #: Failures of a step that a smaller step may avoid.
-FAILURES = (NotFiniteError, NoConvergenceError)
+FAILURES = (NotFiniteError, NoConvergenceError, NotFiniteNumberError)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from warnings import warn
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, has_header
+from solvers.equations.quantities import NotFiniteNumberError
 from solvers.integration.compiled.compilation import is_ahead
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
@@ -111,25 +112,28 @@ def run(problem: Problem, outcome: Outcome, program: Kernel) -> None:
     batch, status = None, Status.FINISHED
     table = held_table(problem, outcome.history)
     parts = iter([problem.with_inputs(table[1][0])]) if table else None
-    for part in parts or segments(problem, lambda: outcome.end[1], outcome.history):
-        if batch is None:
-            room = EVENT_CAPACITY
-            batch = Batch(program, part, capacity=capacity, occurrences=room, pauses=True)
-            if table:
-                batch.hold(*table)
-        else:
-            batch.resume(part)
-        running = None
-        while running is None:
-            batch.restart(TIME_LIMIT)
-            try:
-                batch.run()
-            finally:  # an interruption arrives when C returns: collect its results first
-                running = STATUSES[batch.motions["status"][0]]
-                _collect(batch, part, outcome)
-        status = running
-        if status is not Status.FINISHED:
-            break
+    try:
+        for part in parts or segments(problem, lambda: outcome.end[1], outcome.history):
+            if batch is None:
+                room = EVENT_CAPACITY
+                batch = Batch(program, part, capacity=capacity, occurrences=room, pauses=True)
+                if table:
+                    batch.hold(*table)
+            else:
+                batch.resume(part)
+            running = None
+            while running is None:
+                batch.restart(TIME_LIMIT)
+                try:
+                    batch.run()
+                finally:  # an interruption arrives when C returns: collect its results first
+                    running = STATUSES[batch.motions["status"][0]]
+                    _collect(batch, part, outcome)
+            status = running
+            if status is not Status.FINISHED:
+                break
+    except NotFiniteNumberError as failure:
+        status = outcome.fail(failure)
     outcome.end_with(status, problem)
 
 

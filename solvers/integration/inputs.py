@@ -174,8 +174,13 @@ def _first_samples(table: Any, count: int) -> Any:
 
 
 def controlled(module: GeneratedModule, controller: Controller, t: float, y: Array) -> Array:
-    """The inputs that a controller returns at time `t` and state `y`, or states in columns."""
-    return given(f"inputs at t = {t}", module, controller(t, y.copy()), y.shape[1:], t)
+    """The inputs that a controller returns at time `t` and state `y`, or states in columns.
+
+    NaN and infinity are refused, unless they end the motions of their columns only.
+    """
+    shape = y.shape[1:]
+    values = controller(t, y.copy())
+    return given(f"inputs at t = {t}", module, values, shape, t, nan=bool(shape))
 
 
 def given(
@@ -184,6 +189,8 @@ def given(
     values: Any,
     shape: tuple[int, ...] = (),
     t: float | Array = 0.0,
+    *,
+    nan: bool = False,
 ) -> Array:
     """Values of all inputs, shape (inputs, *shape).
 
@@ -201,7 +208,7 @@ def given(
     if len(names) == 1 and not isinstance(values, Mapping) and np.shape(values) in ((), shape):
         values = [values]  # a single input may be a number
     defaults = dict.fromkeys(names, 0.0) | dict.fromkeys(motion_times(module), t)
-    array = quantities(module, what, names, values, defaults)
+    array = quantities(module, what, names, values, defaults, nan=nan)
     expected = (len(names), *shape)
     if array.shape == expected[:1]:
         array = array.reshape(-1, *[1] * len(shape))

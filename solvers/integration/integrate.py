@@ -1,6 +1,7 @@
 """Integration of a generated module's equations of motion."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from warnings import warn
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
-from solvers.equations.quantities import Values
+from solvers.equations.quantities import NotFiniteNumberError, Values
 from solvers.integration import compiled_loop, passage, validation
 from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
@@ -95,7 +96,8 @@ def integrate(
         those that are left out. Or a `Held`, with which inputs are constant between samples. Or a
         function ``u(t, y)`` of the time in s and the state (q, q̇) that returns them, with which
         the loop runs in Python, in Lagrange's form; `derive.with_inputs` compiles formulas.
-        Estimates of errors call controllers and functions again.
+        Estimates of errors call controllers and functions again. A run ends where a value is not
+        finite.
 
     Returns
     -------
@@ -165,6 +167,7 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
     if outcome.status is not Status.FINISHED:
         state = ", ".join(f"{name} = {x:.6g}" for name, x in zip(problem.units, y, strict=True))
         detail = f" (t = {t}, {state})" if not detail else f" ({detail})"
+        detail = f": {outcome.cause}{detail}" if outcome.cause else detail
     if outcome.status is Status.STEP_LIMIT and problem.max_steps < problem.options.max_steps:
         detail += ": the states of more steps do not fit into memory, give times t_eval"
     states, energies = rows.T[: len(form.module.STATE)], None
@@ -199,7 +202,10 @@ def _inputs(problem: Problem, outcome: Outcome, t: Array, y: Array) -> Array | N
     if problem.schedule:
         return outcome.history.at(t) if outcome.history.times else np.empty((count, 0))
     if problem.form.feedback:
-        values = [problem.form.feedback(*point) for point in zip(t.tolist(), y.T, strict=True)]
-        return np.array(values).reshape(-1, count).T
+        values = np.full((len(t), count), np.nan)
+        for k, point in enumerate(zip(t.tolist(), y.T, strict=True)):
+            with suppress(NotFiniteNumberError):
+                values[k] = problem.form.feedback(*point)
+        return values.T
     constants = np.array(problem.form.params[-count:])
     return np.tile(constants[:, np.newaxis], len(t))

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
-from solvers.equations.quantities import Values
+from solvers.equations.quantities import NotFiniteNumberError, Values
 from solvers.integration.inputs import Controller, Held, History, Schedule
 from solvers.integration.solution import Array, Status
 from solvers.integration.switching import Switch
+from solvers.runge_kutta.stepper import NoConvergenceError
 from solvers.runge_kutta.tableau import Tableau
 
 #: The shortest step, in units of the spacing of floating-point times.
@@ -147,6 +148,7 @@ class Outcome:
     signs: tuple[float, ...] = ()  # of switching functions, 0 of those that stay 0
     recent: list[int] = field(default_factory=list)  # switches in succession in next to no time
     history: History = field(default_factory=History)  # of held inputs
+    cause: NotFiniteNumberError | None = None  # the value of a user's function that ended it
 
     @classmethod
     def at_start(cls, problem: Problem) -> "Outcome":
@@ -155,8 +157,22 @@ class Outcome:
         events = range(len(problem.events) + len(problem.limits) + switches)
         return cls((problem.span[0], problem.start), [[] for _ in events], [[] for _ in events])
 
+    def fail(self, failure: BaseException) -> Status:
+        """The status after a failed step, whose cause may be a value of a user's function."""
+        is_unsolved, cause = isinstance(failure, NoConvergenceError), failure.__cause__
+        if isinstance(failure, NotFiniteNumberError):
+            self.cause = failure
+        elif cause:
+            self.fail(cause)
+        return Status.NO_CONVERGENCE if is_unsolved and not self.cause else Status.NOT_FINITE
+
     def end_with(self, status: Status, problem: Problem) -> None:
-        """Set the status; an event that ends the motion may be one of its limits."""
+        """Set the status; an event that ends the motion may be one of its limits.
+
+        The first value of a user's function that is not finite is raised.
+        """
+        if self.cause and not self.steps:
+            raise self.cause
         limits = self.t_events[len(problem.events) :][: len(problem.limits)]
         is_limit = status is Status.EVENT and any(limits)
         self.status = Status.OUTSIDE_DOMAIN if is_limit else status

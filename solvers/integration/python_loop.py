@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from solvers.equations.quantities import NotFiniteNumberError
 from solvers.integration import scipy_loop
 from solvers.integration.attempts import FAILURES, Accepted, Attempts, Orders, Point, Rejected
 from solvers.integration.inputs import segments
@@ -15,7 +16,7 @@ from solvers.integration.stop_flag import StopFlag
 from solvers.integration.switching import first_part, is_coarse, next_part
 from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
+from solvers.runge_kutta.stepper import NotFiniteError, Stepper
 from solvers.runge_kutta.tableau import Tableau
 
 #: Most successive failures of a step, each of which divides its size by four.
@@ -35,19 +36,22 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
     members, tolerances = problem.method.members, (problem.rtol, problem.atol)
     controllers = [None if h else Controller.of(method, *tolerances) for method in members]
     choice = OrderChoice(len(members))
-    for segment in segments(problem, lambda: recorder.y, outcome.history):
-        part, status = first_part(segment, outcome)
-        while part is not None:
-            recorder.restart(part)
-            orders = Orders(_attempts(part, members, controllers), choice)
-            try:
-                status, h = _run(part, outcome, recorder, orders, h, stop)
-            finally:
-                outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
-                outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
-            part, status = next_part(part, outcome, status)
-        if status is not Status.FINISHED:
-            break
+    try:
+        for segment in segments(problem, lambda: recorder.y, outcome.history):
+            part, status = first_part(segment, outcome)
+            while part is not None:
+                recorder.restart(part)
+                orders = Orders(_attempts(part, members, controllers), choice)
+                try:
+                    status, h = _run(part, outcome, recorder, orders, h, stop)
+                finally:
+                    outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
+                    outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
+                part, status = next_part(part, outcome, status)
+            if status is not Status.FINISHED:
+                break
+    except NotFiniteNumberError as failure:
+        status = outcome.fail(failure)
     outcome.end_with(status, problem)
 
 
@@ -80,10 +84,11 @@ def _run(
     y = problem.form.from_ordinary(begin, recorder.y)
     try:
         point = Point(begin, y, attempts.stepper.derivative(begin, y))
-    except NotFiniteError:
-        return Status.NOT_FINITE, h
+    except NotFiniteError as failure:
+        return outcome.fail(failure), h
     shortest, failures, first = shortest_step(begin, end), 0, outcome.steps
     longest_accepted = 0.0
+    rejection: ArithmeticError | None = None  # the failure of the last step, if any
     if problem.h is None:
         longest = abs(end - begin)
         h = min(h, longest) if h else attempts.first_step_size(point, end, shortest)
@@ -97,16 +102,16 @@ def _run(
         if h < problem.collapse * longest_accepted and t != end:
             return Status.SINGULAR, h
         if abs(t - point.t) < shortest and t != end:
-            return Status.STEP_TOO_SMALL, h
+            status = outcome.fail(rejection) if rejection else Status.STEP_TOO_SMALL
+            return status if outcome.cause else Status.STEP_TOO_SMALL, h
         attempts = orders.attempts
         trial, stops = _step(attempts, recorder, point, t, is_last=t == end)
         if isinstance(trial, Rejected):
-            outcome.rejected, h = outcome.rejected + 1, trial.h
+            outcome.rejected, h, rejection = outcome.rejected + 1, trial.h, trial.failure
             point = replace(point, last=trial.last or point.last)
             failures += trial.failure is not None
             if trial.failure and (attempts.controller is None or failures > MOST_FAILURES):
-                unsolved = isinstance(trial.failure, NoConvergenceError)
-                return Status.NO_CONVERGENCE if unsolved else Status.NOT_FINITE, h
+                return outcome.fail(trial.failure), h
             if trial.failure:
                 orders.choice.lower()
             continue

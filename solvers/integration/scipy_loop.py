@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from solvers.equations.forms import Form
+from solvers.equations.quantities import NotFiniteNumberError
 from solvers.integration.inputs import segments
 from solvers.integration.problem import Outcome, Problem
 from solvers.integration.recorder import Recorder
@@ -53,8 +54,8 @@ class DenseOutput:
 def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
     """Integrate `problem` until `stop` is set; `outcome` holds the results so far at any time."""
     outcome.backend = "scipy"
+    recorder, status = Recorder(problem, outcome), Status.FINISHED
     try:
-        recorder, status = Recorder(problem, outcome), Status.FINISHED
         for segment in segments(problem, lambda: recorder.y, outcome.history):
             part, status = first_part(segment, outcome)
             while part is not None:
@@ -63,9 +64,9 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
                 part, status = next_part(part, outcome, status)
             if status is not Status.FINISHED:
                 break
-        outcome.end_with(status, problem)
-    except NotFiniteError:
-        outcome.status = Status.NOT_FINITE
+    except (NotFiniteError, NotFiniteNumberError) as failure:
+        status = outcome.fail(failure)
+    outcome.end_with(status, problem)
 
 
 def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag) -> Status:
@@ -83,8 +84,8 @@ def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag)
         outcome.steps += 1
         try:
             ends = recorder.advance(solver.t, DenseOutput(problem.form, solver))
-        except ArithmeticError:  # as of constraints that depend on each other there
-            return Status.NOT_FINITE
+        except ArithmeticError as failure:  # as of constraints that depend on each other there
+            return outcome.fail(failure)
         if ends:
             return Status.EVENT
         longest = max(longest, solver.step_size)

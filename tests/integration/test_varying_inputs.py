@@ -1,5 +1,6 @@
 """Inputs during an integration: constant, held between samples, or functions of the state."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -265,6 +266,34 @@ def test_invalid_inputs_are_refused(inputs: Any, message: str) -> None:
 
     with pytest.raises(ValueError, match=message):
         run()
+
+
+@pytest.mark.parametrize("method", ["verner853", "gauss8", "LSODA"])
+@pytest.mark.parametrize("period", [None, 0.02])
+def test_inputs_that_become_nan_end_the_run_with_the_results_so_far(
+    period: float | None, method: str
+) -> None:
+    def controller(t: float, y: Array) -> dict[str, float]:
+        return {"F": np.nan if t > 0.5 else 1.0}
+
+    inputs = Held(period, controller) if period else controller
+    run = integrate(cart, (0, 1), START, {}, inputs=inputs, method=method)
+    assert run.status is Status.NOT_FINITE
+    assert 0.4 < run.end[0] == run.t[-1] <= 0.52
+    assert run.inputs is not None
+    assert (run.inputs[0, :-1] == 1.0).all()
+    assert re.search(r": F = nan must be .*\(t = .*, x = ", run.message)
+
+
+@pytest.mark.parametrize("backend", ["compiled", "python"])
+def test_inputs_that_become_nan_end_the_motions_of_their_columns(backend: str) -> None:
+    def controller(t: float, y: Array) -> dict[str, Any]:
+        return {"F": np.where((t > 0.5) & (y[0] > 0.0), np.nan, 1.0)}
+
+    starts = np.array([START, (-5.0, *START[1:])]).T
+    motions = ensemble(cart, (0, 1), starts, {}, inputs=Held(0.02, controller), backend=backend)
+    assert motions.status.tolist() == [Status.NOT_FINITE, Status.FINISHED]
+    assert motions.t == pytest.approx([0.52, 1.0])
 
 
 def test_inputs_need_a_system_that_has_them() -> None:
