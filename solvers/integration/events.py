@@ -1,14 +1,16 @@
-"""Events of compiled loops: a component of the state crosses a value."""
+"""Events: a component of the state crosses a value, or a user's function changes its sign."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isfinite
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import real_number
-from solvers.io.suggestion import did_you_mean
+from solvers.equations.quantities import REAL, real_number
+from solvers.io.suggestion import did_you_mean, shortened
 
 
 @dataclass(frozen=True)
@@ -129,3 +131,32 @@ class Limit(Event):
     value: float = 0.0
     direction: int = -1
     terminal: bool = True
+
+
+class UserEvent:
+    """A user's function as an event, called `name`, whose values must be finite numbers."""
+
+    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+        self._name = f"{name} ({getattr(function, '__name__', shortened(function))})"
+        self._function = function
+        if self.direction not in (0, 1, -1):
+            raise ValueError(f"direction of {self._name} = {self.direction!r} must be 0, 1 or -1")
+        if self.terminal not in (True, False):
+            raise ValueError(f"terminal of {self._name} = {self.terminal!r} must be True or False")
+
+    @property
+    def direction(self) -> Any:
+        """As that of `Event`."""
+        return getattr(self._function, "direction", 0)
+
+    @property
+    def terminal(self) -> Any:
+        """As that of `Event`."""
+        return getattr(self._function, "terminal", False)
+
+    def __call__(self, t: float, y: NDArray[np.float64]) -> float:
+        """The value of the function."""
+        value = self._function(t, y)
+        if type(value) in REAL and isfinite(value):
+            return float(value)  # at once, since events are called often
+        return real_number(f"the value of {self._name} at t = {t}", value)

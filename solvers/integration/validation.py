@@ -20,7 +20,7 @@ from solvers.equations.module import (
 )
 from solvers.equations.quantities import Values, quantities, real_number, real_numbers
 from solvers.equations.tangent_start import tangent_start
-from solvers.integration.events import Limit
+from solvers.integration.events import Event, Limit, UserEvent
 from solvers.integration.inputs import Held, Schedule, controlled, given
 from solvers.integration.memory import check_times
 from solvers.integration.problem import Options, Problem, shortest_step
@@ -309,4 +309,7 @@ def event_functions(events: object, module: GeneratedModule) -> list[Callable[..
     for event in functions:
         if getattr(event, "name", None) and getattr(event, "module", module) is not module:
             raise ValueError(f"{event.name} of {event.module.__name__} is not of {module.__name__}")
-    return functions
+    return [
+        event if isinstance(event, Event) else UserEvent(f"events[{k}]", event)
+        for k, event in enumerate(functions)
+    ]

@@ -1,7 +1,9 @@
 """Events of an integration: location, direction, terminal events, invalid events."""
 
+import re
 from functools import partial
-from math import sin, sqrt
+from math import inf, nan, sin, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
 from solvers.integration.events import Event, Extremum
 from solvers.integration.integrate import integrate
-from solvers.integration.solution import Status
+from solvers.integration.solution import Array, Status
 
 
 def test_events_are_located_to_rounding() -> None:
@@ -88,6 +90,38 @@ def test_invalid_events_are_refused() -> None:
     ):
         with pytest.raises(ValueError, match=message):
             Event(dp, *arguments)
+
+
+@pytest.mark.parametrize("method", ["verner853", "DOP853"])
+@pytest.mark.parametrize("value", [nan, inf, 1j, None, True, "1", [1.0], np.zeros(1)], ids=repr)
+def test_values_of_events_that_are_no_numbers_are_refused(value: Any, method: str) -> None:
+    def height(t: float, y: Array) -> Any:
+        return value
+
+    with pytest.raises(ValueError, match=r"events\[0\] \(height\) at t = 0.0 = .* must be"):
+        integrate(dp, (0, 1), (1.0, 0.0, 0.0, 0.0), dp.DEFAULTS, events=height, method=method)
+
+
+@pytest.mark.parametrize("method", ["verner853", "DOP853"])
+def test_an_event_that_becomes_nan_ends_the_run_with_the_results_so_far(method: str) -> None:
+    def root(t: float, y: Array) -> float:
+        return nan if t > 0.5 else 1.0
+
+    start = (1.0, 0.0, 0.0, 0.0)
+    run = integrate(dp, (0, 1), start, dp.DEFAULTS, events=root, method=method)
+    assert run.status is Status.NOT_FINITE
+    assert 0 < run.end[0] == run.t[-1] <= 0.5
+    assert re.search(r"events\[0\] \(root\) at t = 0.* = nan .*\(t = .*, theta1 = ", run.message)
+
+
+@pytest.mark.parametrize("name", ["direction", "terminal"])
+def test_attributes_of_event_functions_are_checked(name: str) -> None:
+    def height(t: float, y: Array) -> float:
+        return 1.0
+
+    setattr(height, name, "up")
+    with pytest.raises(ValueError, match=rf"{name} of events\[0\] \(height\) = 'up' must be"):
+        integrate(dp, (0, 1), (1.0, 0.0, 0.0, 0.0), dp.DEFAULTS, events=height)
 
 
 def test_states_at_events_use_the_parameters_of_their_motion() -> None:
