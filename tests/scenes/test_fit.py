@@ -196,3 +196,9 @@ def test_combinations_that_cannot_be_known_are_named() -> None:
     # with friction, a known c would determine m
     with pytest.raises(ValueError, match="m, k: only as k/m"):
         fit(oscillator(), data, ["m", "k"], params={"c": 0.0})
+
+
+def test_rest_determines_no_parameter() -> None:
+    t = np.arange(0, 2, 0.1)
+    with pytest.raises(ArithmeticError, match=r"do not determine theta at the start .*, l: hold"):
+        fit(single, {"t": t, "theta": 0 * t}, ["l"])

@@ -91,7 +91,8 @@ def estimate(
         linear = minimum.linear.weighted(np.tile(ratio, (len(nodes), 1)))
     # of residuals in units of the noise before, the variance is the ratio
     variance = float(minimum.linear.squares / (counts.sum() - unknowns))
-    matrix = variance * covariance(minimum.step.triangle)
+    with np.errstate(invalid="ignore"):  # without noise, 0 times infinity is undetermined
+        matrix = variance * covariance(minimum.step.triangle)
     largest = np.maximum(abs(guess), abs(params))
     sizes = np.concatenate([np.tile(scale, len(experiment.runs)), largest])
     _check(experiment, np.sqrt(np.diag(matrix)), np.maximum(sizes, 1e-6))

@@ -13,10 +13,14 @@ LEVEL = 0.95
 
 
 def leverages(jacobian: Array, triangle: Array) -> Array:
-    """How much each value determines its own fit, shape (values,); they add up to the unknowns."""
+    """How much each value determines its own fit, shape (values,); they add up to the rank of R."""
     scale = np.linalg.norm(triangle, axis=0)
     scale[scale == 0] = 1.0
-    own = np.linalg.solve((triangle / scale).T, (jacobian / scale).T)
+    R, J = triangle / scale, jacobian / scale
+    try:
+        own = np.linalg.solve(R.T, J.T)
+    except np.linalg.LinAlgError:  # some unknowns change no value
+        own = np.linalg.pinv(R.T) @ J.T
     return np.asarray((own**2).sum(axis=0))
 
 
