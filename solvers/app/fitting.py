@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from solvers.app.modules import generator_text, load, system_of
 from solvers.app.scenes import load_scene
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module_cache import cached_module
@@ -31,6 +32,7 @@ Data: TypeAlias = Measurement | Mapping[str, ArrayLike] | str | PathLike[str]
 Model: TypeAlias = Scene | GeneratedModule | str | PathLike[str]
 
 
+@checked
 def fit(
     model: Model,
     data: Data | Sequence[Data],
@@ -89,6 +91,7 @@ def fit(
     return fitted(outputs, runs, names, values, start, held)
 
 
+@checked
 def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> Comparison:
     """Compare fitted models by their predictions of runs that were kept back.
 
@@ -124,11 +127,14 @@ def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> Comparison:
     >>> print(compare(fits, second).reason)
     friction, with 2 unknown parameters, predicts best; simpler models predict significantly worse
     """
+    if not fits:
+        raise ValueError("fits = {} must hold one fit or more")
     first = next(iter(fits.values()))
     runs = _measurements(first.outputs.module, kept)
     return prediction.compared(fits, [(run, None) for run in runs])
 
 
+@checked
 def read_measurement(
     path: str | PathLike[str], module: GeneratedModule, ignored: Sequence[str] = ()
 ) -> Measurement:
@@ -251,7 +257,6 @@ def _model(model: Model) -> tuple[GeneratedModule, np.ndarray, dict[str, float]]
     if isinstance(model, Scene):
         pairs = zip(model.module.PARAMETERS, model.params, strict=True)
         return model.module, np.array(model.y0), dict(pairs)
-    validation.check_module(model)
     rest = [float(name in model.POSITIVE) for name in model.STATE]
     return model, np.array(rest), dict(zip(model.PARAMETERS, model.DEFAULTS, strict=True))
 
@@ -278,6 +283,8 @@ def named_model(name: str) -> Scene | GeneratedModule:
 
 def _measurements(module: GeneratedModule, data: Data | Sequence[Data]) -> list[Measurement]:
     items = [data] if isinstance(data, Measurement | Mapping | str | PathLike) else [*data]
+    if not items:
+        raise ValueError("data = [] must hold one run or more")
     return [_measurement(module, item) for item in items]
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, cast
 
+from solvers.equations.arguments import checked
 from solvers.equations.lazy_module import LazyModule
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module_cache import cached_module
@@ -29,6 +30,7 @@ IMPORTED = re.compile(r"^ *from (derive[\w.]*) import (?:([\w ,]+)|\(([^)]*)\))"
 _systems: "dict[str, System]" = {}
 
 
+@checked
 def load(name: str) -> GeneratedModule:
     """The generated module of a system that ships, or of a system file.
 

@@ -5,6 +5,7 @@ from os import PathLike, fspath
 from pathlib import Path
 
 from solvers.app.modules import load, specialiser
+from solvers.equations.arguments import checked
 from solvers.scenes import run
 from solvers.scenes.reading import find as find_scene
 from solvers.scenes.run import SceneResult
@@ -16,6 +17,7 @@ from solvers.sweeps.results import Results
 from solvers.sweeps.sweep import Sweep
 
 
+@checked
 def load_scene(name: str | PathLike[str]) -> Scene:
     """The scene of this name, or in this TOML file.
 
@@ -43,6 +45,7 @@ def load_scene(name: str | PathLike[str]) -> Scene:
     return find_scene(fspath(name), load)
 
 
+@checked
 def run_scene(scene: Scene | str | PathLike[str]) -> SceneResult:
     """Compute the motion of a scene with the smallest sufficient model.
 
@@ -76,6 +79,7 @@ def run_scene(scene: Scene | str | PathLike[str]) -> SceneResult:
     return run.run_scene(definition, specialiser)
 
 
+@checked
 def load_sweep(name: str | PathLike[str]) -> Sweep:
     """The sweep of this name, or in this TOML file.
 
@@ -103,6 +107,7 @@ def load_sweep(name: str | PathLike[str]) -> Sweep:
     return reading.find(fspath(name), load)
 
 
+@checked
 def sweep(
     definition: Sweep | str | PathLike[str],
     folder: str | Path,

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.assembly import (
     CLOSED,
     EXACT,
@@ -119,6 +120,7 @@ class ConsistentStart:
         return "\n  ".join([*lines, *self.words.split("; ")])
 
 
+@checked
 def consistent_start(
     module: GeneratedModule,
     y0: Values,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.arguments import checked
 from solvers.equations.intervals import FUNCTIONS, Interval, bounds_of, select
 from solvers.equations.linear_system import LinearSystem, linearise, with_inputs
 from solvers.equations.module import (
@@ -31,6 +32,7 @@ MOST_STEPS, CONVERGED = 60, 1e-9
 CLOSE = 1e-4
 
 
+@checked
 def equilibria(
     module: GeneratedModule,
     params: Values,

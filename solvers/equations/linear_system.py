@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from solvers.equations.arguments import checked
 from solvers.equations.assembly import Assembly
 from solvers.equations.consistent_start import consistent
 from solvers.equations.module import (
@@ -154,6 +155,7 @@ class LinearSystem:
         return f"LinearSystem at {state}: {self.stability}, eigenvalues {values} 1/s"
 
 
+@checked
 def linearise(
     module: GeneratedModule,
     y: Values,

@@ -53,7 +53,7 @@ def examined(motions: int) -> list[int]:
 
 
 def check_condition(
-    module: GeneratedModule, motions: Iterable[Motion], t: float = 0.0, stacklevel: int = 3
+    module: GeneratedModule, motions: Iterable[Motion], t: float = 0.0, stacklevel: int = 4
 ) -> None:
     """Refuse a nearly singular mass matrix, or warn; coordinates without inertia are permitted.
 

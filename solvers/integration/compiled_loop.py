@@ -67,7 +67,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     if reason and must_compile:
         raise ValueError(f"no compiled loop can solve this problem: {reason}")
     if reason and lanes and problem.backend is None and isinstance(problem.method, Tableau):
-        warn(f"integrating one motion after another in Python: {reason}", stacklevel=3)
+        warn(f"integrating one motion after another in Python: {reason}", stacklevel=4)
     if reason:
         return problem, None
     is_free = problem.options.form is None and not load(problem.options.method).needs_jacobian
@@ -77,7 +77,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     except NoCompilerError as error:
         if must_compile:
             raise
-        warn(f"integrating in Python: {error}", stacklevel=3)
+        warn(f"integrating in Python: {error}", stacklevel=4)
         return problem, None
 
 

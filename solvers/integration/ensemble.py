@@ -7,6 +7,7 @@ from warnings import warn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import check_module, known_names
 from solvers.equations.mass_matrix import check_condition, examined
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
@@ -24,11 +25,13 @@ from solvers.integration.solution import Interrupted
 from solvers.integration.step_stability import StepWarning, mark_unstable
 from solvers.integration.stop_flag import StopFlag
 from solvers.io.arguments import check_type
+from solvers.io.suggestion import shortened
 
 #: Most threads of one ensemble.
 MOST_WORKERS = 1024
 
 
+@known_names
 def ensemble(
     module: GeneratedModule,
     t_span: ArrayLike | tuple[float, ArrayLike],
@@ -123,7 +126,8 @@ def ensemble(
     options = Options(
         method, form, rtol, atol, h, (), events, max_steps, backend, compensated, inputs
     )
-    validation.check_module(module)
+    check_module(module)
+    check_type("form", form, str | None, "the name of a form")
     states = validation.state_rows(module, y0, form or "lagrangian")
     memory.check_times(t_eval, states.shape[1])
     times = EnsembleTimes.of(t_span, t_eval, len(states))
@@ -173,20 +177,24 @@ def ensemble(
     if run.stop.is_set:
         return result
     if unstable := mark_unstable(problem, states, constants, result):
-        warn(unstable, StepWarning, stacklevel=2)
+        warn(unstable, StepWarning, stacklevel=3)
     if singular := singularities(problem, states, constants, result):
-        warn(singular, SingularityWarning, stacklevel=2)
+        warn(singular, SingularityWarning, stacklevel=3)
     good = np.flatnonzero(result.success)
     own = constants[good] if len(constants) > 1 else constants
     ends = result.t[good], result.y.T[good]
     for warning in ensemble_warnings(problem, states[good], own, *ends):
-        warn(warning, stacklevel=2)
+        warn(warning, stacklevel=3)
     return result
 
 
 def _skipped(skip: int | Sequence[int], events: Sequence[EventFunction]) -> list[int]:
     """How many occurrences of each event are not stored."""
-    given = [skip] * len(events) if isinstance(skip, int | np.integer) else [*skip]
+    try:
+        given = [skip] * len(events) if isinstance(skip, int | np.integer) else [*skip]
+    except TypeError as error:
+        allowed = "must be a whole number, or one for each event"
+        raise ValueError(f"skip = {shortened(skip)} {allowed}") from error
     if len(given) != len(events):
         raise ValueError(f"skip has {len(given)} numbers for {len(events)} events: give one each")
     for event, number in zip(events, given, strict=True):

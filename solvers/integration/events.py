@@ -8,11 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import REAL, real_number
+from solvers.io.arguments import check_direction
 from solvers.io.suggestion import did_you_mean, shortened
 
 
+@checked
 @dataclass(frozen=True)
 class Event:
     """A coordinate or velocity crosses a value; angles count whole turns, so that π is not -π.
@@ -55,8 +58,7 @@ class Event:
             known = ", ".join(self.module.STATE)
             raise ValueError(f"no component is called {self.name!r}{hint}; known names: {known}")
         real_number(f"value of {self.name}", self.value, self.module.UNITS[self.name])
-        if self.direction not in (0, 1, -1):
-            raise ValueError(f"direction = {self.direction!r} must be 0, 1 or -1")
+        check_direction("direction", self.direction)
         if not isinstance(self.terminal, bool | np.bool_):
             raise ValueError(f"terminal = {self.terminal!r} must be True or False")
 
@@ -70,6 +72,7 @@ class Event:
         return float(y[self.module.STATE.index(self.name)]) - self.value
 
 
+@checked
 @dataclass(frozen=True)
 class Extremum(Event):
     """A velocity vanishes; the occurrences where its coordinate is extreme are stored.
@@ -139,8 +142,7 @@ class UserEvent:
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
         self._name = f"{name} ({getattr(function, '__name__', shortened(function))})"
         self._function = function
-        if self.direction not in (0, 1, -1):
-            raise ValueError(f"direction of {self._name} = {self.direction!r} must be 0, 1 or -1")
+        check_direction(f"direction of {self._name}", self.direction)
         if self.terminal not in (True, False):
             raise ValueError(f"terminal of {self._name} = {self.terminal!r} must be True or False")
 

@@ -9,6 +9,7 @@ from warnings import warn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import known_names
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
@@ -25,6 +26,7 @@ from solvers.integration.solution import Array, Interrupted, Solution, Status
 from solvers.integration.step_stability import step_instability
 
 
+@known_names
 def integrate(
     module: GeneratedModule,
     t_span: ArrayLike,
@@ -140,6 +142,7 @@ def integrate(
     options = Options(
         method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated, inputs
     )
+    validation.check_flag("energy", energy)
     problem = validation.problem(module, t_span, y0, params, options)
     check_condition(module, [("", problem.form.constants, problem.start.tolist())], problem.span[0])
     compile_perturbations(problem)
@@ -157,7 +160,7 @@ def integrate(
     solution = _solution(problem, outcome, energy, detail)
     if solution.success:
         for warning in accuracy_warnings(problem, *outcome.end):
-            warn(warning, stacklevel=2)
+            warn(warning, stacklevel=3)
     return solution
 
 

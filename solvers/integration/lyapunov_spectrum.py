@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.quantities import Values, positive, real_number
 from solvers.integration import validation
@@ -37,6 +38,7 @@ class LyapunovSpectrum:
     y: Array
 
 
+@checked
 def lyapunov_spectrum(
     module: GeneratedModule,
     y0: Values,

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from solvers.equations.arguments import known_names
 from solvers.equations.assembly import Assembly
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import (
@@ -44,6 +45,7 @@ class NotFinishedError(ArithmeticError):
         self.status, self.t, self.y = status, t, y
 
 
+@known_names
 def prepare(
     module: GeneratedModule,
     params: Values,

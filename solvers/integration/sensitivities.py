@@ -8,6 +8,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import checked
 from solvers.equations.consistent_start import given_names
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, has_constraints
@@ -77,6 +78,7 @@ class Sensitivities:
     y_event_derivatives: list[Array]
 
 
+@checked
 def sensitivities(
     module: GeneratedModule,
     t_span: ArrayLike,
@@ -170,7 +172,7 @@ def _names(
 ) -> tuple[str, ...]:
     known = (*given, *module.PARAMETERS)
     names = known if by is None else tuple(by)
-    if isinstance(by, str) or not names:
+    if not names:
         raise ValueError(f"by = {by!r} must be a list of one or more of {', '.join(known)}")
     for name in names:
         if name in module.STATE and name not in given:

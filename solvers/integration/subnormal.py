@@ -11,5 +11,5 @@ def warn_if_flushed() -> None:
             f"this process sets numbers below {sys.float_info.min:.2g} to zero: motions next to "
             "rest lose their digits. A library built with -ffast-math has switched that on; import "
             "it after the integration, or integrate in a process without it",
-            stacklevel=4,
+            stacklevel=5,
         )

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
 from solvers.integration.solution import Array
@@ -30,6 +31,7 @@ class Transition:
     matrix: Array
 
 
+@checked
 def transition_matrix(
     module: GeneratedModule,
     t_span: ArrayLike,

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import check_module
 from solvers.equations.assembly import Assembly
 from solvers.equations.consistent_start import consistent, given_names, guesses
 from solvers.equations.forms import Form
@@ -33,14 +34,6 @@ from solvers.runge_kutta.tableau import Tableau
 
 #: The largest count that loops can reach exactly.
 MOST = 2**53
-
-
-def check_module(module: object) -> None:
-    """Refuse what is not a module, such as the name of a system."""
-    if not hasattr(module, "PARAMETERS"):
-        name = module[:50] if isinstance(module, str) else "double_pendulum"
-        known = f"such as solvers.load({name!r}) returns"
-        raise ValueError(f"module = {shortened(module)} must be a generated module, {known}")
 
 
 def problem(

@@ -1,6 +1,6 @@
 """Checks of the types of arguments, whose messages name the argument."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from types import UnionType
 from typing import Any
 
@@ -18,3 +18,9 @@ def check_texts(name: str, values: Any) -> None:
     is_sequence = isinstance(values, Sequence) and not isinstance(values, str)
     if not is_sequence or not all(isinstance(value, str) for value in values):
         raise ValueError(f"{name} = {shortened(values)} must be a sequence of texts")
+
+
+def check_direction(name: str, value: object) -> None:
+    """Raise `ValueError` if an argument is none of the directions 0, 1 and -1."""
+    if not isinstance(value, Hashable) or value not in (0, 1, -1):
+        raise ValueError(f"{name} = {shortened(value)} must be 0, 1 or -1")

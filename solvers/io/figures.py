@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BytesIO
+from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,12 +14,16 @@ from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
+from solvers.io.arguments import check_type
 from solvers.io.atomic_write import write_text
+from solvers.io.suggestion import shortened
 
 #: Wong's palette for colour-blind readers (Nature Methods 8, 441, 2011).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 #: Paper, and text on a dark page.
 WHITE, LIGHT = (1.0, 1.0, 1.0), "#e7e9eb"
+#: Most rows or columns of a figure.
+MOST_PANELS = 100
 
 Value = TypeVar("Value")
 
@@ -50,6 +55,12 @@ def panels(
     >>> len(axes)
     2
     """
+    check_type("title", title, str, "a text")
+    check_type("size", size, tuple | list, "width and height in inches")
+    for name, number in (("rows", rows), ("columns", columns)):
+        if type(number) is not int or not 0 < number <= MOST_PANELS:
+            allowed = f"must be a whole number from 1 to {MOST_PANELS}"
+            raise ValueError(f"{name} = {shortened(number)} {allowed}")
     # without pyplot, which needs a display and keeps every figure
     figure = Figure(size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False)
@@ -95,6 +106,8 @@ def save(figure: Figure, path: str | Path) -> None:
     >>> line = panel.plot([0, 1], [0, 1])
     >>> save(figure, "line.pdf")
     """
+    check_type("figure", figure, Figure, "a figure of Matplotlib, as of panels")
+    check_type("path", path, str | PathLike, "a path")
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)

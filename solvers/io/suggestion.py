@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+#: Names of the step size, of which functions and files know one.
+STEP_SIZES = ("h", "step", "step_size", "stepsize", "dt", "delta_t")
 #: Characters of the shortest beginning of a name for which the whole name is suggested.
 SHORTEST = 3
 
@@ -13,6 +15,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     lower = name.lower()
     longer = [other for other in by_lower if len(lower) >= SHORTEST and other.startswith(lower)]
     close = get_close_matches(lower, by_lower, n=1) or longer
+    if lower in STEP_SIZES:
+        close = [size for size in STEP_SIZES if size in by_lower] or close
     return f" (did you mean {by_lower[close[0]]!r}?)" if close else ""
 
 

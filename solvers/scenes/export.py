@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
+from solvers.equations.arguments import checked
 from solvers.equations.quantities import positive
 from solvers.io.atomic_write import write_text
 from solvers.io.figures import COLOURS, FORMATS, panels, save
@@ -40,6 +41,7 @@ FILMS: dict[str, Callable[[], AbstractMovieWriter]] = {
 SUFFIXES = (*FILMS, *FORMATS)
 
 
+@checked
 def export_motion(
     result: SceneResult | Sequence[SceneResult], path: str | Path, *, speed: float = 1.0
 ) -> Path:
@@ -75,6 +77,8 @@ def export_motion(
     single.svg
     """
     path, results = Path(path), [result] if isinstance(result, SceneResult) else [*result]
+    if not results:
+        raise ValueError("result = [] must hold one motion or more")
     duration = max(float(one.t[-1]) for one in results)
     check_export(path, duration, speed)
     suffix = path.suffix.lower()

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.arguments import check_module, known_names
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, has_constraints
@@ -21,6 +22,7 @@ RATE, FEWEST, MOST = 100, 501, 20_001
 ENERGY = "energy"
 
 
+@known_names
 @dataclass(frozen=True)
 class Scene:
     """A motion, its accuracy and its outputs.
@@ -114,7 +116,7 @@ class Scene:
     completed: str = ""
 
     def __post_init__(self) -> None:
-        validation.check_module(self.module)
+        check_module(self.module)
         for name in ("model", "method", "form", "code", "title", "name", "label", "note"):
             check_type(name, getattr(self, name), str | None, "a text")
         for name in ("outputs", "pictures"):
@@ -133,7 +135,7 @@ class Scene:
             positive(name, getattr(self, name))
         checks.check_accuracy(self.accuracy)
         checks.check_masses(self.module, self.params, self.y0)
-        check_condition(self.module, [("", self.params, self.y0)], stacklevel=4)
+        check_condition(self.module, [("", self.params, self.y0)], stacklevel=5)
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
         if self.model is not None:
             from solvers.scenes.models import catalogue

@@ -196,7 +196,8 @@ class Random(Axes):
     def __post_init__(self) -> None:
         validation.count("count", self.count, 1)
         validation.count("seed", self.seed, 0)
-        limits = {name: tuple(ends.tolist()) for name, ends in _columns(self.limits).items()}
+        columns = _columns(self.limits, "limits")
+        limits = {name: tuple(ends.tolist()) for name, ends in columns.items()}
         for name, ends in limits.items():
             if len(ends) != 2:
                 raise ValueError(f"{name} = {ends} must be two limits, lowest and highest")
@@ -226,8 +227,8 @@ class Random(Axes):
         return {"kind": "random", "axes": axes, "count": self.count, "seed": self.seed}
 
 
-def _columns(values: Mapping[str, Any]) -> dict[str, Array]:
-    check_type("values", values, Mapping, "a mapping of names to numbers")
+def _columns(values: Mapping[str, Any], what: str = "values") -> dict[str, Array]:
+    check_type(what, values, Mapping, "a mapping of names to numbers")
     if not values:
         raise ValueError("nothing varies: name at least one coordinate, velocity or parameter")
     columns = {name: np.atleast_1d(real_numbers(name, given)) for name, given in values.items()}

@@ -82,13 +82,6 @@ def check_maps(
     ladders = [name for name, one in maps.items() if one.ladder]
     if ladders and len(maps) > 1:
         raise ValueError(f"map {ladders[0]} is a response: it must be the only map")
-    samplings = {one.sampling: name for name, one in maps.items() if one.sample_count}
-    if len(samplings) > 1:
-        both = " and ".join(samplings.values())
-        raise ValueError(f"maps {both} have other times: all must have the same ones")
-    counts = {one.sample_count for one in maps.values()} - {0}
-    if len(counts) > 1:
-        raise ValueError(f"maps have {sorted(counts)} samples: all must have the same number")
     reserved = (STATUS, ENERGY, *module.STATE, *module.PARAMETERS)
     taken = {*map(str.casefold, reserved)}  # names of files, whose case may not count
     for name, one in maps.items():
@@ -103,6 +96,13 @@ def check_maps(
             one.check(module, axes, values)
         except ValueError as error:
             raise ValueError(f"map {name}: {error}") from error
+    samplings = {one.sampling: name for name, one in maps.items() if one.sample_count}
+    if len(samplings) > 1:
+        both = " and ".join(samplings.values())
+        raise ValueError(f"maps {both} have other times: all must have the same ones")
+    counts = {one.sample_count for one in maps.values()} - {0}
+    if len(counts) > 1:
+        raise ValueError(f"maps have {sorted(counts)} samples: all must have the same number")
 
 
 def check_duration(maps: Mapping[str, Map], duration: float | None, skip: float) -> None:

@@ -20,6 +20,7 @@ from warnings import warn
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.arguments import checked
 from solvers.integration import validation
 from solvers.integration.stop_flag import StopFlag
 from solvers.sweeps.arithmetic import first_motions, run_equal_chunk
@@ -37,6 +38,7 @@ class LostWorkersError(OSError):
     """An executor failed or lost its connection."""
 
 
+@checked
 @dataclass(frozen=True)
 class Pool:
     """An executor of chunks.

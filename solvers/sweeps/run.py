@@ -4,6 +4,7 @@ from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
+from solvers.equations.arguments import checked
 from solvers.io.progress import Rate
 from solvers.sweeps.folder import Folder
 from solvers.sweeps.pool import Pool
@@ -40,6 +41,7 @@ def sweep(
     return Results.of(definition, Path(folder))
 
 
+@checked
 def partial_results(definition: Sweep, folder: str | Path) -> Results:
     """The results so far of a sweep that is not finished; it may be running.
 

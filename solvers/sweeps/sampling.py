@@ -7,6 +7,7 @@ from math import prod
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
+from solvers.equations.quantities import real_number
 from solvers.io.quantity import WORD, formula
 from solvers.io.units import UnitError, dimension
 from solvers.sweeps.axes import Array
@@ -60,10 +61,10 @@ class Sampling:
 
     def check(self, module: GeneratedModule) -> None:
         """Refuse a formula that is not a time, or numbers that are not possible."""
-        if not 0 <= self.phase < 2 * np.pi:
+        if not 0 <= real_number("phase", self.phase, "rad") < 2 * np.pi:
             raise ValueError(f"phase = {self.phase:g} must be from 0 to 2π, without the end")
         if not isinstance(self.every, str):
-            if not 0 < self.every < np.inf:
+            if real_number("every", self.every, "s") <= 0:
                 raise ValueError(f"every = {self.every!r} must be a positive period in s")
             return
         units = {name: module.UNITS[name] for name in module.PARAMETERS}

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from solvers.equations.arguments import check_module
 from solvers.equations.forms import fastest_form
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, header
@@ -85,7 +86,7 @@ class Sweep:
     title: str = "a sweep"
 
     def __post_init__(self) -> None:
-        validation.check_module(self.module)
+        check_module(self.module)
         check_type("axes", self.axes, Axes, "a Grid, Random or Table")
         check_type("maps", self.maps, Mapping, "a mapping of names to maps")
         check_type("values", self.values, Mapping, "a mapping of names to numbers")

@@ -258,7 +258,7 @@ def test_arguments_of_families_are_checked() -> None:
         orbit_family(single, orbit, bounds=(0.0, 1.0))
     with pytest.raises(ValueError, match="direction = 2 must be 0, 1 or -1"):
         orbit_family(single, orbit, direction=2)
-    with pytest.raises(ValueError, match=r"start = 3\.0 must be an orbit"):
+    with pytest.raises(ValueError, match=r"start = 3\.0 must be a PeriodicOrbit or a SpecialOrbit"):
         orbit_family(single, 3.0)  # type: ignore[arg-type]
     rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
     with pytest.raises(ValueError, match="driven_pendulum does not conserve its energy"):

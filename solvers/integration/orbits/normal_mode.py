@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.linear_system import LinearSystem, Mode
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import real_number
@@ -21,6 +22,7 @@ UNDAMPED, RESONANT, AT_REST = 1e-9, 1e-6, 1e-6
 SHARES, LARGEST, HALVINGS, CLOSE = np.array([0.25, 0.5, 0.75, 1.0]), 0.2, 6, 1e-9
 
 
+@checked
 def normal_mode_orbit(
     module: GeneratedModule,
     equilibrium: LinearSystem,
@@ -70,6 +72,8 @@ def normal_mode_orbit(
     ('neutral', ('theta1_dot', 'theta2_dot'))
     """
     amplitude = real_number("amplitude", amplitude)
+    if len(equilibrium.y) != len(module.STATE):
+        raise ValueError(f"equilibrium = {equilibrium!r} is not one of {module.SYSTEM}")
     frequency = _frequency(equilibrium, mode)
     n, largest = len(mode.shape), int(np.argmax(np.abs(mode.shape)))
     shape = mode.shape / mode.shape[largest]
@@ -90,6 +94,7 @@ def normal_mode_orbit(
     return PeriodicOrbit.of(shooting, point, shot)
 
 
+@checked
 def backbone_slope(module: GeneratedModule, equilibrium: LinearSystem, mode: Mode) -> float:
     """The slope dT/da² at the birth of a family of orbits at a normal mode.
 

@@ -7,6 +7,7 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive, real_numbers
 from solvers.integration import validation
@@ -19,8 +20,8 @@ from solvers.integration.orbits.special_points import crossing_direction, doubli
 from solvers.integration.orbits.symmetry import Reversal, angles
 from solvers.integration.orbits.walk import Limits, Walk, walk
 from solvers.integration.solution import Array
-from solvers.io.arguments import check_type
-from solvers.io.suggestion import did_you_mean
+from solvers.io.arguments import check_direction
+from solvers.io.suggestion import did_you_mean, shortened
 
 #: Longest period relative to that of the start.
 LONGEST = 10.0
@@ -32,6 +33,7 @@ VARIATION = 0.01
 DIRECTIONS = {"branch point": crossing_direction, "period doubling": doubling_direction}
 
 
+@checked
 def orbit_family(
     module: GeneratedModule,
     start: PeriodicOrbit | SpecialOrbit,
@@ -109,9 +111,7 @@ def orbit_family(
     if parameter not in names:
         hint = did_you_mean(str(parameter), names)
         raise ValueError(f"parameter = {parameter!r}{hint} must be one of {', '.join(names)}")
-    check_type("start", start, PeriodicOrbit | SpecialOrbit, "an orbit, as of periodic_orbit")
-    if direction not in (0, 1, -1):
-        raise ValueError(f"direction = {direction!r} must be 0, 1 or -1")
+    check_direction("direction", direction)
     orbit = start if isinstance(start, PeriodicOrbit) else start.orbit
     params = np.array(orbit.params)
     reversal = Reversal.of(module, orbit.symmetry, orbit.y, params) if orbit.symmetry else None
@@ -123,7 +123,10 @@ def orbit_family(
     shooting = Shooting(
         module, Nature.of(module, orbit.y, params, index), rtol, atol, reversal, index, period
     )
-    low, high = real_numbers("bounds", bounds, finite=False).tolist()
+    ends = real_numbers("bounds", bounds, finite=False)
+    if ends.shape != (2,):
+        raise ValueError(f"bounds = {shortened(bounds)} must be two numbers, lowest and highest")
+    low, high = ends.tolist()
     limits = Limits(
         low,
         high,

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values, positive
 from solvers.integration import validation
@@ -23,6 +24,7 @@ from solvers.integration.solution import Array, Solution
 LONGEST = 1e3
 
 
+@checked
 def periodic_orbit(
     module: GeneratedModule,
     y0: Values,

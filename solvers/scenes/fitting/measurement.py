@@ -7,11 +7,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, function
 from solvers.equations.quantities import Array, real_numbers
 from solvers.io.suggestion import counted
 
 
+@checked
 @dataclass(frozen=True)
 class Measurement:
     """One motion, measured at several times.

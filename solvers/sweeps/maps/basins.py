@@ -6,6 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive
 from solvers.sweeps.attractors import classify
@@ -15,6 +16,7 @@ from solvers.sweeps.maps import Map, Motions
 from solvers.sweeps.sampling import Sampling
 
 
+@checked
 @dataclass(frozen=True)
 class Basins(Map):
     """Basins of attraction: the number of the attractor that a motion approaches, 0 if none.

@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event, Extremum
 from solvers.sweeps.axes import Array
 from solvers.sweeps.maps import ComponentMap, Motions
 
 
+@checked
 @dataclass(frozen=True)
 class Extremes(ComponentMap):
     """Smallest and largest value of coordinates over the motion, located between steps.

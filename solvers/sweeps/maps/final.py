@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 
+from solvers.equations.arguments import checked
 from solvers.sweeps.axes import Array
 from solvers.sweeps.maps import ComponentMap, Motions
 
 
+@checked
 @dataclass(frozen=True)
 class Final(ComponentMap):
     """Components of the state at the end.

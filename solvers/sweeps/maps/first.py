@@ -6,6 +6,7 @@ from typing import Self
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
 from solvers.io.arguments import check_type
@@ -15,6 +16,7 @@ from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.maps import Map, Motions
 
 
+@checked
 @dataclass(frozen=True)
 class First(Map):
     """Time in s at which one of the components `of` first crosses one of its values.

@@ -7,6 +7,7 @@ from typing import Self
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.quantities import positive
 from solvers.integration.frames import Frames
@@ -15,6 +16,7 @@ from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.maps import Map, Motions
 
 
+@checked
 @dataclass(frozen=True)
 class Spectrum(Map):
     """The `count` largest Lyapunov exponents in 1/s over the duration of the motion.

@@ -6,6 +6,7 @@ from typing import Self
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
 from solvers.sweeps.axes import Array, Axes
@@ -15,6 +16,7 @@ from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.sampling import Sampling
 
 
+@checked
 @dataclass(frozen=True)
 class Response(ComponentMap):
     """Response to a drive: half the range of coordinates, over `along` upwards and downwards.

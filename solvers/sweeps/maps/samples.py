@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.sweeps.axes import Array
 from solvers.sweeps.maps import CountedMap, Motions
 
 
+@checked
 @dataclass(frozen=True)
 class Samples(CountedMap):
     """Components of the state at `count` evenly spaced times, start and end included.

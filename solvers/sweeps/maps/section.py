@@ -5,6 +5,7 @@ from typing import Self
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.events import Event
 from solvers.sweeps.axes import Array
@@ -15,6 +16,7 @@ from solvers.sweeps.maps import CountedMap, Motions
 DIRECTIONS = {"both": 0, "up": 1, "down": -1}
 
 
+@checked
 @dataclass(frozen=True)
 class Section(CountedMap):
     """Poincaré section: components at `count` crossings of `where` = `value`, after `skip` others.

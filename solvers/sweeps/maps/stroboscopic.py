@@ -5,12 +5,14 @@ from typing import Self
 
 import numpy as np
 
+from solvers.equations.arguments import checked
 from solvers.sweeps.axes import Array
 from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.maps import CountedMap, Motions
 from solvers.sweeps.sampling import Sampling
 
 
+@checked
 @dataclass(frozen=True)
 class Stroboscopic(CountedMap):
     """Stroboscopic section: components at `count` multiples of the period `every`.
