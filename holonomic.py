@@ -4,10 +4,23 @@ Names are imported when they are first used. ``load`` is `solvers.load`, which r
 module; ``derive.load`` returns the `System` with its positions.
 """
 
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import derive
-import solvers
+for _name in ("derive", "solvers"):
+    _own = Path(__file__).resolve().with_name(_name) / "__init__.py"
+    _spec = find_spec(_name)
+    _found = Path((_spec and _spec.origin) or "nothing").resolve()
+    if _found != _own:
+        _hiding = _found.parent if _found.name == "__init__.py" else _found
+        raise ImportError(
+            f"{_hiding} hides the package {_name!r} of holonomic, {_own.parent}: rename it, or "
+            "start Python in another folder"
+        )
+
+import derive  # noqa: E402
+import solvers  # noqa: E402
 
 if TYPE_CHECKING:
     from derive import *  # noqa: F403

@@ -65,6 +65,21 @@ def test_holonomic_offers_all_public_names() -> None:
         assert getattr(holonomic, name) is getattr(solvers, name)
 
 
+@pytest.mark.parametrize("name", ["derive", "solvers"])
+@pytest.mark.parametrize("hiding", ["{}.py", "{}/__init__.py"])
+def test_a_folder_that_hides_a_package_is_named(hiding: str, name: str, tmp_path: Path) -> None:
+    path = tmp_path / hiding.format(name)
+    path.parent.mkdir(exist_ok=True)
+    path.touch()
+    argv = [sys.executable, "-c", "import holonomic"]
+    ended = subprocess.run(argv, capture_output=True, text=True, cwd=tmp_path, check=False)
+    hides = path.parent if path.stem == "__init__" else path
+    message = f"ImportError: {hides.resolve()} hides the package {name!r} of holonomic, "
+    *_, last = ended.stderr.splitlines()
+    assert last.startswith(message)
+    assert last.endswith("rename it, or start Python in another folder")
+
+
 @pytest.mark.parametrize("package", [derive, solvers, holonomic])
 def test_an_unknown_name_raises_an_attribute_error(package: object) -> None:
     with pytest.raises(AttributeError, match="has no attribute 'intergate'"):
