@@ -146,3 +146,46 @@ def read_statements(document: Document) -> Translated:
     trees = [tree for one in document.displays for tree in formulas(one.latex)]
     places = [Occurrence(n, 1, 1, 0, 0, "", tree) for n, tree in enumerate(trees, 1)]
     return translated(places)
+
+
+DERIVED_MATRIX = r"""
+$$T=\frac12(m_1+m_2)l_1^2\dot\theta_1^2+\frac12m_2l_2^2\dot\theta_2^2
+  +m_2l_1l_2\dot\theta_1\dot\theta_2\cos(\theta_1-\theta_2)$$
+
+$$V=-(m_1+m_2)gl_1\cos\theta_1-m_2gl_2\cos\theta_2$$
+
+$$M=\begin{pmatrix}(m_1+m_2)l_1^2 & m_2l_1l_2\cos(\theta_1-\theta_2)\\
+  m_2l_1l_2\cos(\theta_1-\theta_2)& m_2l_2^2\end{pmatrix}$$
+
+$$\frac{\partial M}{\partial\theta_1}=\begin{pmatrix}0 & -m_2l_1l_2\sin(\theta_1-\theta_2)\\
+  -m_2l_1l_2\sin(\theta_1-\theta_2)& 0\end{pmatrix}$$
+"""
+#: The natural length l is a parameter of the system, the length a is not.
+ELONGATION = r"""
+$$T=\frac12 m(\dot x^2+(a+x)^2\dot\theta^2)$$
+
+$$V=\frac12 k (x+a-l)^2-m g (a+x)\cos\theta$$
+
+$$m\ddot x - m(a+x)\dot\theta^2+k(x+a-l)-mg\cos\theta=0$$
+"""
+TURNING = r"""
+$$L=\frac12 m(\dot x^2+\dot y^2)-mgy$$
+
+$$x\sin(\omega t)-y\cos(\omega t)=0$$
+
+$$m\ddot x=\lambda\sin(\omega t),\quad m\ddot y=-mg-\lambda\cos(\omega t)$$
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new"),
+    [
+        (DERIVED_MATRIX, r"0 & -m_2", r"0 & m_2"),
+        (ELONGATION, r"k(x+a-l)-mg", r"k(x+a-l)+mg"),
+        (TURNING, r"-mg-\lambda", r"-mg+\lambda"),
+    ],
+    ids=["derivative of M", "length of no parameter", "constraint with time"],
+)
+def test_rare_statements_are_judged(text: str, old: str, new: str, tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, text)} <= {"verified", "definition"}
+    assert "wrong" in verdicts(tmp_path, text.replace(old, new, 1))

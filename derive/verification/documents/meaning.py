@@ -53,6 +53,10 @@ def meaning(candidate: Candidate) -> Meaning:
         defaults[name] = parameter.default if template.conditions else 1.0
         if letter:
             symbols[letter] = values[own]
+    for offset in candidate.offsets:
+        if isinstance(offset, str) and offset not in symbols:  # no parameter of the system
+            symbols[offset] = sp.Symbol(valid_name(offset), positive=True)
+            units[symbols[offset].name] = "m"
     q = [symbols[name] for name in candidate.coordinates]
     qdot = [velocity(symbol) for symbol in q]
     for i, (symbol, rate) in enumerate(zip(template.q, template.qdot, strict=True)):

@@ -307,7 +307,7 @@ class Motions:
                    for one in self._tried]  # fmt: skip
         q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
         qdot = np.einsum("bij,bjk->bik", self._signs, speed)
-        time = np.broadcast_to(np.linspace(0.4, 0.9, STATES), self.shape)
+        time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates
         names: dict[str, Value] = {"t": Jet.of(time, 1.0)}
         for i, (symbol, rate) in enumerate(zip(self._system.q, self._system.qdot, strict=True)):
             names[symbol.name], names[rate.name] = Jet.of(q[:, i]), Jet.of(qdot[:, i])

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.verification.documents.jets import Array, Jet, UnknownNameError, Value, evaluated
-from derive.verification.documents.letters import Letters
+from derive.verification.documents.letters import MATRICES, Letters
 from derive.verification.documents.motions import ArbitraryMotion, Motions
 from derive.verification.documents.near import is_near
 from derive.verification.documents.rates import RATES, order, stem
@@ -149,7 +149,7 @@ class Numbers:
     def _derivative(self, operand: str, variables: Sequence[str]) -> Jet | None:
         """The derivative of an energy by a coordinate, a velocity or a momentum."""
         kind = self._letters.quantities.get(operand)
-        if kind is None or len(variables) != 1:
+        if kind is None or kind in MATRICES.values() or len(variables) != 1:
             return None
         name, times = stem(variables[0]), order(variables[0])
         if kind == "routhian":  # its other derivatives are those of L
