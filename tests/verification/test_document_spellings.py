@@ -7,6 +7,8 @@ import pytest
 from derive.reading.document import Document
 from derive.reading.documents import read_document
 from derive.reading.latex.reader import formulas
+from derive.verification.documents import judgement
+from derive.verification.documents.interpretation import Work
 from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letter_search import letters_of
@@ -189,3 +191,15 @@ $$m\ddot x=\lambda\sin(\omega t),\quad m\ddot y=-mg-\lambda\cos(\omega t)$$
 def test_rare_statements_are_judged(text: str, old: str, new: str, tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, text)} <= {"verified", "definition"}
     assert "wrong" in verdicts(tmp_path, text.replace(old, new, 1))
+
+
+def test_a_search_of_too_many_meanings_ends_with_its_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(judgement, "Work", lambda: Work(1000))
+    formulas = judged(tmp_path, ELONGATION).formulas
+    assert {one.verdict for one in formulas} == {"context"}
+    assert {one.note for one in formulas} == {
+        "its 3 formulas have too many letters to try all meanings: state the system by --system, "
+        "and its letters by --names"
+    }

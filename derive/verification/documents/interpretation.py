@@ -15,7 +15,7 @@ from derive.verification.documents.meaning import meaning
 from derive.verification.documents.positions import stated_candidates, stated_systems
 from derive.verification.documents.resolution import resolved
 from derive.verification.documents.scope import DocumentScope
-from derive.verification.documents.statements import Translated
+from derive.verification.documents.statements import DocumentFormula, Translated
 from derive.verification.documents.templates import templates
 from derive.verification.documents.verdicts import Judge
 
@@ -26,8 +26,26 @@ LEAST, ENOUGH = 0.3, 3
 THIRD = re.compile(r"\b(?:3|6|12|24)\b")
 #: The least part if the meaning of letters is not the usual one.
 UNUSUAL = 0.4
+#: Most work of a search: characters of formulas, times candidates, times coordinates. Documents
+#: of several pages take up to two fifths.
+MAX_WORK = 1_000_000_000
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
+
+
+@dataclass
+class Work:
+    """Work that the search for the meanings of a document's letters may still do."""
+
+    left: int = MAX_WORK
+
+    def take(
+        self, tried: Sequence[Candidate], letters: Letters, formulas: Sequence[DocumentFormula]
+    ) -> bool:
+        """Take the work of a comparison of candidates; False where none is left."""
+        size = sum(len(formula.text) for formula in formulas)
+        self.left -= len(tried) * size * len(letters.coordinates)
+        return self.left >= 0
 
 
 @dataclass(frozen=True)
@@ -40,19 +58,22 @@ class Interpretation:
     rivals: tuple[Match, ...] = ()
 
 
-def interpretation(statements: Translated, hints: Hints | None = None) -> Interpretation:
-    """Find the meaning of letters for which most formulas hold.
+def interpretation(
+    statements: Translated, hints: Hints | None = None, work: Work | None = None
+) -> Interpretation:
+    """Find the meaning of letters for which most formulas hold; none where no `work` is left.
 
     If there is none, parameters without a letter are taken for numbers: gravity for that of the
     formulas, others for 1.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
+    work = work or Work()
     if hints:
-        return _best(letters, statements, hints.candidates(letters), 0)
-    found = _best(letters, statements, _candidates(letters, statements))
+        return _best(letters, statements, hints.candidates(letters), work, 0)
+    found = _best(letters, statements, _candidates(letters, statements), work)
     if found.match is None or found.match.holding < 1:
         numbers = {"gravity": _gravity(statements)}
-        other = _best(letters, statements, _of_templates(letters, statements, numbers))
+        other = _best(letters, statements, _of_templates(letters, statements, numbers), work)
         if other.match and (found.match is None or other.match.score > found.match.score):
             return other
     return found
@@ -62,18 +83,18 @@ def _best(
     letters: Letters,
     statements: Translated,
     groups: Iterable[Sequence[Candidate]],
+    work: Work,
     least: float = LEAST,
 ) -> Interpretation:
     """The candidate that most formulas support, if a part of them does, and its rivals."""
     formulas, derivatives = statements.formulas, statements.derivatives
     trivial = trivial_comparisons(letters, formulas, derivatives)
-    matches = [
-        match
-        for group in groups
-        for tried in _alike(group)
-        for match in best_matches(tried, letters, formulas, derivatives, trivial)
-        if match.holding or not least
-    ]
+    matches: list[Match] = []
+    for tried in (tried for group in groups for tried in _alike(group)):
+        if not work.take(tried, letters, formulas):
+            return Interpretation(letters, None)
+        found = best_matches(tried, letters, formulas, derivatives, trivial)
+        matches += [match for match in found if match.holding or not least]
     best = max(matches, key=lambda match: match.score, default=None)  # the first of several
     if best is None or (least and not _is_supported(best, least)):
         return Interpretation(letters, None)

@@ -13,7 +13,7 @@ from derive.verification.documents.constraints import WAY_OUT
 from derive.verification.documents.convention import convention
 from derive.verification.documents.corrections import corrected
 from derive.verification.documents.hints import Hints
-from derive.verification.documents.interpretation import interpretation, judge_of
+from derive.verification.documents.interpretation import Work, interpretation, judge_of
 from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
 from derive.verification.documents.letter_search import letters_of
 from derive.verification.documents.rates import RATES, stem
@@ -47,10 +47,10 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
     written = _written(occurrences)
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
-    remaining = statements.formulas
+    remaining, work = statements.formulas, Work()
     while remaining and len(titles) < (1 if hints else MAX_SYSTEMS):
         part = replace(statements, formulas=remaining)
-        found = interpretation(part, hints)
+        found = interpretation(part, hints, work)
         if found.match is None:
             break
         judge = judge_of(part, found.letters, found.match.candidate)
@@ -68,6 +68,11 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
             if not result.is_understood and bound.isdisjoint(map(stem, one.words))
         )  # fmt: skip
     note = "no system was found for which its formulas hold"
+    if work.left < 0:
+        note = (
+            f"its {len(statements.formulas)} formulas have too many letters to try all meanings: "
+            "state the system by --system, and its letters by --names"
+        )
     letters = letters_of(statements.formulas, statements.derivatives)
     if letters.multipliers or letters.constraints:
         note = f"{note}: {WAY_OUT}"
