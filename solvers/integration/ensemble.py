@@ -19,9 +19,10 @@ from solvers.integration.ensemble_solution import Ensemble
 from solvers.integration.ensemble_times import EnsembleTimes
 from solvers.integration.events import Event, Extremum
 from solvers.integration.inputs import Controller, Held
+from solvers.integration.predictability import UnfinishedWarning, is_ignored
 from solvers.integration.problem import EventFunction, Options
 from solvers.integration.singularity import SingularityWarning, singularities
-from solvers.integration.solution import Interrupted
+from solvers.integration.solution import Interrupted, Status
 from solvers.integration.step_stability import StepWarning, mark_unstable
 from solvers.integration.stop_flag import StopFlag
 from solvers.io.arguments import check_type
@@ -104,6 +105,8 @@ def ensemble(
 
     Warns
     -----
+    solvers.integration.predictability.UnfinishedWarning
+        When motions do not reach their ends, for other reasons than the next two.
     solvers.integration.step_stability.StepWarning
         When fixed steps are too long for some motions, whose status is then ``UNSTABLE``.
     solvers.integration.singularity.SingularityWarning
@@ -176,10 +179,17 @@ def ensemble(
         raise Interrupted(result) from interruption
     if run.stop.is_set:
         return result
-    if unstable := mark_unstable(problem, states, constants, result):
+    unstable = mark_unstable(problem, states, constants, result)
+    if unstable:
         warn(unstable, StepWarning, stacklevel=3)
-    if singular := singularities(problem, states, constants, result):
+    singular = singularities(problem, states, constants, result)
+    if singular:
         warn(singular, SingularityWarning, stacklevel=3)
+    if not (unstable or singular or result.success.all() or is_ignored()):
+        lost = [status for status in result.status if status not in (Status.FINISHED, Status.EVENT)]
+        text = "; ".join(f"{lost.count(status)}: {status.value}" for status in dict.fromkeys(lost))
+        text = f"{len(lost)} of {len(states)} motions did not reach their end: {text}"
+        warn(text, UnfinishedWarning, stacklevel=3)
     good = np.flatnonzero(result.success)
     own = constants[good] if len(constants) > 1 else constants
     ends = result.t[good], result.y.T[good]

@@ -19,7 +19,7 @@ from solvers.integration.accuracy_warnings import accuracy_warnings
 from solvers.integration.global_error import global_error_estimate
 from solvers.integration.inputs import Controller, Held
 from solvers.integration.memory import limit_steps
-from solvers.integration.predictability import compile_perturbations
+from solvers.integration.predictability import UnfinishedWarning, compile_perturbations, is_ignored
 from solvers.integration.problem import EventFunction, Options, Outcome, Problem
 from solvers.integration.singularity import singularity
 from solvers.integration.solution import Array, Interrupted, Solution, Status
@@ -105,7 +105,8 @@ def integrate(
     -------
     Solution
         Coordinates and velocities, whatever the form. A motion that does not reach its end
-        raises nothing: its ``status`` gives the reason, and its results up to there are returned.
+        raises nothing: its ``status`` gives the reason, as does a warning, and its results up to
+        there are returned.
 
     Raises
     ------
@@ -120,6 +121,8 @@ def integrate(
 
     Warns
     -----
+    solvers.integration.predictability.UnfinishedWarning
+        When the motion does not reach its end.
     solvers.integration.predictability.PredictabilityWarning
         When errors grow to the size of the motion before its end.
     solvers.integration.energy_change.EnergyWarning
@@ -161,6 +164,8 @@ def integrate(
     if solution.success:
         for warning in accuracy_warnings(problem, *outcome.end):
             warn(warning, stacklevel=3)
+    elif not is_ignored():
+        warn(solution.message, UnfinishedWarning, stacklevel=3)
     return solution
 
 

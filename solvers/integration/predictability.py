@@ -38,9 +38,15 @@ class PredictabilityWarning(UserWarning):
     """A trajectory is longer than its errors allow."""
 
 
+class UnfinishedWarning(PredictabilityWarning):
+    """A motion did not reach the end of its time span."""
+
+
 @contextmanager
 def ignore_predictability() -> Iterator[None]:
-    """Suppress `PredictabilityWarning` in a ``with`` block, for all threads.
+    """Suppress `PredictabilityWarning`, of which others are kinds, in a ``with`` block.
+
+    It holds for all threads.
 
     In its own thread nothing is computed for it, either.
 

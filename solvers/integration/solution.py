@@ -29,7 +29,9 @@ class Status(Enum):
 
     FINISHED = "the integration reached the end of the time span"
     EVENT = "a terminal event occurred"
-    STEP_LIMIT = "the maximum number of steps was reached; resume from the last state"
+    STEP_LIMIT = (
+        "the maximum number of steps was reached; raise max_steps, or resume from the last state"
+    )
     NOT_FINITE = "the right-hand side or the state was not finite in the next step"
     STEP_TOO_SMALL = "the step size fell below the resolution of time, probably at a singularity"
     INTERRUPTED = "the integration was interrupted; resume from the last state"

@@ -150,6 +150,7 @@ def test_series_end_at_a_kink(tmp_path: Path) -> None:
     ("force", "x"),
     [("sqrt(x)", -1.0), ("x**1.3", -1.0), ("max(sqrt(x), 1)", -1.0), ("x**(-p)", 0.0)],
 )
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_states_outside_of_the_domain_have_a_status(
     force: str, x: float, method: str, backend: str, tmp_path: Path
 ) -> None:

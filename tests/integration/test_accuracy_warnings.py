@@ -37,6 +37,7 @@ REGULAR: list[tuple[ModuleType, tuple[float, ...]]] = [
 ]
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_an_energy_that_grows_warns_with_its_values() -> None:
     with pytest.warns(
         EnergyWarning, match=r"changed from -9\.891 to 22\.\d+ J: .*h = 0\.2"
@@ -54,6 +55,7 @@ def test_an_energy_that_grows_warns_with_its_values() -> None:
     ("method", "h", "largest", "duration"),
     [("rk4", 1.0, 0.694, 100.0), ("rk1", 0.6, 0.07, 6.0), ("rk1", 0.6, 0.05, 10.0)],
 )
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_an_unstable_step_states_the_last_good_time_and_the_longest_step(
     method: str, h: float, largest: float, duration: float
 ) -> None:

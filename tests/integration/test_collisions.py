@@ -51,6 +51,7 @@ def start(module: GeneratedModule) -> dict[str, float]:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_every_integration_ends_at_a_collision_with_a_status(falling: GeneratedModule) -> None:
     y0 = start(falling)
     for options in ({}, {"backend": "python"}, {"method": "dop853"}, {"method": "RK45"}):

@@ -65,6 +65,7 @@ def test_loops_agree_to_rounding_times_the_condition_of_the_run(method: str, for
         assert (apart < 100 * 10 * 2.2e-16 * condition).all()
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_compiled_implicit_steps_converge_where_fixed_point_iteration_does_not() -> None:
     # a spring a thousand times as fast as the swing: the step is 30 of its radians
     stiff = (1.0, 1e6, 1.0, 9.81)
@@ -284,6 +285,7 @@ def test_compensated_sums_reduce_rounding_errors() -> None:
         assert errors[1] < errors[0] / 3, form
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_time_does_not_drift_over_a_million_steps() -> None:
     run = prepare(sp, sp.DEFAULTS, method="rk1", h=0.1, max_steps=10**7)
     found = integrate(

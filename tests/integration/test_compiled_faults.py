@@ -185,6 +185,7 @@ def test_invalid_ensembles_are_refused(arguments: dict[str, object], message: st
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(("backend", "lanes"), [("compiled", 1), ("compiled", 3), ("python", 1)])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_a_motion_that_overflows_ends_with_a_status(backend: str, lanes: int, form: str) -> None:
     # Euler with steps far too long, from a huge velocity; its neighbours are left alone
     starts = np.zeros((4, lanes))

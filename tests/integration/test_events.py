@@ -103,6 +103,7 @@ def test_values_of_events_that_are_no_numbers_are_refused(value: Any, method: st
 
 
 @pytest.mark.parametrize("method", ["verner853", "DOP853"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_an_event_that_becomes_nan_ends_the_run_with_the_results_so_far(method: str) -> None:
     def root(t: float, y: Array) -> float:
         return nan if t > 0.5 else 1.0

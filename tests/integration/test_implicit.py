@@ -271,6 +271,7 @@ def test_steps_with_a_better_start_are_steps_of_the_method() -> None:
         assert end - y == pytest.approx(h * form.rhs(0.0, (y + end) / 2), abs=1e-11)
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_the_message_of_a_step_without_solution_suggests_a_way_out() -> None:
     lost = integrate(dp, (0, 4), (1.0, 2.0, 90.0, -80.0), dp.DEFAULTS, method="gauss3", h=1.0)
     assert lost.status is Status.NO_CONVERGENCE

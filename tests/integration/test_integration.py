@@ -289,6 +289,7 @@ def test_implicit_midpoint_conserves_the_energy_of_its_modified_equation() -> No
     assert np.log2(np.divide(rest[:-1], rest[1:])) == pytest.approx(4, abs=0.1)
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_implicit_midpoint_keeps_the_energy_where_other_methods_do_not() -> None:
     def growth(method: str) -> float:
         """Largest error of the energy in the second minute, over that in the first."""

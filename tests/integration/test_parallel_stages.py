@@ -233,6 +233,7 @@ def test_ratios_are_exactly_symplectic(method: str) -> None:
 
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_a_diverging_iteration_shortens_the_step(backend: str) -> None:
     # a spring a hundred times as fast as the swing limits the steps
     stiff = (1.0, 1e4, 1.0, 9.81)

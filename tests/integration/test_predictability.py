@@ -33,6 +33,7 @@ def reported_time(message: object) -> float:
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize(("method", "interval"), [("rk3", sqrt(3)), ("rk4", 2 * sqrt(2))])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_a_step_beyond_the_stability_limit_is_unstable(
     method: str, interval: float, backend: str
 ) -> None:
@@ -55,6 +56,7 @@ def test_a_step_beyond_the_stability_limit_is_unstable(
     assert 0.02 < grown < 0.5
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_methods_without_a_stability_interval_are_judged_by_growth_over_the_run() -> None:
     # Euler multiplies an oscillation by about exp(h w^2 t/2)
     short = integrate(sp, (0, 10), (0.01, 0.0), sp.DEFAULTS, method="rk1", h=0.05)

@@ -186,6 +186,7 @@ def test_functions_that_switch_each_other_ever_faster_come_to_rest(backend: str)
 
 @pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_products_of_signs_determine_no_motion(backend: str) -> None:
     forces = (-sp.sign(v) * (2 + sp.sign(w)), -sp.sign(w) * (2 + sp.sign(v)))
     system = System("products", "", [X, Y], [], [PointMass(1, (x, y))], sp.S.Zero, forces=forces)

@@ -25,6 +25,7 @@ from solvers.sweeps.sweep import Sweep
 Y0 = {"r": 1.1, "theta": 0.5}
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_a_solution_shows_status_steps_method_and_final_state() -> None:
     solution = integrate(ep, (0, 2), Y0, {}, method="rk4", h=0.01)
     lines = repr(solution).splitlines()

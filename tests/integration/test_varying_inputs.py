@@ -229,6 +229,7 @@ def test_ensembles_take_held_inputs(backend: str) -> None:
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_events_and_limits_of_steps_work_across_samples(backend: str) -> None:
     event = Event(cart, "x", 0.05)
     options: dict[str, Any] = {"inputs": Held(0.05, feedback), "backend": backend}
@@ -270,6 +271,7 @@ def test_invalid_inputs_are_refused(inputs: Any, message: str) -> None:
 
 @pytest.mark.parametrize("method", ["verner853", "gauss8", "LSODA"])
 @pytest.mark.parametrize("period", [None, 0.02])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_inputs_that_become_nan_end_the_run_with_the_results_so_far(
     period: float | None, method: str
 ) -> None:
@@ -286,6 +288,7 @@ def test_inputs_that_become_nan_end_the_run_with_the_results_so_far(
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_inputs_that_become_nan_end_the_motions_of_their_columns(backend: str) -> None:
     def controller(t: float, y: Array) -> dict[str, Any]:
         return {"F": np.where((t > 0.5) & (y[0] > 0.0), np.nan, 1.0)}

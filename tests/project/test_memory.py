@@ -48,6 +48,7 @@ def test_steps_that_are_known_to_be_fewer_are_permitted() -> None:
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_controlled_steps_stop_where_memory_ends(
     backend: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

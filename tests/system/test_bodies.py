@@ -324,6 +324,7 @@ LOCK = r"gimbal lock at theta = \S+e-\d\d rad, t = 0\.1457\d* s: there phi and p
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_gimbal_lock_on_the_way_is_named_with_a_way_out(backend: str) -> None:
     options = {**LIMITED, "backend": backend}
     motion = integrate(heavy_top, (0, 5), FALLING, {}, **options)
@@ -344,6 +345,7 @@ def test_gimbal_lock_on_the_way_of_many_motions_is_named() -> None:
         run((0, 5), FALLING)
 
 
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_a_failure_for_another_reason_is_no_gimbal_lock() -> None:
     options = {"method": "verner98", "rtol": 1e-9, "max_steps": 3, "backend": "python"}
     motion = integrate(heavy_top, (0, 5), (0, 0, 1.0, 2.0, 0, 0), {}, **options)

@@ -85,6 +85,7 @@ def test_a_motion_does_not_start_outside_the_domain_of_a_coordinate(length: floa
         {"t_eval": [0.5, 1.0]},
     ],
 )
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_a_motion_ends_where_a_positive_coordinate_falls_to_0(options: dict[str, Any]) -> None:
     inside = integrate(ep, (0, 0.03), TO_THE_PIVOT, ep.DEFAULTS)
     assert inside.status is Status.FINISHED
@@ -101,6 +102,7 @@ def test_a_motion_ends_where_a_positive_coordinate_falls_to_0(options: dict[str,
 
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
+@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
 def test_many_motions_end_there_too(backend: str) -> None:
     starts = np.transpose([TO_THE_PIVOT, (1.0, 0.1, 0.0, 0.0)])
     motions = ensemble(ep, (0, 1), starts, ep.DEFAULTS, backend=backend, t_eval=[0.02, 0.9])
