@@ -86,7 +86,7 @@ def _append(outcome: Outcome, part: Outcome) -> None:
     for event, (times, states) in enumerate(zip(part.t_events, part.y_events, strict=True)):
         outcome.t_events[event] += times
         outcome.y_events[event] += states
-    outcome.end, outcome.status = part.end, part.status
+    outcome.end, outcome.status, outcome.cause = part.end, part.status, part.cause
     for name in ("nfev", "njev", "steps", "rejected"):
         setattr(outcome, name, getattr(outcome, name) + getattr(part, name))
 
