@@ -27,8 +27,9 @@ from solvers.integration.step_states import Curve
 Loop = Callable[[Problem, Outcome], None]
 
 #: A smallest singular value of constraints, usually of the size 1, that is near a singularity, and
-#: one at which a motion ends that no polynomial continues, since its states lose their digits.
-NEAR, LOST = 0.02, 1e-5
+#: one at which a motion ends that no polynomial continues: where steps collapse again, its states
+#: would have lost their digits.
+NEAR, LOST = 0.02, 1e-3
 #: Tolerances of the past motion: the smallest by which its steps get away from rounding errors.
 PAST = (1e-13, 1e-12, 1e-11, 1e-10)
 #: Times from the singularity at which polynomials begin and end, in units of that from the start;
