@@ -92,7 +92,8 @@ static int make_consistent(const Motion *motion, int lane, const int *is_active,
         for (int j = 0; j < SWITCHES; j++) {
             check += LANE(sliding.signs[j], lane) - LANE(sliding.signs[j], lane);
         }
-        if (check != 0 || !(sign*LANE(sliding.signs[k], lane) < 1)) {   /* the rate does not depend on the sign */
+        /* the rate does not depend on the sign */
+        if (check != 0 || !(sign*LANE(sliding.signs[k], lane) < 1)) {
             signs[k] = -sign;
         }
     }
