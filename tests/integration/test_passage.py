@@ -80,6 +80,7 @@ def test_square_loops_fold_and_open_as_a_pendulum(
 def test_ten_seconds_keep_energy_and_constraints(squares: GeneratedModule) -> None:
     run = integrate(squares, (0, 10), UPRIGHT, {}, energy=True, **TOLERANCES)
     assert run.status is Status.FINISHED
+    assert (np.diff(run.t) > 0).all()
     assert run.energy is not None
     assert np.abs(run.energy - run.energy[0]).max() < 1e-8
     assert np.abs(squares.constraints_many(run.t, run.y, squares.DEFAULTS)).max() < 1e-10
