@@ -100,11 +100,10 @@ class QuasiVelocities:
         if not is_expandable(function):
             return function
         form = sp.expand(function)
-        for parts in used:
-            norm = sp.Add(*(part**2 for part in parts)) - 1
-            if form.is_polynomial(*parts):
-                form = sp.Poly(form, *parts).rem(sp.Poly(norm, *parts)).as_expr()
-        form = sp.expand(form)
+        for first, *others in used:
+            if form.is_polynomial(first, *others):
+                square = 1 - sp.Add(*(part**2 for part in others))
+                form = sp.expand(_with_square(form, first, square))
         return min(function, form, key=lambda each: int(each.count_ops()))
 
     @cached_property
@@ -173,6 +172,18 @@ def columns(parts: Sequence[sp.Symbol]) -> tuple[Row, ...]:
     """Columns of E, one for each component of a quaternion."""
     w, x, y, z = parts
     return ((-x, -y, -z), (w, -z, y), (z, w, -x), (-y, x, w))
+
+
+def _with_square(form: sp.Expr, symbol: sp.Symbol, square: sp.Expr) -> sp.Expr:
+    """A sum of monomials of `symbol` with `square` in place of symbol².
+
+    Polynomials of SymPy would take ten times as long where factors are sines.
+    """
+    terms = []
+    for term in sp.Add.make_args(form):
+        coefficient, power = term.as_coeff_exponent(symbol)
+        terms.append(coefficient * square ** (power // 2) * symbol ** (power % 2))
+    return sp.Add(*terms)
 
 
 def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
