@@ -38,6 +38,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile with less optimisation, and let all workers choose the same cases."""
+    gc.disable()  # what is imported stays
     flags = cheap_compiler.LONG if config.getoption("long") else cheap_compiler.SHORT
     cheap_compiler.install(flags)
     os.environ.setdefault(SEED, date.today().isoformat())
@@ -46,7 +47,8 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_finish() -> None:
     """Collect garbage less often, and never what importing the tests' files created."""
     gc.freeze()
-    gc.set_threshold(20_000, 20, 20)
+    gc.enable()
+    gc.set_threshold(100_000, 20, 20)
 
 
 def pytest_report_header(config: pytest.Config) -> str:

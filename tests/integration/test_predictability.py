@@ -88,7 +88,7 @@ def test_a_chaotic_run_beyond_its_predictable_time_warns() -> None:
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9])
 def test_the_predictable_time_does_not_depend_on_the_duration_of_the_run(tolerance: float) -> None:
     limits = []
-    for duration in (50.0, 300.0, 2000.0, 3e4):
+    for duration in (50.0, 500.0, 5000.0):
         with pytest.warns(PredictabilityWarning) as caught:
             integrate(
                 dp,

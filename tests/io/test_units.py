@@ -110,6 +110,7 @@ def test_the_printed_parameters_of_a_system_are_read(
     assert read_back(listed, module) == expected
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("system", generated.__all__)
 def test_the_printed_state_of_a_solution_is_read(system: str) -> None:
     module = load_module(system)

@@ -383,10 +383,10 @@ def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None
             "with Progress() as report:\n    report('working')\n    time.sleep(1.6)\nprint('done')"
         ),
     ]
-    plain = subprocess.run(command, capture_output=True, check=True, text=True)
-    assert (plain.stdout, plain.stderr) == ("done\n", "")
     ours, theirs = pty.openpty()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs)
+    plain = subprocess.run(command, capture_output=True, check=True, text=True)
+    assert (plain.stdout, plain.stderr) == ("done\n", "")
     process.wait(timeout=60)
     time.sleep(0.1)
     shown = os.read(ours, 100_000).decode()

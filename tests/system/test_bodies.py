@@ -452,6 +452,7 @@ def test_a_copy_of_a_system_has_each_norm_once() -> None:
     assert [one.name for one in system.conditions] == ["rigid_1"]
 
 
+@pytest.mark.long("the same bodies in the other order", keep=1)
 @pytest.mark.parametrize("is_first", [True, False])
 @pytest.mark.filterwarnings("ignore:constraints of system 'satellite'")
 def test_a_reaction_wheel_turns_about_an_axis_of_a_body(is_first: bool) -> None:
