@@ -38,18 +38,44 @@ static __attribute__((noinline)) mask events_in_step(
 {
     const Task *task = lanes->task;
     const State *start = &lanes->motion.state, *end = &lanes->end;
-    Workspace *workspace = lanes->workspace;
-    mask occurring = {0};
+    const real *params = lanes->motion.params, zero = splat(0.0);
+    mask occurring = {0}, all_examined = {0};
+    real angle = zero, mean = zero, slack = zero;
     for (int e = 0; e < task->event_count; e++) {
         const Event *event = &task->events[e];
-        const real before = lanes->before[e], after = lanes->after[e] =
-            event_value(event, end, lanes->motion.params);
-        const mask moves = less_than(before, splat(0.0)) | less_than(splat(0.0), before);
-        const mask recurs = has_several(event, start, end, result, lanes->h, lanes->motion.params,
-                                        before, after, workspace->coefficients[e]);
-        lanes->several[e] = lanes->advancing & (recurs | ~moves);
+        const int is_new = e == 0 || event->index != event[-1].index
+            || event->is_angle != event[-1].is_angle || event->is_switch;
+        if (is_new && event->is_angle) {
+            angle = unwrapped_angle(end, event->index);
+        }
+        const real before = lanes->before[e];
+        const real after = event->is_angle ? angle_value(event, end, angle)
+                                           : event_value(event, end, params);
+        lanes->after[e] = after;
+        const mask moves = less_than(before, zero) | less_than(zero, before);
+        const mask crossed = has_crossed(event, before, after);
+        mask examined = lanes->advancing;
+        if (IS_EXPLICIT && !event->is_switch) {
+            if (is_new) {
+                slope_bounds(event, start, end, result, lanes->h, &mean, &slack);
+            }
+            const real speed = lane_fabs(mean), reach = lane_fabs(lanes->h)*(speed + slack);
+            const mask once = less_than(slack, speed) | less_than(reach, lane_fabs(before));
+            examined &= crossed | ~moves | ~once;
+        }
+        occurring |= crossed;
+        all_examined |= lanes->several[e] = examined;
+    }
+    for (int e = 0; e < task->event_count && any(all_examined); e++) {
+        const real before = lanes->before[e];
+        if (!any(lanes->several[e])) {
+            continue;
+        }
+        const mask moves = less_than(before, zero) | less_than(zero, before);
+        lanes->several[e] &= ~moves
+            | has_several(&task->events[e], start, end, result, lanes->h, params, before,
+                          lanes->after[e], lanes->workspace->coefficients[e]);
         *several |= lanes->several[e];
-        occurring |= has_crossed(event, before, after);
     }
     return occurring | *several;
 }

@@ -60,6 +60,36 @@ static inline void switching_polynomial(
 #endif
 }
 
+/* Bounds of the slope of an event's value in a step of an explicit method, by the derivatives at its
+   stages: the mean, and SLACK times the largest deviation from it. An angle has the slope of its
+   velocity, which differs from the mean of both ends by at most half of its largest change. */
+static inline void slope_bounds(
+    const Event *event, const State *start, const State *end, const StepResult *result, real h,
+    real *mean, real *slack)
+{
+    const int64_t n = event->is_angle ? RATE[event->index] : event->index;
+    half most[PARTS], least[PARTS];
+    for (int part = 0; part < PARTS; part++) {
+        most[part] = least[part] = (half){0};
+    }
+    for (int m = 0; m < STAGES*IS_EXPLICIT; m++) {
+        for (int part = 0; part < PARTS; part++) {
+            const half slope = PART(result->k[m][n], part);
+            most[part] = m ? half_fmax(most[part], slope) : slope;
+            least[part] = m ? half_fmin(least[part], slope) : slope;
+        }
+    }
+    for (int part = 0; part < PARTS; part++) {
+        PART(*mean, part) = 0.5*(most[part] + least[part]);
+        PART(*slack, part) = (0.5*SLACK)*(most[part] - least[part]);
+    }
+    if (event->is_angle) {
+        const real largest = lane_fabs(*mean) + (1/SLACK)*(*slack);
+        *slack = (0.5*SLACK)*lane_fabs(h)*largest;
+        *mean = 0.5*(start->z[n] + end->z[n]);
+    }
+}
+
 /* Whether the value of an event may have several zeros in a step.
 
    Its slopes differ by at most the sum of their changes; if these are smaller than the slopes, by a

@@ -91,8 +91,18 @@ static inline real lane_fabs(real x) { return as_real(as_mask(x) & INT64_MAX); }
 
 #ifdef ONE_LANE
 static inline half half_fabs(half x) { return lane_fabs(x); }
+static inline half half_fmax(half x, half y) { return x < y ? y : x; }
+static inline half half_fmin(half x, half y) { return x < y ? x : y; }
 #else
 static inline half half_fabs(half x) { return (half)((half_mask)x & INT64_MAX); }
+
+static inline half half_select(half_mask condition, half x, half y)
+{
+    return (half)(((half_mask)x & condition) | ((half_mask)y & ~condition));
+}
+
+static inline half half_fmax(half x, half y) { return half_select(x < y, y, x); }
+static inline half half_fmin(half x, half y) { return half_select(x < y, x, y); }
 #endif
 
 static inline real lane_copysign(real x, real sign)

@@ -26,7 +26,7 @@ typedef struct {
 } Lanes;
 
 /* Load the next unfinished motion into a lane, if there is one. */
-SELDOM static void load_motion(Lanes *lanes, int lane)
+static __attribute__((noinline)) void load_motion(Lanes *lanes, int lane)
 {
     Task *task = lanes->task;
     WithinStep *within = &lanes->within[lane];

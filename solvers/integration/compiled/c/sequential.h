@@ -41,7 +41,7 @@ static __attribute__((noinline)) void step(
     const Task *task, const State *restrict start, real h, const real *restrict params,
     State *restrict end, StepResult *restrict result)
 {
-    real k[STAGES][DIM], error[2][DIM];
+    real (*restrict k)[DIM] = result->k, error[2][DIM];
     for (int n = 0; n < DIM && IS_FSAL; n++) {
         k[0][n] = start->derivative[n];
     }
@@ -58,9 +58,6 @@ static __attribute__((noinline)) void step(
         end->derivative[n] = k[STAGES - 1][n];
     }
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
-    if (task->event_count > 0 || task->samples >= LEAST_SAMPLES) {
-        memcpy(result->k, k, sizeof k);
-    }
     for (int n = 0; n < DIM && !task->fixed_h; n++) {
         error[0][n] = estimate(h, k, n);
         if (ESTIMATES > 1) {
