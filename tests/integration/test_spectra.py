@@ -83,7 +83,7 @@ def test_a_motion_that_fails_has_no_growth() -> None:
 def test_sweeps_store_spectra(tmp_path: Path) -> None:
     axes = Grid({"theta1": [0.1, 2.0], "theta2": [2.5]})
     maps = {"all": Spectrum(4, interval=1.0), "largest": Spectrum(1), "end": Final(("theta1",))}
-    results = sweep(Sweep(dp, axes, maps, 50.0), tmp_path)
+    results = sweep(Sweep(dp, axes, maps, 50.0, rtol=1e-9, atol=1e-12), tmp_path)
     exponents = results.maps["all"]
     assert exponents.shape == (2, 1, 4)
     assert np.abs(exponents.sum(axis=-1)).max() < 1e-7
@@ -98,6 +98,7 @@ def test_sweeps_store_spectra(tmp_path: Path) -> None:
 
 def test_friction_contracts_volumes_in_sweeps(tmp_path: Path) -> None:
     values = {"theta": 1.0, "Omega": 6.0, "a": 0.3}
-    definition = Sweep(driven, Grid({"c": [0.1, 0.4]}), {"all": Spectrum(2)}, 40.0, values)
+    axes, tolerances = Grid({"c": [0.1, 0.4]}), {"rtol": 1e-9, "atol": 1e-12}
+    definition = Sweep(driven, axes, {"all": Spectrum(2)}, 40.0, values, **tolerances)
     sums = sweep(definition, tmp_path).maps["all"].sum(axis=-1)
     assert sums == pytest.approx([-0.1, -0.4], abs=1e-7)  # -c/(m l²)

@@ -137,7 +137,7 @@ def test_a_ladder_does_not_depend_on_others(bent: Results, tmp_path: Path) -> No
 def test_a_ladder_that_fails_has_a_status_from_there_on(tmp_path: Path) -> None:
     # periods at the lowest frequency have too many steps, which is the last one downwards
     axes = Grid({"Omega": [0.2, 1.0, 1.5]})
-    results = sweep(Sweep(duffing, axes, {"r": ONE}, values=VALUES, max_steps=4000), tmp_path)
+    results = sweep(Sweep(duffing, axes, {"r": ONE}, values=VALUES, max_steps=2800), tmp_path)
     known = np.isfinite(results.maps["r"][:, 0])
     assert known.T.tolist() == [[False, False, False], [False, True, True]]
     assert results.count == {"step limit": 3}

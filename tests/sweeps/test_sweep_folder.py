@@ -227,7 +227,7 @@ def test_the_progress_counts_motions_that_are_stored_already(tmp_path: Path) -> 
 
 @pytest.mark.parametrize(("change", "words"), [
     ({"duration": 4.0}, "duration 3.0, not 4.0"),
-    ({"rtol": 1e-8}, "rtol 1e-09, not "),
+    ({"rtol": 1e-8}, "rtol 5e-08, not "),
     ({"axes": Grid({"theta1": ANGLES, "theta2": ANGLES + 1})}, "axes.axes.1.first -3.0, not "),
     ({"axes": Grid({"theta2": ANGLES, "theta1": ANGLES})}, "0.name 'theta1', not 'theta2'"),
     ({"axes": Random({"theta1": (0, 1), "theta2": (0, 1)}, 1600, 1)}, "kind 'grid', not 'random'"),

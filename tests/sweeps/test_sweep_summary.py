@@ -93,7 +93,8 @@ def test_convergence_compares_the_numbers_that_both_tolerances_have(
 
     monkeypatch.setattr(convergence, "run_chunk", chunk)
     change = convergence.convergence(definition)["low"]
-    assert tolerances == [(1e-9, 1e-12), (1e-9 / 100, 1e-12 / 100)]
+    rtol, atol = definition.rtol, definition.atol
+    assert tolerances == [(rtol, atol), (rtol / 100, atol / 100)]
     n = change.motions
     known = np.arange(2, n)
     assert 25 < n <= 50
@@ -107,7 +108,7 @@ def test_a_chunk_is_a_second_of_evaluations_whatever_share_is_integrated(
     barrier: tuple[dict[str, float], ...],
 ) -> None:
     starts = Random({"theta1": (-PI, PI), "theta2": (-PI, PI)}, 10**7, seed=3)
-    definition = Sweep(dp, starts, {"flip": First(FLIP, barrier)}, 800.0)
+    definition = Sweep(dp, starts, {"flip": First(FLIP, barrier)}, 800.0, rtol=1e-9)
     columns = starts.subset(64)
     states, params, status = initial_states(definition, columns)
     runs = status == 0

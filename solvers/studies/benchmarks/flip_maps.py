@@ -51,7 +51,7 @@ def comparison(module: GeneratedModule, hy: Any, nb: Any) -> dict[str, Any]:
     settings: dict[str, dict[str, Flips]] = {
         "holonomic": {
             f"{method}, {tol:g}": partial(programs.by_ensemble, module, method, tol, 1)
-            for tol in (1e-8, 1e-9)
+            for tol in (1e-7, 1e-8, 1e-9)
             for method in ("verner853", "verner98")
         },
         "heyoka": {

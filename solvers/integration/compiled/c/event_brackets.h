@@ -49,8 +49,7 @@ static __attribute__((noinline)) mask events_in_step(
             angle = unwrapped_angle(end, event->index);
         }
         const real before = lanes->before[e];
-        const real after = event->is_angle ? angle_value(event, end, angle)
-                                           : event_value(event, end, params);
+        const real after = value_of(event, end, params, angle);
         lanes->after[e] = after;
         const mask moves = less_than(before, zero) | less_than(zero, before);
         const mask crossed = has_crossed(event, before, after);

@@ -98,7 +98,7 @@ static inline void slope_bounds(
    `coefficients` receives the Bernstein coefficients.
 
    Sums are those of single registers, since GCC keeps longer vectors that change in memory. */
-static inline mask has_several(
+static __attribute__((noinline)) mask has_several(
     const Event *event, const State *start, const State *end, const StepResult *result, real h,
     const real *params, real before, real after, real *coefficients)
 {

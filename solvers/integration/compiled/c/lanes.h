@@ -91,18 +91,35 @@ static inline real lane_fabs(real x) { return as_real(as_mask(x) & INT64_MAX); }
 
 #ifdef ONE_LANE
 static inline half half_fabs(half x) { return lane_fabs(x); }
-static inline half half_fmax(half x, half y) { return x < y ? y : x; }
+static inline half half_fmax(half x, half y) { return y < x ? x : y; }
 static inline half half_fmin(half x, half y) { return x < y ? x : y; }
 #else
 static inline half half_fabs(half x) { return (half)((half_mask)x & INT64_MAX); }
 
-static inline half half_select(half_mask condition, half x, half y)
+/* y < x ? x : y, and x < y ? x : y. GCC makes two or more instructions of a comparison. */
+static inline half half_fmax(half x, half y)
 {
-    return (half)(((half_mask)x & condition) | ((half_mask)y & ~condition));
+#if defined __AVX512F__ && !defined __clang__
+    return __builtin_ia32_maxpd512_mask(x, y, x, -1, 4);
+#elif defined __AVX__ && !defined __clang__
+    return __builtin_ia32_maxpd256(x, y);
+#else
+    const half_mask greater = y < x;
+    return (half)(((half_mask)x & greater) | ((half_mask)y & ~greater));
+#endif
 }
 
-static inline half half_fmax(half x, half y) { return half_select(x < y, y, x); }
-static inline half half_fmin(half x, half y) { return half_select(x < y, x, y); }
+static inline half half_fmin(half x, half y)
+{
+#if defined __AVX512F__ && !defined __clang__
+    return __builtin_ia32_minpd512_mask(x, y, x, -1, 4);
+#elif defined __AVX__ && !defined __clang__
+    return __builtin_ia32_minpd256(x, y);
+#else
+    const half_mask less = x < y;
+    return (half)(((half_mask)x & less) | ((half_mask)y & ~less));
+#endif
+}
 #endif
 
 static inline real lane_copysign(real x, real sign)
@@ -110,8 +127,23 @@ static inline real lane_copysign(real x, real sign)
     return as_real((as_mask(x) & INT64_MAX) | (as_mask(sign) & INT64_MIN));
 }
 
-static inline real lane_fmax(real x, real y) { return select(less_than(y, x), x, y); }
-static inline real lane_fmin(real x, real y) { return select(less_than(x, y), x, y); }
+static inline real lane_fmax(real x, real y)
+{
+    real larger;
+    for (int part = 0; part < PARTS; part++) {
+        PART(larger, part) = half_fmax(PART(x, part), PART(y, part));
+    }
+    return larger;
+}
+
+static inline real lane_fmin(real x, real y)
+{
+    real smaller;
+    for (int part = 0; part < PARTS; part++) {
+        PART(smaller, part) = half_fmin(PART(x, part), PART(y, part));
+    }
+    return smaller;
+}
 
 /* The sum of this and a number of moderate size ends in the bits of the nearest integer. */
 static const double ROUND = 0x1.8p52;

@@ -143,23 +143,9 @@ static inline real unwrapped_angle(const State *state, int64_t i)
     return approximate_angle(state, (int)i) + 2*PI*state->turns[i];
 }
 
-/* The value of an event of an angle: its difference within 0.08, but near 0 the sine of that. */
-static inline real angle_value(const Event *event, const State *state, real angle)
-{
-    const real s = state->z[SINE[event->index]], c = state->z[SINE[event->index] + 1];
-    const real rough = angle - event->value;
-    const mask near = less_than(lane_fabs(rough), splat(1.0));
-    if (!any(near)) {
-        return rough;
-    }
-    /* at the event itself rounding leaves a few parts in 1e16, which count as 0 */
-    const real sine = s*event->cosine - c*event->sine;
-    const real exact = select(less_than(lane_fabs(sine), splat(5e-16)), splat(0.0), sine);
-    return select(near, exact, rough);
-}
-
-/* A function whose sign changes at the event. Far from it an angle need not be exact. */
-static real event_value(const Event *event, const State *state, const real *params)
+/* The value of an event, of an angle by its approximation: its difference from the event, but near
+   that the sine of the difference. */
+static inline real value_of(const Event *event, const State *state, const real *params, real angle)
 {
     const int64_t i = event->index;
 #if HAS_SWITCHES
@@ -168,8 +154,22 @@ static real event_value(const Event *event, const State *state, const real *para
     }
 #endif
     (void)params;
-    return event->is_angle ? angle_value(event, state, unwrapped_angle(state, i))
-                           : state->z[i] - event->value;
+    if (!event->is_angle) {
+        return state->z[i] - event->value;
+    }
+    const real s = state->z[SINE[i]], c = state->z[SINE[i] + 1];
+    const real rough = angle - event->value;
+    /* at the event itself rounding leaves a few parts in 1e16, which count as 0 */
+    const real sine = s*event->cosine - c*event->sine;
+    const real exact = select(less_than(lane_fabs(sine), splat(5e-16)), splat(0.0), sine);
+    return select(less_than(lane_fabs(rough), splat(1.0)), exact, rough);
+}
+
+/* A function whose sign changes at the event. Far from it an angle need not be exact. */
+static real event_value(const Event *event, const State *state, const real *params)
+{
+    const real angle = event->is_angle ? unwrapped_angle(state, event->index) : splat(0.0);
+    return value_of(event, state, params, angle);
 }
 
 /* Its derivative, up to a positive factor for an angle. */

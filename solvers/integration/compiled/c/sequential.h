@@ -11,14 +11,12 @@ static const double SAFETY = 0.9, SHRINK = 0.2, GROW = 5.0;
 /* Squared norm of the error; of two estimates combined (E. Hairer, S. P. Norsett, G. Wanner,
    Solving Ordinary Differential Equations I, section II.10). */
 static inline real squared_error_norm(
-    real (*error)[DIM], const real *x, const real *y, double rtol, double atol)
+    const real (*error)[DIM], const real *x, const real *y, double rtol, double atol)
 {
-    const real first = mean_square(error[0], x, y, rtol, atol);
-    if (ESTIMATES < 2) {
-        return first;
-    }
-    const real second = mean_square(error[1], x, y, rtol, atol);
-    return first*first/(first + 0.01*second + 1e-300);
+    real squares[2];
+    mean_squares(ESTIMATES, error, x, y, rtol, atol, squares);
+    return ESTIMATES < 2 ? squares[0]
+                         : squares[0]*squares[0]/(squares[0] + 0.01*squares[1] + 1e-300);
 }
 
 /* The method of the step, of those of a family. */
@@ -66,7 +64,7 @@ static __attribute__((noinline)) void step(
     }
     if (!task->fixed_h) {
         result->squared_error =
-            squared_error_norm(error, start->z, end->z, task->rtol, task->atol);
+            squared_error_norm((const real (*)[DIM])error, start->z, end->z, task->rtol, task->atol);
     }
 }
 

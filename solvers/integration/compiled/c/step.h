@@ -128,26 +128,39 @@ typedef struct {
     real ends[ENDS][DIM];               /* and at the start and end of a step by Newton's iteration */
 } StepResult;
 
-/* Mean square of `values`, relative to the tolerances at states x and y. */
-static inline real mean_square(
-    const real *values, const real *x, const real *y, double rtol, double atol)
+/* Mean squares of `count` vectors, relative to the tolerances at states x and y. */
+static inline void mean_squares(
+    int count, const real (*vectors)[DIM], const real *x, const real *y, double rtol, double atol,
+    real *means)
 {
-    real allowed[DIM], total = splat(0.0);
+    real allowed[DIM];
     for (int n = 0; n < DIM; n++) {
         const real magnitude = lane_fmax(lane_fabs(x[n]), lane_fabs(y[n]));
         allowed[n] = lane_fmax(atol + rtol*magnitude, splat(1e-75));
     }
-    /* two quotients by one division, which takes as long as a dozen products */
+    for (int k = 0; k < count; k++) {
+        means[k] = splat(0.0);
+    }
+    /* two components of all vectors by one division, which takes as long as a dozen products */
     for (int n = 0; n + 1 < DIM; n += 2) {
-        const real u = values[n]*allowed[n + 1], v = values[n + 1]*allowed[n];
-        const real both = allowed[n]*allowed[n + 1];
-        total += (u*u + v*v)/(both*both);
+        const real both = allowed[n]*allowed[n + 1], inverse = (1.0/DIM)/(both*both);
+        for (int k = 0; k < count; k++) {
+            const real u = vectors[k][n]*allowed[n + 1], v = vectors[k][n + 1]*allowed[n];
+            means[k] += (u*u + v*v)*inverse;
+        }
     }
-    if (DIM % 2) {
-        const real part = values[DIM - 1]/allowed[DIM - 1];
-        total += part*part;
+    for (int k = 0; k < count && DIM % 2; k++) {
+        const real part = vectors[k][DIM - 1]/allowed[DIM - 1];
+        means[k] += part*part*(1.0/DIM);
     }
-    return total*(1.0/DIM);
+}
+
+static inline real mean_square(
+    const real *values, const real *x, const real *y, double rtol, double atol)
+{
+    real mean;
+    mean_squares(1, (const real (*)[DIM])values, x, y, rtol, atol, &mean);
+    return mean;
 }
 
 /* Length of the first step in some lanes, from the change of the derivative over a very short step
