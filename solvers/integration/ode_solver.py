@@ -22,6 +22,10 @@ OPTIONS = {"max_step": np.inf, "first_step": None, "rtol": 1e-3, "atol": 1e-6}
 def ode_solver(method: str) -> type[OdeSolver]:
     """A Runge–Kutta method as a class for SciPy's ``solve_ivp``.
 
+    SciPy calls the function that it is given, about which the class knows nothing more: constraints
+    are not projected, and where these depend on each other a motion may change its branch without a
+    notice. `solvers.integrate` follows its own branch.
+
     Parameters
     ----------
     method : str

@@ -31,14 +31,20 @@ static Cubic cubic_of(Lanes *lanes, int lane, const WithinStep *within, State *s
     return cubic;
 }
 
+/* Component n at the part x of a cubic. */
+static inline double cubic_component(const Cubic *cubic, double x, int64_t n)
+{
+    const double bend = (1 - x)*cubic->first[n] - x*cubic->last[n];
+    return cubic->begin[n] + x*(cubic->change[n] + (1 - x)*bend);
+}
+
 /* Move the state of a lane to h by a cubic. */
 static void interpolate(
     const Cubic *cubic, const State *start, double h, int lane, const real *params, State *state)
 {
     const double x = (h - cubic->start)/cubic->width;
     for (int n = 0; n < DIM; n++) {
-        const double bend = (1 - x)*cubic->first[n] - x*cubic->last[n];
-        LANE(state->z[n], lane) = cubic->begin[n] + x*(cubic->change[n] + (1 - x)*bend);
+        LANE(state->z[n], lane) = cubic_component(cubic, x, n);
     }
     for (int n = 0; n < LOW_DIM; n++) {
         LANE(state->z_low[n], lane) = 0;
@@ -46,6 +52,18 @@ static void interpolate(
     state->t = two_sum(start->t, h + start->t_low, &state->t_low);
     project(state, params);
     count_turns(start, splat(h), state);
+}
+
+/* The value of an event at the part x of a cubic, without the state there if that suffices. */
+static inline double cubic_value(const Cubic *cubic, const Event *event, double x)
+{
+    if (!event->is_angle) {
+        return cubic_component(cubic, x, event->index) - event->value;
+    }
+    const int64_t n = SINE[event->index];
+    const double sine = cubic_component(cubic, x, n)*event->cosine
+        - cubic_component(cubic, x, n + 1)*event->sine;
+    return fabs(sine) < 5e-16 ? 0 : sine;
 }
 
 SELDOM static void locate_by_cubic(Lanes *lanes, int lane, WithinStep *within)
@@ -59,9 +77,15 @@ SELDOM static void locate_by_cubic(Lanes *lanes, int lane, WithinStep *within)
     within->side = 0;
     while (is_wide(within)) {
         const double h = next_event_h(within);
-        interpolate(&cubic, start, h, lane, lanes->motion.params, &state);
-        const real value = event_value(event, &state, lanes->motion.params);
-        reduce_bracket(within, h, LANE(value, lane));
+        double value;
+        if (CORRECTIONS > 0 || event->is_switch) {
+            interpolate(&cubic, start, h, lane, lanes->motion.params, &state);
+            const real values = event_value(event, &state, lanes->motion.params);
+            value = LANE(values, lane);
+        } else {
+            value = cubic_value(&cubic, event, (h - cubic.start)/cubic.width);
+        }
+        reduce_bracket(within, h, value);
     }
     interpolate(&cubic, start, bracket->far, lane, lanes->motion.params, &state);
     read_lane(&state, STATE_SIZE, lane, within->far_state);
