@@ -60,6 +60,14 @@ def test_the_backbone_of_the_pendulum_is_an_elliptic_integral(symmetry: tuple[st
         assert orbit.stability == "neutral"
 
 
+@pytest.mark.parametrize("bound", [-9.8, -9.805])
+def test_a_family_ends_at_a_bound_close_to_an_equilibrium(bound: float) -> None:
+    start = periodic_orbit(single, {"theta": 0.4}, 2.0, {"l": 1.0}, symmetry=("theta_dot",))
+    family = orbit_family(single, start, bounds=(bound, 5.0))  # at rest the energy is -9.81 J
+    assert family.ends == ("bound", "bound")
+    assert family.energy[0] == pytest.approx(bound, rel=1e-13)
+
+
 def test_the_backbone_of_duffings_oscillator_is_an_elliptic_integral() -> None:
     start = periodic_orbit(duffing, {"x": 0.5}, 2.5, FREE)
     assert start.multipliers.tolist() == [1.0, 1.0]  # no force, no explicit time

@@ -20,6 +20,8 @@ LARGEST, LARGEST_ESTIMATE, INTENDED = 0.3, 1.0, 0.1
 CLOSE, LOCATED, ROUGH = 0.02, 1e-12, 1e-3
 #: Norm of a monodromy matrix beyond which rounding errors decide on multipliers.
 UNSTABLE = 1e10
+#: The end of a family that shrinks to an equilibrium.
+EQUILIBRIUM = "equilibrium"
 #: Distance from the start, relative to the step, at which a curve is closed.
 CLOSED = 0.1
 
@@ -59,6 +61,8 @@ def walk(curve: Curve, first: Node, limits: Limits, *, branches_off: bool = Fals
             if angle > (LARGEST_ESTIMATE if is_estimate else LARGEST):
                 raise NoPeriodicOrbitError(f"the curve turns by {angle} rad in a step")
             if end := _last(node, new):
+                if end == EQUILIBRIUM and not limits.low <= _at_rest(node, new) <= limits.high:
+                    raise NoPeriodicOrbitError("a bound is between the orbit and the equilibrium")
                 return replace(result, end=end)
             crossed = _crossed(new, limits)
             if crossed:
@@ -83,10 +87,17 @@ def _last(node: Node, new: Node) -> str:
     shooting = node.curve.shooting
     rates = [shooting.rate(n.point) for n in (node, new)]
     if shooting.nature.is_autonomous and float(rates[0] @ rates[1]) < 0:
-        return "equilibrium"  # the same orbits follow
+        return EQUILIBRIUM  # the same orbits follow
     if np.linalg.norm(new.shot.monodromy) > UNSTABLE:
         return f"perturbations grow by more than {UNSTABLE:.0e} in a period"
     return ""
+
+
+def _at_rest(node: Node, new: Node) -> float:
+    """The value at an equilibrium between two nodes, where it is extreme along the curve."""
+    rates = [np.linalg.norm(n.curve.shooting.rate(n.point)) for n in (node, new)]
+    distance = float(new.difference(node) @ node.tangent) * rates[0] / sum(rates)
+    return float(node.value + node.rate_of_value * distance / 2)
 
 
 def _crossed(new: Node, limits: Limits) -> tuple[str, Callable[[Node], float]] | None:
