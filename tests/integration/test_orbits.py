@@ -6,16 +6,22 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.integrate import solve_ivp
 from scipy.special import ellipk
+from velocity_constraints import CASES, stated
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.elastic_pendulum as ep
+import generated.four_bar as four_bar
+import generated.henon_heiles as henon
 import generated.single_pendulum as single
 import generated.swinging_atwood as atwood
 from derive import Coordinate, PointMass, System
 from solvers.app.modules import build
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.normal_modes import Modes
+from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.lyapunov_spectrum import lyapunov_spectrum
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
@@ -178,3 +184,113 @@ def test_exponents_at_an_equilibrium_are_those_of_its_linearisation() -> None:
 def test_a_spectrum_needs_enough_intervals() -> None:
     with pytest.raises(ValueError, match=r"duration = 10 s must be at least 20 intervals of 2.0 s"):
         lyapunov_spectrum(dp, {"theta1": 1.0, "theta2": 1.0}, {}, 10)
+
+
+def energy_of(module: ModuleType, y: object) -> float:
+    """The energy of a state with the default parameters."""
+    return float(module.energy(0.0, list(np.asarray(y)), module.DEFAULTS))
+
+
+@pytest.mark.parametrize(
+    ("energy", "y", "y_dot"),
+    [(0.01, -0.08, 0.05), (0.05, 0.2, -0.1), (0.08, -0.1, -0.02), (0.12, 0.1, 0.15)],
+)
+def test_a_section_holds_the_energy_of_the_guess(energy: float, y: float, y_dot: float) -> None:
+    x_dot = np.sqrt(2 * energy - y**2 + 2 * y**3 / 3 - y_dot**2)
+    section = Event(henon, "x", 0.0, direction=1)
+    orbit = periodic_orbit(henon, [0.0, y, x_dot, y_dot], section, {})
+    assert orbit.y[0] == 0.0
+    assert orbit.energy == pytest.approx(energy, abs=1e-12)
+    # an independent integrator, with the equations by hand
+    motion = solve_ivp(
+        lambda t, s: [s[2], s[3], -s[0] - 2 * s[0] * s[1], -s[1] - s[0] ** 2 + s[1] ** 2],
+        (0, orbit.period), orbit.y, "DOP853", rtol=1e-13, atol=1e-13,
+    )  # fmt: skip
+    assert motion.y[:, -1] == pytest.approx(orbit.y, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("start", "period"),
+    [
+        ((-0.24, -0.04, -0.01), 6.0),
+        ((0.14, 0.27, -0.13), 5.5),
+        ((0.05, -0.02, 0.16), 6.6),
+        ((0.28, -0.12, -0.11), 5.5),
+    ],
+)
+def test_a_guess_of_the_period_leads_to_no_equilibrium(
+    start: tuple[float, float, float], period: float
+) -> None:
+    # the periods of small motions are near 2π: undamped steps lead to the origin
+    orbit = periodic_orbit(henon, [0.0, *start], period, {})
+    assert orbit.energy > 0.01
+    assert orbit.defect < 1e-12
+
+
+def test_an_orbit_of_a_given_energy() -> None:
+    # -g l cos(theta) of the pendulum with m = l = 1 at its turning point
+    amplitude, g = 2.0, 9.81
+    orbit = periodic_orbit(single, {"theta": 1.9}, 2.5, {"l": 1.0}, energy=-g * np.cos(amplitude))
+    assert orbit.energy == pytest.approx(-g * np.cos(amplitude), abs=1e-11)
+    exact = 4 * ellipk(np.sin(amplitude / 2) ** 2) / np.sqrt(g)
+    assert orbit.period == pytest.approx(exact, rel=1e-11)
+
+
+@pytest.fixture(scope="module")
+def kepler() -> ModuleType:
+    """A planet of mass 1 about a fixed centre."""
+    x, y = sp.symbols("x y", real=True)
+    coordinates = [Coordinate(x, "m", "position"), Coordinate(y, "m", "position")]
+    potential = -1 / sp.sqrt(x**2 + y**2)
+    return build(System("planet", "", coordinates, [], [PointMass(1, (x, y))], potential))
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.6, 0.9])
+def test_keplers_orbits_are_all_periodic(kepler: ModuleType, eccentricity: float) -> None:
+    start = [1 - eccentricity, 0.0, 0.0, np.sqrt((1 + eccentricity) / (1 - eccentricity))]
+    guesses: list[tuple[float | Event, dict[str, tuple[str, ...]]]] = [
+        (Event(kepler, "y", 0.0, direction=1), {}),
+        (6.0, {}),
+        (6.0, {"symmetry": ("y", "x_dot")}),
+    ]
+    for guess, options in guesses:
+        orbit = periodic_orbit(kepler, start, guess, {}, **options)
+        assert orbit.energy == pytest.approx(-0.5, abs=1e-12 if isinstance(guess, Event) else 0.02)
+        assert orbit.period == pytest.approx(2 * np.pi * (-2 * orbit.energy) ** -1.5, rel=1e-8)
+        assert orbit.multipliers == pytest.approx([1.0] * 4, abs=1e-5)
+
+
+@pytest.mark.long("another kind of constraints")
+def test_an_orbit_keeps_constraints() -> None:
+    # it has one degree of freedom, and each motion between two points of rest is periodic
+    start = consistent_start(four_bar, {"phi": 2.0}, {}).y
+    at_rest = Event(four_bar, "phi_dot", 0.0, direction=1)
+    motion = integrate(four_bar, (0, 2), start, {}, events=at_rest, rtol=1e-12, atol=1e-12)
+    period = float(motion.t_events[0][0])
+    held = energy_of(four_bar, start)
+    orbit = periodic_orbit(four_bar, start, 1.03 * period, {}, energy=held)
+    assert orbit.period == pytest.approx(period, abs=1e-9)
+    residuals = four_bar.constraints(0.0, orbit.y.tolist(), four_bar.DEFAULTS)
+    assert np.abs(residuals).max() < 1e-12
+    with pytest.raises(ValueError, match="four_bar, which has constraints"):
+        periodic_orbit(four_bar, start, period, {}, symmetry=four_bar.STATE[3:])
+
+
+def test_an_orbit_keeps_integrals_of_constraints() -> None:
+    wheel = build(stated("wheel", *CASES["wheel"][:2]))
+    start = consistent_start(wheel, CASES["wheel"][2], {}).y
+    # (M + J/R²) x'' = -k x + ..., whatever the amplitude and the integral x - R phi
+    period = 2 * np.pi * np.sqrt((1.5 + 0.04 / 0.3**2) / 6.0)
+    orbit = periodic_orbit(wheel, start, 1.1 * period, {})
+    assert orbit.period == pytest.approx(period, rel=1e-11)
+    assert orbit.y[0] - 0.3 * orbit.y[1] == pytest.approx(start[0] - 0.3 * start[1], abs=1e-11)
+
+
+def test_an_energy_that_cannot_be_held_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"energy = 1.0 cannot be held: driven_pendulum does not"):
+        periodic_orbit(driven, {"theta": 1.0}, 4 * np.pi / 6, DAMPED, energy=1.0)
+    with pytest.raises(ValueError, match="energy"):
+        periodic_orbit(single, {"theta": 1.0}, 2.0, {}, energy=np.nan)
+    below = -20.0  # that of the equilibrium is -9.81 J
+    with pytest.raises(NoPeriodicOrbitError, match=r"with an energy of -20\.0 J"):
+        periodic_orbit(single, {"theta": 1.0}, 2.0, {}, energy=below)

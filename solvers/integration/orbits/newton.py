@@ -1,23 +1,94 @@
-"""Newton's method for periodic orbits."""
+"""Newton's method for periodic orbits, damped where a step leads no closer to one."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from solvers.integration.orbits.shooting import Point, Shooting, Shot
+from solvers.integration.orbits.shooting import TINY, Point, Shooting, Shot
 from solvers.integration.solution import Array
 
-#: Most iterations.
-MAX_ITERATIONS = 30
-#: Residuals below this may stagnate because of rounding errors of the motion; decrease of a
-#: residual by Newton's method that is not limited by them.
-SMALL, DECREASE = 1e-6, 0.5
+#: Most motions that are integrated.
+MAX_ITERATIONS = 60
+#: Residuals below this may be limited by rounding errors of the motion; number of successive steps
+#: that do not decrease them which ends the iteration.
+SMALL, STALLS = 1e-6, 3
 #: Length of the unfolding column: short, since it is used where nothing else helps.
 SHARE = 1e-3
+#: Damping, relative to the square of the residual: the least, and its changes after a step that
+#: decreases the residual and after one that does not.
+DAMPING, LESS, MORE = 1.0, 0.1, 1000.0
+#: Longest period after a step, relative to that before.
+LONGEST = 2.0
 
 
 class NoPeriodicOrbitError(ArithmeticError):
     """Newton's method found no periodic motion near the guess."""
+
+
+@dataclass(frozen=True)
+class Iterate:
+    """A point on the way to a periodic orbit, and its shot."""
+
+    shooting: Shooting
+    point: Point
+    shot: Shot
+
+    @classmethod
+    def at(cls, shooting: Shooting, point: Point) -> "Iterate":
+        """The iterate at a point; its motion is integrated."""
+        shot = shooting(point)
+        return cls(replace(shooting, advance=shot.advance), point, shot)
+
+    def moved(self, change: Array) -> "Iterate | None":
+        """The iterate after a change; None where there is none, or the period is too long."""
+        try:
+            point = self.shooting.moved(self.point, change)
+            if 0 < point.period < LONGEST * self.point.period:
+                return Iterate.at(self.shooting, point)
+        except (ArithmeticError, ValueError):  # the motion ends, or there is no such state
+            pass
+        return None
+
+    @cached_property
+    def residual(self) -> Array:
+        """Changes in a period, and distances from the values of functions that are held."""
+        return np.concatenate([self.shot.residual, self._held[0]])
+
+    @cached_property
+    def _held(self) -> tuple[Array, Array]:
+        return self.shooting.held(self.point)
+
+    @property
+    def defect(self) -> float:
+        """The largest residual."""
+        return float(np.abs(self.residual).max())
+
+    @cached_property
+    def distance(self) -> float:
+        """The residual relative to the path in a period, if equations do not depend on time.
+
+        It decreases neither towards an equilibrium nor towards a period of 0, where the residual
+        alone vanishes.
+        """
+        path = 1.0
+        if self.shooting.nature.is_autonomous:
+            path = float(np.linalg.norm(self.shooting.rate(self.point))) * self.point.period
+        return float(np.linalg.norm(self.residual)) / max(path, TINY)
+
+    def rows(self) -> Array:
+        """Derivatives of the residual, less the part along which the path grows like it."""
+        rows = np.concatenate([self.shot.rows, self._held[1]])
+        if self.shooting.nature.is_autonomous:
+            rows -= np.outer(self.residual, self._path_growth())
+        return rows
+
+    def _path_growth(self) -> Array:
+        """Derivatives of the logarithm of the path's length."""
+        point, rate = self.point, self.shooting.rate(self.point)
+        jacobian = self.shooting.module.jacobian(0.0, point.y.tolist(), point.params.tolist())
+        along = rate @ np.array(jacobian) / max(float(rate @ rate), TINY)
+        return np.array([*along, 1 / point.period, 0.0])
 
 
 def solve(
@@ -33,33 +104,62 @@ def solve(
     """The orbit that is nearest to a guess, and its shot.
 
     Each step is the shortest in units of `scales`, one for each column, that solves the linear
-    equations, without those whose singular values, relative to the largest, are below `rcond`.
-    Changes are orthogonal to the rows of `fixed`, of shape (conditions, state + 2).
-    `NoPeriodicOrbitError` where the iteration does not converge within the distance `reach`.
+    equations, without those whose singular values, relative to the largest, are below `rcond`, and
+    little of those whose singular values are small beside the residual; a step that does not
+    decrease the residual relative to the path in a period is damped more (D. W. Marquardt, J. Soc.
+    Indust. Appl. Math. 11 (1963) 431-441). Where equations depend on time, a residual of 0 is no
+    equilibrium, and steps are not damped. Changes are orthogonal to the rows of `fixed`, of shape
+    (conditions, state + 2). `NoPeriodicOrbitError` where the iteration does not converge within the
+    distance `reach`.
     """
-    n, before = len(point.y), np.inf
+    n, damping = len(point.y), DAMPING
     scales = np.ones(n + 2) if scales is None else scales
     fixed = np.empty((0, n + 2)) if fixed is None else fixed
-    free, change = shooting.unknowns(point), np.zeros(n + 2)
+    if shooting.reversal is not None:
+        fixed = np.concatenate([fixed, np.eye(n, n + 2)[shooting.reversal.changed]])
+    change, now, stalls = np.zeros(n + 2), Iterate.at(shooting, point), 0
+    is_damped = shooting.nature.is_autonomous
     for _ in range(MAX_ITERATIONS if iterations is None else iterations):
-        shot = shooting(point)
-        shooting = replace(shooting, advance=shot.advance)
-        defect = float(np.abs(shot.residual).max())
-        if defect <= shooting.atol or DECREASE * before <= defect < SMALL:
-            return point, shot
-        unfolds = shooting.reversal is None and shooting.nature.is_conservative
-        matrix = bordered(shooting, point, shot.rows, fixed, scales, unfolds=unfolds)
-        target = np.concatenate([-shot.residual, np.zeros(len(fixed))])
-        step = np.zeros(n + 2)
-        step[free] = np.linalg.lstsq(matrix, target, rcond)[0][: free.sum()]
-        point, before = shooting.moved(point, step * scales), defect
-        change += step
-        if not 0 < point.period < np.inf or np.linalg.norm(change) > reach:
+        if now.defect <= shooting.atol or (now.defect < SMALL and stalls == STALLS):
+            return now.point, now.shot
+        step = _step(now, fixed, scales, damping if is_damped else 0.0, rcond)
+        if np.linalg.norm(change + step) > reach:
             break
+        new = now.moved(step * scales)
+        if new and (new.distance < now.distance or (not is_damped and now.defect > SMALL)):
+            now, change, damping, stalls = new, change + step, max(DAMPING, damping * LESS), 0
+        else:
+            stalls, damping = stalls + 1, damping * MORE
+            if not is_damped:
+                break
+    if now.defect < SMALL and stalls:
+        return now.point, now.shot
+    at, way_out = "", "give a better guess"
+    if shooting.energy_held is not None:
+        at = f" with an energy of {shooting.energy_held} J"
+    elif shooting.nature.is_conservative:
+        way_out += ", or the energy"
     raise NoPeriodicOrbitError(
-        "the state still changes, after the last iteration of Newton's method, by "
-        f"{defect:.1e} in a period of {point.period} s: give a better guess"
+        f"the state{at} still changes, after the last iteration of Newton's method, by "
+        f"{now.defect:.1e} in a period of {now.point.period} s: {way_out}"
     )
+
+
+def _step(now: Iterate, fixed: Array, scales: Array, damping: float, rcond: float | None) -> Array:
+    """The step of an iterate in units of `scales`."""
+    shooting, free = now.shooting, now.shooting.unknowns(now.point)
+    unfolds = shooting.reversal is None and shooting.nature.is_conservative
+    matrix = bordered(shooting, now.point, now.rows(), fixed[:0], scales, unfolds=unfolds)
+    conditions = np.zeros((len(fixed), matrix.shape[1]))
+    conditions[:, : free.sum()] = fixed[:, free] * scales[free]
+    directions = np.linalg.svd(conditions)[2][len(conditions) :].T
+    left, sizes, right = np.linalg.svd(matrix @ directions, full_matrices=False)
+    least = (np.finfo(float).eps * len(matrix) if rcond is None else rcond) * sizes[0]
+    square = damping * float(now.residual @ now.residual)
+    factors = np.where(sizes > least, sizes / (sizes**2 + square + TINY), 0.0)
+    step = np.zeros(len(free))
+    step[free] = (directions @ (right.T @ (factors * (left.T @ -now.residual))))[: free.sum()]
+    return step
 
 
 def bordered(
@@ -67,11 +167,12 @@ def bordered(
 ) -> Array:
     """Derivatives by the unknowns, in units of `scales`, above the rows of `fixed`.
 
-    With `unfolds`, the unfolding follows as a last column.
+    With `unfolds`, the unfolding follows as a last column, which affects the first rows.
     """
     free = shooting.unknowns(point)
     columns = np.concatenate([rows, fixed])[:, free] * scales[free]
     if unfolds:
-        unfolding = np.concatenate([SHARE * shooting.unfolding(point), np.zeros(len(fixed))])
+        unfolding = np.zeros(len(columns))
+        unfolding[: len(point.y)] = SHARE * shooting.unfolding(point)
         columns = np.column_stack([columns, unfolding])
     return np.asarray(columns)

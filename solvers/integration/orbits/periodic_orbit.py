@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from solvers.equations.arguments import checked
-from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import Values, positive
+from solvers.equations.module import GeneratedModule, function, integrals
+from solvers.equations.quantities import Values, positive, real_number
 from solvers.integration import validation
 from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
@@ -19,6 +19,7 @@ from solvers.integration.orbits.shooting import SMALL, Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
 from solvers.integration.predictability import ignore_predictability
 from solvers.integration.solution import Array, Solution
+from solvers.io.suggestion import shortened
 
 #: Time in s after which a motion that has not come back to a section never does.
 LONGEST = 1e3
@@ -32,15 +33,18 @@ def periodic_orbit(
     params: Values,
     *,
     returns: int = 1,
+    energy: float | None = None,
     symmetry: Sequence[str] = (),
     rtol: float = 1e-12,
     atol: float = 1e-12,
 ) -> PeriodicOrbit:
     """The periodic motion nearest to a guess, by Newton's method.
 
-    Of a family of orbits, as those of different energies of a conservative system, the result is
-    the member to which each step of Newton's method, the shortest that solves the linear equations,
-    leads. Angles may turn by whole turns in a period.
+    A conservative system has a family of orbits of different energies. The result is the member of
+    the energy of the guess, if a section is given, or of a given energy. Otherwise it is that to
+    which each step of Newton's method, the shortest that solves the linear equations, leads. Steps
+    towards an equilibrium, or a period of 0, are shortened. Angles may turn by whole turns in a
+    period.
 
     Parameters
     ----------
@@ -54,6 +58,9 @@ def periodic_orbit(
         `y0` first meets it, and the guess is the time until its return.
     returns : int, optional
         How many crossings of the section make a period.
+    energy : float, optional
+        Energy in J of the orbit, if the system conserves its energy; by default that of `y0` if
+        `period` is a section, else it is free.
     symmetry : sequence of str, optional
         Names of half of the components of the state that are 0 at t = 0 and after half the period,
         such as all velocities of an orbit between two points of rest; angles may be at any half
@@ -68,11 +75,12 @@ def periodic_orbit(
     Raises
     ------
     ValueError
-        When an argument is invalid, or `module` has no variational form.
+        When an argument is invalid, `module` has no variational form, or an energy is given for a
+        system that does not conserve it.
     NoPeriodicOrbitError
-        When the iteration does not converge.
+        When the iteration does not converge, or the guess or the result is an equilibrium.
     solvers.integration.prepare.NotFinishedError
-        When a motion does not last for a period.
+        When the motion from the guess does not last for a period.
 
     Examples
     --------
@@ -85,8 +93,14 @@ def periodic_orbit(
     >>> bool(abs(periodic_orbit(dp, orbit.y, section, {}).y[0]) < 1e-9)
     True
     """
-    y, constants = validation.initial_state(module, y0), validation.parameters(module, params)
+    constants = validation.parameters(module, params)
+    y = validation.initial_state(module, y0, params=constants.tolist())
     nature = Nature.of(module, y, constants)
+    if energy is not None and not nature.is_conservative:
+        raise ValueError(
+            f"energy = {shortened(energy)} cannot be held: {module.SYSTEM} does not conserve its "
+            "energy with these parameters; leave it out"
+        )
     shooting = Shooting(module, nature, rtol, atol)
     fixed = np.empty((0, len(y) + 2))
     if isinstance(period, Event):
@@ -97,13 +111,26 @@ def periodic_orbit(
     if symmetry:
         reversal = Reversal.of(module, symmetry, y, constants)
         y[reversal.changed] = reversal.nearest(y)
-        shooting = Shooting(module, nature, rtol, atol, reversal)
+        shooting = replace(shooting, reversal=reversal)
     point = Point(y, duration, constants)
     shooting.check_period(point)
+    if energy is not None:
+        shooting = replace(shooting, energy_held=real_number("energy", energy, "J"))
+    elif isinstance(period, Event) and nature.is_conservative:
+        shooting = replace(shooting, energy_held=shooting.energy(point))
+    if integrals(module):
+        values = function(module, "integrals")(0.0, y.tolist(), constants.tolist())
+        shooting = replace(shooting, integrals_held=np.array(values))
+    _check_moves(shooting, point)
     point, shot = solve(shooting, point, fixed)
+    _check_moves(shooting, point)
+    return PeriodicOrbit.of(shooting, point, shot)
+
+
+def _check_moves(shooting: Shooting, point: Point) -> None:
+    """`NoPeriodicOrbitError` at an equilibrium."""
     if shooting.nature.is_autonomous and np.abs(shooting.rate(point)).max() < SMALL:
         raise NoPeriodicOrbitError(f"{point.y} is an equilibrium: give a better guess")
-    return PeriodicOrbit.of(shooting, point, shot)
 
 
 def _returned(

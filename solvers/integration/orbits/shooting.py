@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule, function
+from solvers.equations.assembly import Assembly
+from solvers.equations.module import GeneratedModule, function, has_constraints
 from solvers.equations.quantities import positive
 from solvers.integration.orbits.nature import Nature, states_near
 from solvers.integration.orbits.symmetry import Reversal, angles
@@ -77,6 +78,10 @@ class Shooting:
         period on the parameter.
     advance : ndarray of shape (state,), optional
         Whole turns of angles in a period, in rad; by default those of each motion.
+    energy_held : float, optional
+        The energy in J of the orbit.
+    integrals_held : ndarray, optional
+        Values of the functions that constraints of velocities keep.
     """
 
     module: GeneratedModule
@@ -87,6 +92,8 @@ class Shooting:
     parameter: int | None = None
     period_of: PeriodOf | None = None
     advance: Array | None = None
+    energy_held: float | None = None
+    integrals_held: Array | None = None
 
     def unknowns(self, point: Point) -> Array:
         """Which columns are unknown."""
@@ -103,6 +110,11 @@ class Shooting:
         y, period = point.y + change[:n], self._period(params, point.period + change[n])
         if self.reversal is not None:  # without rounding errors
             y[self.reversal.changed] = self.reversal.nearest(point.y)
+        if has_constraints(self.module):
+            assembly = Assembly(self.module, params[np.newaxis])
+            (y,), found = assembly.assembled(y[np.newaxis], np.zeros(n, bool))
+            if not found.all():
+                raise ArithmeticError(f"no state that satisfies the constraints is near {y}")
         return Point(y, period, params)
 
     def _period(self, params: Array, period: float) -> float:
@@ -187,11 +199,30 @@ class Shooting:
 
     def energy_gradient(self, point: Point) -> Array:
         """Derivatives of the energy by the start."""
+        return self._gradient(point, "energy_many")
+
+    def _gradient(self, point: Point, name: str) -> Array:
+        """Derivatives of a function of the module by the start, in the last axis."""
         steps = STEP * np.maximum(np.abs(point.y), 1.0)
-        shifts, energy = np.diag(steps), function(self.module, "energy_many")
+        shifts, values = np.diag(steps), function(self.module, name)
         states = [(point.y + sign * shifts).T for sign in (1, -1)]
-        ahead, behind = (energy(0.0, state, point.params) for state in states)
+        ahead, behind = (np.asarray(values(0.0, state, point.params)) for state in states)
         return np.asarray((ahead - behind) / (2 * steps))
+
+    def held(self, point: Point) -> tuple[Array, Array]:
+        """Distances of the start from the values of functions that are held, and derivatives."""
+        n = len(point.y)
+        values, gradients = np.empty(0), np.empty((0, n))
+        if self.energy_held is not None:
+            values = np.array([self.energy(point) - self.energy_held])
+            gradients = self.energy_gradient(point)[np.newaxis]
+        if self.integrals_held is not None:
+            now = function(self.module, "integrals")(0.0, point.y.tolist(), point.params.tolist())
+            values = np.concatenate([values, np.array(now) - self.integrals_held])
+            gradients = np.concatenate([gradients, self._gradient(point, "integrals_many")])
+        sizes = np.maximum(np.linalg.norm(gradients, axis=1), TINY)
+        rows = np.column_stack([gradients / sizes[:, np.newaxis], np.zeros((len(values), 2))])
+        return values / sizes, rows
 
     def unfolding(self, point: Point) -> Array:
         """A unit vector along the gradient of the energy.

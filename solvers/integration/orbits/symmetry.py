@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.integration.orbits.nature import states_near
 from solvers.integration.solution import Array
 from solvers.io.arguments import check_texts
-from solvers.io.suggestion import did_you_mean
+from solvers.io.suggestion import did_you_mean, shortened
 
 #: Largest relative difference of equations that are the same.
 CLOSE = 1e-10
@@ -39,13 +39,19 @@ class Reversal:
     ) -> "Reversal":
         """The reversal that changes the components `names`.
 
-        `ValueError` if there is no such component, or the equations differ after the reversal.
+        `ValueError` if there is no such component, the equations differ after the reversal, or the
+        system has constraints.
         """
         check_texts("symmetry", names)
         for name in names:
             if name not in module.STATE:
                 hint, known = did_you_mean(name, module.STATE), ", ".join(module.STATE)
                 raise ValueError(f"symmetry has {name[:50]!r}{hint}; components are {known}")
+        if has_constraints(module):
+            raise ValueError(
+                f"symmetry = {shortened(names)}: perturbations of {module.SYSTEM}, which has "
+                "constraints, do not follow from half a period; leave it out"
+            )
         changed = np.array([module.STATE.index(name) for name in names], dtype=int)
         reversal = cls(tuple(names), changed, np.pi * angles(module)[changed])
         if 2 * len(changed) != len(module.STATE) or not reversal.keeps_equations(module, y, params):
