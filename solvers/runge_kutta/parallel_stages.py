@@ -21,8 +21,9 @@ from solvers.runge_kutta.order_conditions import WORKING_DIGITS
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]
-#: The iteration ends when the next change would be below this part of the tolerance.
-CLOSE = 0.02
+#: The iteration ends when the next change would be below this part of the tolerance; the second is
+#: that within a step of more than `FEW` stages, whose end has an error far below the tolerance.
+CLOSE, CLOSE_WITHIN, FEW = 0.02, 2e-3, 4
 #: The error of a step is estimated after this many iterations: the top coefficient of the
 #: polynomial converges faster than the stages. It is estimated again at the end where the square of
 #: the contraction is larger than `SLOW`.
@@ -93,12 +94,14 @@ class Polynomial:
 
     It predicts the stages of a step that starts at `origin`, a part of h: where the step ends, or
     at its start for a shorter step. A step whose error is larger than `largest_error` ends early.
+    The iteration ends when the next change would be below the part `close` of the tolerance.
     """
 
     h: float
     coefficients: Array  # of shape (stages, state)
     origin: float = 1.0
     largest_error: float = 1.0
+    close: float = CLOSE
 
     @classmethod
     def constant(cls, h: float, derivative: Array, stages: int) -> "Polynomial":
@@ -113,7 +116,8 @@ class Polynomial:
 
     def within(self) -> "Polynomial":
         """The same polynomial for states within this step, which has been accepted."""
-        return replace(self, origin=0.0, largest_error=np.inf)
+        close = CLOSE if len(self.coefficients) <= FEW else CLOSE_WITHIN
+        return replace(self, origin=0.0, largest_error=np.inf, close=close)
 
     def derivatives(self, h: float, c: Array) -> Array:
         """Value of h dy/dt at the nodes of a step of size `h`, in rows."""
@@ -153,7 +157,7 @@ class ParallelStages:
         self.ratios, self.legendre = symplectic_ratios(tableau), legendre_matrix(tableau)
         self.c, self.b = np.array(tableau.c, float), np.array(tableau.b, float)
         self._rtol, self._atol = rtol, atol
-        self._limit = CLOSE**2 if rtol or np.any(atol) else 0.0
+        self._is_controlled = bool(rtol or np.any(atol))
 
     def solve(
         self, derivatives: Callable[[Array], Array], y: Array, h: float, last: Polynomial
@@ -164,7 +168,8 @@ class ParallelStages:
         `NoFixedPointError` where the iteration does not converge.
         """
         increments = self.b[:, np.newaxis] * last.derivatives(h, self.c)
-        previous, square, norm, is_last = np.inf, 0.0, None if self._limit else 0.0, False
+        limit = last.close**2 if self._is_controlled else 0.0
+        previous, square, norm, is_last = np.inf, 0.0, None if limit else 0.0, False
         allowed = self._atol + self._rtol * np.abs(y) + SMALLEST
         for iteration in range(1, MAX_ITERATIONS + 1):
             before = increments
@@ -172,21 +177,21 @@ class ParallelStages:
             if is_last:
                 break
             size = np.abs(y) + np.abs(increments).sum(axis=0) + SMALLEST
-            if iteration == 1 and not self._limit:
+            if iteration == 1 and not limit:
                 allowed = EPSILON * size
             with np.errstate(over="ignore"):
                 change = float(np.sum(((increments - before) / allowed) ** 2))
                 least = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
             if iteration > 1:
                 square = max(change / previous if previous else 0.0, square / 4)
-                is_last = change * (square * square) <= self._limit
-                if change * square <= self._limit or previous <= change < least:
+                is_last = change * (square * square) <= limit
+                if change * square <= limit or previous <= change < least:
                     break
             # with fixed steps changes may grow at first; others are shortened at once
-            if not change < (16 * previous if self._limit else np.inf):
+            if not change < (16 * previous if limit else np.inf):
                 message = f"the stages still change by {np.sqrt(change):.1e} tolerances"
                 raise NoFixedPointError(message)
-            if iteration == EARLY and self._limit:
+            if iteration == EARLY and limit:
                 norm = self.error_norm(y, increments)
                 if norm > last.largest_error:
                     break

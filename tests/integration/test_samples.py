@@ -54,6 +54,25 @@ def test_many_samples_in_a_step_are_as_accurate_as_shorter_steps(
     assert errors[0] <= 1.1 * errors[1] + 1e-15
 
 
+@pytest.mark.parametrize("backend", ["compiled", "python"])
+@pytest.mark.parametrize("module", [dp, elastic], ids=lambda module: module.SYSTEM)
+@ignore_predictability()
+def test_samples_of_gauss_steps_are_as_accurate_as_their_ends(
+    module: ModuleType, backend: str
+) -> None:
+    options = {"rtol": 1e-13, "atol": 1e-13, "backend": backend}
+    start, params = STARTS[module], module.DEFAULTS
+    ends = integrate(module, (0, END), start, params, method="gauss8", **options)
+    within = np.sort([ends.t[:-1] + part * np.diff(ends.t) for part in (0.1, 0.3, 0.5, 0.9)], None)
+    samples = sampled(module, within, "gauss8", **options)
+    times = np.sort([*ends.t, *within])
+    states = np.array(taylor(module, params, start, times.tolist(), 28), float).T
+    errors = [
+        np.abs(run.y - states[:, np.searchsorted(times, run.t)]).max() for run in (samples, ends)
+    ]
+    assert errors[0] < 5 * errors[1]
+
+
 @pytest.mark.parametrize("method", ["verner853", "verner98"])
 def test_the_extension_of_a_lower_order_would_not_be(method: str) -> None:
     tableau = load(method)

@@ -55,6 +55,7 @@ static __attribute__((noinline)) void step(
         .length = start->length[0],
         .origin = start->origin[0],
         .largest_error = 1,
+        .close = CLOSE,
     };
     result->jacobians = 0;
     collocate(task, start, &prediction, h, params, end, result);
@@ -74,7 +75,8 @@ static __attribute__((noinline)) double step_within(
         polynomial[j] = full->polynomial[j]*(j < STAGES*(DIM - VARIATIONS) ? 1 : factor);
     }
     const Prediction prediction = {
-        .polynomial = polynomial, .length = full->length[0], .largest_error = INFINITY
+        .polynomial = polynomial, .length = full->length[0], .largest_error = INFINITY,
+        .close = CLOSE_WITHIN,
     };
     collocate(task, start, &prediction, h, params, end, &result);
     return result.evaluations;

@@ -12,8 +12,10 @@ enum { TOP = STAGES - 1, MAX_ITERATIONS = 200 };
 enum { EARLY = 3 };
 static const double SLOW = 0.25;
 
-/* The iteration ends when the next change would be below this part of the tolerance. */
-static const double CLOSE = 0.02;
+/* The iteration ends when the next change would be below this part of the tolerance; the second is
+   that within a step of more than FEW stages, whose end has an error far below the tolerance. */
+enum { FEW = 4 };
+static const double CLOSE = 0.02, CLOSE_WITHIN = STAGES > FEW ? 2e-3 : 0.02;
 /* Relative rounding errors of the derivatives, below which an iteration may stagnate. */
 static const double ROUNDING = 32*DBL_EPSILON;
 
@@ -63,6 +65,7 @@ typedef struct {
     const double *polynomial;
     double length, origin;
     double largest_error;       /* a step with a larger squared error is not completed */
+    double close;               /* part of the tolerance at which the iteration ends */
 } Prediction;
 
 /* Increments h b k of all stages by fixed-point iteration; NaN where it does not converge. The
@@ -82,7 +85,7 @@ static inline void solve_stages(
     legendre_polynomials((2*origin - 1) + (2*ratio)*NODES, ratio*WEIGHTS, basis);
     multiply(basis, prediction->polynomial, ZERO, increments);
     const int is_fixed = task->fixed_h != 0;
-    const double limit = is_fixed ? 0 : CLOSE*CLOSE;
+    const double limit = is_fixed ? 0 : prediction->close*prediction->close;
     double inverse[DIM], previous = INFINITY, square = 0;   /* reciprocals of the tolerances */
     for (int n = 0; n < DIM; n++) {
         inverse[n] = 1/(task->atol + task->rtol*fabs(start->z[n]) + SMALLEST);
