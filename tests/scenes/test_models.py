@@ -12,6 +12,8 @@ import scipy
 from sharing import Shared
 
 import generated.double_pendulum as dp
+import generated.driven_pendulum as driven
+import generated.duffing as duffing
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
@@ -167,8 +169,42 @@ def test_an_equilibrium_stays_until_its_residual_acceleration_grows() -> None:
         )
     with pytest.raises(OutsideDomainError, match="leaves the initial state"):
         Equilibrium.of(motion_from(sp, (pi, 0.0), 40))
-    with pytest.raises(OutsideDomainError, match="initial velocity is not zero"):
-        Equilibrium.of(motion_from(sp, (0.0, 1e-9), 1))
+
+
+def test_a_very_small_velocity_is_rest_where_its_motion_is_below_the_accuracy() -> None:
+    scene = Scene(sp, sp.DEFAULTS, (0.0, 1e-9), 10.0, accuracy=1e-8)
+    model = selected(scene).model
+    assert model.name == "rest"
+    # the velocity becomes -1e-9 rad/s
+    assert 1 < model.error_estimate / 2e-9 < 2
+    finer = selected(replace(scene, accuracy=1e-9))
+    assert finer.model.name == "normal modes"
+    assert finer.declined["rest"] == "its error may reach 3e-09"
+
+
+def test_a_driven_pendulum_that_hangs_or_stands_is_at_rest() -> None:
+    hanging = selected(Scene(driven, driven.DEFAULTS, (0.0, 0.0), 10.0)).model
+    assert (hanging.name, hanging.error_estimate) == ("rest", 0.0)
+    beside = motion_from(driven, (1e-6, 0.0), 1.0)
+    error = largest_error(beside, model := Equilibrium.of(beside))
+    assert 1e-6 < error < model.error_estimate < 2 * error
+    # 100 oscillations a second hold it upright, as P. L. Kapitza's
+    upright = selected(Scene(driven, driven.DEFAULTS, (pi, 0.0), 10.0, accuracy=1e-9)).model
+    assert upright.name == "rest"
+
+
+@pytest.mark.parametrize("periods", [0.3, 128, 1024])
+def test_rest_beside_a_small_periodic_force(periods: float) -> None:
+    # x'' + x = F cos(Ω t), also over whole periods, of which each interval has many
+    size, Omega = 1e-9, 9.0
+    parameters = {"m": 1.0, "k": 1.0, "beta": 0.0, "c": 0.0, "F": size, "Omega": Omega}
+    params = tuple(parameters[name] for name in duffing.PARAMETERS)
+    motion = motion_from(duffing, (0.0, 0.0), periods * 2 * pi / Omega, params)
+    t = np.linspace(0, motion.duration, 100_001)
+    x = size * (np.cos(Omega * t) - np.cos(t)) / (1 - Omega**2)
+    x_dot = size * (np.sin(t) - Omega * np.sin(Omega * t)) / (1 - Omega**2)
+    error = np.abs([x, x_dot]).max()
+    assert error <= Equilibrium.of(motion).error_estimate < 2 * error
 
 
 def test_small_motion_is_its_normal_modes_up_to_the_nonlinear_terms() -> None:

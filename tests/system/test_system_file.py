@@ -119,7 +119,7 @@ def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     scene = find(str(written(tmp_path, text, "scene")), load_module)
     found = run_scene(scene)
     assert found.is_met
-    assert found.selection.declined["rest"] == "the equations depend on time"
+    assert found.selection.declined["normal modes"] == "the equations depend on time"
     special = run_scene(
         find(str(written(tmp_path, 'code = "specialised"\n' + text, "special")), load_module),
         specialiser,
