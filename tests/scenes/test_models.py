@@ -15,6 +15,7 @@ import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.duffing as duffing
 import generated.elastic_pendulum as ep
+import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.normal_modes import _generalized_eigh, mode_spread
@@ -215,11 +216,28 @@ def test_small_motion_is_its_normal_modes_up_to_the_nonlinear_terms() -> None:
         motion = motion_from(module, start.tolist(), 20.0)
         model = NormalModes.of(motion)
         error = largest_error(motion, model)
-        # a bound, and no loose one: within a factor of ten for pendulums
-        assert error < model.error_estimate < (10 if module is not ep else 1000) * error
+        assert error < model.error_estimate < 1.5 * error
     assert NormalModes.of(motion_from(dp, (1.0, 1.0, 0, 0), 20.0)).error_estimate > 1e3
     with pytest.raises(OutsideDomainError, match="does not oscillate"):
         NormalModes.of(motion_from(sp, (0.1, 0), 1.0, params=(1, 2, 0.0)))
+
+
+@pytest.mark.parametrize(("angle", "duration"), [(1e-3, 300.0), (1e-2, 30.0), (0.05, 3.0)])
+def test_the_error_of_normal_modes_is_estimated_closely(angle: float, duration: float) -> None:
+    for module, params, y0 in (
+        (hoop, (1, 1, 2, 9.81), (angle, 0.5 * angle)),
+        (dp, dp.DEFAULTS, (angle, -0.5 * angle, 0.0, 0.0)),
+        (ep, (1, 40, 1, 9.81), (1 + 9.81 / 40 + angle / 3, angle, 0.0, 0.0)),
+    ):
+        motion = motion_from(module, y0, duration, params)
+        with ignore_predictability():
+            fine = integrate(
+                module, (0, duration), y0, params, method="verner98", rtol=1e-13, atol=1e-15,
+                t_eval=motion.sample_times,
+            )  # fmt: skip
+        model = NormalModes.of(motion)
+        error = np.abs(model.states(motion.sample_times) - fine.y.T).max()
+        assert error < model.error_estimate < 1.5 * error
 
 
 def test_of_the_smallest_motions_only_rounding_remains() -> None:

@@ -10,8 +10,11 @@ from solvers.equations.normal_modes import Modes
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError, golden_points
 
-#: Number of times at which the defect is evaluated.
-SAMPLES = 256
+#: Fewest times at which the defect is evaluated, their number in a period of the fastest mode, and
+#: the most with which errors are propagated.
+SAMPLES, PER_PERIOD, MOST = 256, 48, 2**17
+#: Most corrections of the modes, and part of the error that their own error may be.
+CORRECTIONS, REST = 8, 0.1
 #: Safety factor for a mean over these samples.
 MARGIN = 1.25
 #: Exponents above this are treated as infinite.
@@ -22,16 +25,19 @@ LARGEST_EXPONENT = 300.0
 class NormalModes(ClosedForm):
     """Each mode oscillates by itself: x = Σ s (a cos ωt + b sin ωt).
 
-    In the norm ‖(x, ẋ)‖² = ẋᵀM₀ẋ + xᵀKx small motions keep their size, so that the error is at most
-    ∫‖d‖ dt · exp ∫‖B‖ dt (Gronwall), with the defect d, the acceleration of the full equations
-    along the modes minus their own, and B the difference of their Jacobians. Both means over time
-    are taken from samples.
+    The error is estimated as the correction of the modes by their defect d, the acceleration of the
+    full equations along them minus their own. The corrected motion has another defect, from which
+    follows another correction (E. Picard's iteration). In the norm ‖(x, ẋ)‖² = ẋᵀM₀ẋ + xᵀKx small
+    motions keep their size, so that the error of the last one is at most ∫‖d‖ dt · exp ∫‖B‖ dt
+    (Gronwall), with B the difference of the Jacobians. Both means over time are taken from samples.
     """
 
     name: ClassVar[str] = "normal modes"
     complexity: ClassVar[int] = 20
     applies_to: ClassVar[str] = "small motion about a stable equilibrium"
-    error_source: ClassVar[str] = "nonlinear terms, bounded by Gronwall's inequality"
+    error_source: ClassVar[str] = (
+        "nonlinear terms along the motion, their own effect bounded by Gronwall's inequality"
+    )
 
     equilibrium: Array
     modes: Modes
@@ -74,23 +80,56 @@ class NormalModes(ClosedForm):
 
     def _error(self, motion: Motion, to_modes: Array) -> tuple[Array, float]:
         """The error of each component of the state, and the integral of the defect."""
-        n, omega, matrix = motion.n_coordinates, self.modes.frequencies, self.modes.matrix
-        states = self.states(motion.duration * golden_points(SAMPLES))
-        rates = np.asarray(motion.module.rhs_many(0.0, states.T, motion.params))
-        jacobians = np.asarray(motion.module.jacobian_many(0.0, states.T, motion.params))
-        displacements = states - np.concatenate([self.equilibrium, np.zeros(n)])
-        defect = (rates.T - displacements @ matrix.T)[:, n:] @ to_modes.T  # in modal coordinates
-        difference = np.moveaxis(jacobians, -1, 0) - matrix
+        n, omega, duration = motion.n_coordinates, self.modes.frequencies, motion.duration
         # the state (ω x, ẋ) in modal coordinates, and back
         zeros = np.zeros((n, n))
         into = np.block([[omega[:, None] * to_modes, zeros], [zeros, to_modes]])
         back = np.linalg.inv(into)
-        growth = np.linalg.norm(into @ difference @ back, 2, axis=(1, 2)).mean() * motion.duration
-        push = np.linalg.norm(defect, axis=1).mean() * motion.duration
-        size = np.hypot(self.cosines * omega, self.sines * omega)
+        states = self.states(duration * golden_points(SAMPLES))
+        jacobians = np.asarray(motion.module.jacobian_many(0.0, states.T, motion.params))
+        difference = np.moveaxis(jacobians, -1, 0) - self.modes.matrix
+        growth = np.linalg.norm(into @ difference @ back, 2, axis=(1, 2)).mean() * duration
+        per_push = MARGIN * np.exp(min(growth, LARGEST_EXPONENT)) * np.linalg.norm(back, axis=1)
+
+        def integral(defect: Array) -> float:
+            return float(np.linalg.norm(defect, axis=1).mean()) * duration
+
+        count = SAMPLES + int(PER_PERIOD * omega[-1] * duration / (2 * np.pi))
+        is_short = count <= MOST
+        states = self.states(duration * np.linspace(0, 1, count)) if is_short else states
+        defect = self._defect(motion, states, to_modes)
+        push = integral(defect)
+        error = per_push * push
+        for _ in range(CORRECTIONS if is_short else 0):
+            correction = self._correction(defect, duration)
+            before, defect = defect, self._defect(motion, states + correction, to_modes)
+            largest = MARGIN * np.abs(correction).max(axis=0)
+            rest = per_push * integral(defect - before)
+            error = np.minimum(error, largest + rest)
+            if not (rest > REST * largest).any():
+                break
         # frequencies are known to rounding times the spread of the modes
-        phase = EPS * (ROUNDINGS + omega * motion.duration * (1 + (omega[-1] / omega) ** 2))
-        error = MARGIN * np.exp(min(growth, LARGEST_EXPONENT)) * push
-        error = error + np.linalg.norm(size * phase)
-        rounding = ROUNDINGS * EPS * np.abs(states).max(axis=0)
-        return np.linalg.norm(back, axis=1) * error + rounding, float(push)
+        phase = EPS * (ROUNDINGS + omega * duration * (1 + (omega[-1] / omega) ** 2))
+        size = np.hypot(self.cosines * omega, self.sines * omega)
+        rounding = np.linalg.norm(back, axis=1) * np.linalg.norm(size * phase)
+        return error + rounding + ROUNDINGS * EPS * np.abs(states).max(axis=0), push
+
+    def _defect(self, motion: Motion, states: Array, to_modes: Array) -> Array:
+        """Accelerations of the full equations minus those of the modes, in modal coordinates."""
+        n = motion.n_coordinates
+        rates = np.asarray(motion.module.rhs_many(0.0, states.T, motion.params)).T
+        displacements = states - np.concatenate([self.equilibrium, np.zeros(n)])
+        return np.asarray((rates - displacements @ self.modes.matrix.T)[:, n:] @ to_modes.T)
+
+    def _correction(self, defect: Array, duration: float) -> Array:
+        """The motion that a defect at evenly spaced times adds, shape (n, state).
+
+        z = ẋ + iωx of each mode obeys z' = iωz + d: z exp(-iωt) is an integral, by the trapezoid
+        rule.
+        """
+        omega, shapes = self.modes.frequencies, self.modes.shapes.T
+        h = duration / (len(defect) - 1)
+        turn = np.exp(1j * h * np.multiply.outer(np.arange(len(defect)), omega))
+        parts = defect / turn
+        z = h * turn * (np.cumsum(parts, axis=0) - (parts + parts[0]) / 2)
+        return np.hstack([z.imag / omega @ shapes, z.real @ shapes])
