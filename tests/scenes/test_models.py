@@ -17,6 +17,7 @@ import generated.duffing as duffing
 import generated.elastic_pendulum as ep
 import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
+import generated.spherical_pendulum as spherical
 from solvers.app.modules import load as load_module
 from solvers.equations.normal_modes import _generalized_eigh, mode_spread
 from solvers.integration.integrate import integrate
@@ -369,13 +370,25 @@ def test_the_error_of_turning_points_is_estimated() -> None:
         assert largest_error(motion, model := Quadrature.of(motion)) <= model.error_estimate < 1e-9
 
 
+@pytest.mark.parametrize(("module", "params", "y0"), [
+    (spherical, spherical.DEFAULTS, (1.0, 0.0, 0.0, 3.0)),
+    (hoop, (1, 1, 2, 9.81), (0.01, 0.0)),
+    (hoop, (1, 1, 2, 9.81), (1e-3, 0.01)),
+])  # fmt: skip
+def test_rounding_errors_of_a_quadrature_are_estimated_closely(module, params, y0) -> None:
+    motion = motion_from(module, y0, 1.0, params)
+    model = Quadrature.of(motion)
+    error = largest_error(motion, model)
+    assert error <= model.error_estimate < 30 * error
+
+
 def test_an_error_of_the_period_counts_by_the_fastest_motion(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     delay = 1e-6
 
-    def late(reduced: ReducedMotion) -> Orbit:
-        one = orbit(reduced)
+    def late(reduced: ReducedMotion, n: int | None = None) -> Orbit:
+        one = orbit(reduced, n)
         time = replace(one.time, mean=(1 + delay) * one.time.mean)
         return replace(one, time=time, period_error=delay)
 

@@ -67,7 +67,10 @@ class ClosedForm(Model):
 
 
 def rounding_error(
-    states: Callable[[Array], Array], y0: Sequence[float], sizes: Sequence[float]
+    states: Callable[[Array], Array],
+    y0: Sequence[float],
+    sizes: Sequence[float],
+    roundings: float,
 ) -> Array:
     """Effect of rounding the initial state on a closed form at some times, shape (n, state).
 
@@ -75,9 +78,9 @@ def rounding_error(
     """
     start = np.array(y0, dtype=float)
     reference = states(start)
-    total = ROUNDINGS * EPS * np.abs(reference)
+    total = roundings * EPS * np.abs(reference)
     for k, size in enumerate(sizes):
         # a perturbation of this size and no smaller: near a separatrix nothing is linear
-        perturbed = start + ROUNDINGS * EPS * size * np.eye(len(start))[k]
+        perturbed = start + roundings * EPS * size * np.eye(len(start))[k]
         total += np.abs(states(perturbed) - reference)
     return total

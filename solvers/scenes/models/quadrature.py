@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm, rounding_error
+from solvers.scenes.models.model import EPS, ClosedForm, rounding_error
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
@@ -24,6 +24,8 @@ POINTS, SCAN = (32, 64, 128, 256, 512, 1024, 2048), 720
 END = 1e-14
 #: Part of a period over 2π: short enough for a derivative, long enough for its rounding.
 INSTANT = 1e-5
+#: Roundings of the start and of the energy; safety factor of the difference from a longer series.
+FEW, MARGIN = 4, 2.0
 #: Newton iterations from an interpolated phase.
 ITERATIONS = 5
 #: An inertia below this part of its largest value vanishes; energies in J above this are infinite.
@@ -98,8 +100,6 @@ class Orbit:
     rotation: Series
     phase: float
     period_error: float
-    turning_point_error: float
-    rate_error: float
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
@@ -134,31 +134,38 @@ class Quadrature(ClosedForm):
     applies_to: ClassVar[str] = (
         "reducible to one degree of freedom, by a cyclic coordinate or rotation: Fourier series"
     )
-    error_source: ClassVar[str] = "last terms of the series; rounding"
+    error_source: ClassVar[str] = "a longer series; rounding"
 
     orbit: Orbit
 
     @classmethod
     def of(cls, motion: Motion) -> Self:
         """The orbit; `OutsideDomainError` where the shape rests, does not return, or no series."""
-        result = orbit(ReducedMotion.of(motion))
-        times = motion.sample_times
+        reduced, times = ReducedMotion.of(motion), motion.sample_times
+        result = orbit(reduced)
 
         def states(y0: Array) -> Array:
             return orbit(ReducedMotion.of(replace(motion, y0=tuple(y0)))).states(times)
 
         sizes = np.maximum(np.abs(motion.y0), 1.0)
-        if not result.reduced.momentum:  # it is 0 exactly: next to it, poles are no barriers
-            at_rest = np.array([*np.zeros(motion.n_coordinates), *result.reduced.rotation]) != 0
+        if not reduced.momentum:  # it is 0 exactly: next to it, poles are no barriers
+            at_rest = np.array([*np.zeros(motion.n_coordinates), *reduced.rotation]) != 0
             sizes[at_rest & (np.array(motion.y0) == 0)] = 0.0
-        error = rounding_error(states, motion.y0, sizes.tolist())
+        error = rounding_error(states, motion.y0, sizes.tolist(), FEW)
+        # the energy is a small difference of large ones where the motion is small
+        largest = abs(reduced.energy) + abs(float(reduced.parts(np.array(reduced.start[0]))[1]))
+        shifted = replace(reduced, energy=reduced.energy + FEW * EPS * largest)
+        reference = result.states(times)
+        error += np.abs(orbit(shifted).states(times) - reference)
+        # a longer series has other roundings at other points, and a smaller remainder
+        longer = orbit(reduced, 4 * (len(result.time.terms) + 1))
+        error += MARGIN * np.abs(longer.states(times) - reference)
         # an error of the period is an error of the time
         later = INSTANT * result.time.mean
-        change = np.abs(result.states(times + later) - result.states(times))
+        change = np.abs(result.states(times + later) - reference)
         speed = change.max(axis=0) / later
-        error = error.max(axis=0) + speed * motion.duration * result.period_error
-        largest_rate = max(1.0, 1 / result.time.mean)
-        error += ROUNDINGS * (result.turning_point_error * largest_rate + result.rate_error)
+        longest = max(motion.duration, 2 * np.pi * result.time.mean)
+        error = error.max(axis=0) + speed * longest * result.period_error
         rotates = result.reduced.rotation.any()
         conserved = "a momentum and the energy are" if rotates else "energy is"
         why = f"{conserved} conserved, which leaves one degree of freedom"
@@ -169,8 +176,11 @@ class Quadrature(ClosedForm):
         return self.orbit.states(t)
 
 
-def orbit(reduced: ReducedMotion) -> Orbit:
-    """The orbit of a motion; `OutsideDomainError` where no Fourier series converges."""
+def orbit(reduced: ReducedMotion, n: int | None = None) -> Orbit:
+    """The orbit of a motion by a series of `n` points, by default the first one that converges.
+
+    `OutsideDomainError` where no Fourier series converges.
+    """
     u, u_dot, _ = reduced.start
     ends = _turning_points(reduced)
     direction = float(np.sign(u_dot)) or 1.0
@@ -181,14 +191,15 @@ def orbit(reduced: ReducedMotion) -> Orbit:
         phase = float(np.arctan2(root, path.centre - u))
     else:
         path, phase = Path(0.0, 0.0, direction), direction * u
-    for n in POINTS:
-        if result := _converged(reduced, path, phase, n):
+    for count in POINTS if n is None else (n,):
+        result, has_converged = _by_series(reduced, path, phase, count)
+        if has_converged or n:
             return result
     raise OutsideDomainError(NO_SERIES)
 
 
-def _converged(reduced: ReducedMotion, path: Path, phase: float, n: int) -> Orbit | None:
-    """The orbit by series of `n` points; None if these do not converge."""
+def _by_series(reduced: ReducedMotion, path: Path, phase: float, n: int) -> tuple[Orbit, bool]:
+    """The orbit by series of `n` points, and whether these converge."""
     phi = 2 * np.pi * (np.arange(n) + 0.5) / n
     u, du = path.u(phi), path.du(phi)
     mu, W, spin, drag = reduced.parts(u)
@@ -204,23 +215,18 @@ def _converged(reduced: ReducedMotion, path: Path, phase: float, n: int) -> Orbi
     if amplitude:
         lost += EPS * (abs(centre) + amplitude) / (amplitude - np.abs(u - centre))
     end = END + 4 * lost.max() / n
-    if time.tail > end * time.mean or rotation.tail > end * np.abs(S).max():
-        return None
-    period_error = float((G * lost).mean() / time.mean) + time.tail / time.mean
-    # next to a turning point E - W decreases in proportion to the distance from it
-    distance = min(amplitude - abs(u[k] - centre) for k in (0, n // 2)) if amplitude else 0.0
-    turning_point_error = float(max(lost[0], lost[n // 2]) * abs(distance))
-    rate_error = float((lost * (np.abs(du) + np.abs(S)) / G).max())
-    errors = (period_error, turning_point_error, rate_error)
+    has_converged = time.tail <= end * time.mean and rotation.tail <= end * np.abs(S).max()
+    # G changes by half the relative change of E - W
+    period_error = (float((G * lost).mean()) / 2 + time.tail) / time.mean
     if amplitude:  # du = amplitude sin φ dφ; the square root of `orbit` rounds at turning points
         start, rate, _ = reduced.start
         phase = float(np.arctan2(rate * time.value(np.array(phase)), centre - start))
-    return Orbit(reduced, path, time, rotation, phase, *errors)
+    return Orbit(reduced, path, time, rotation, phase, period_error), has_converged
 
 
 def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
     """The turning points of u on both sides of the start, ascending; None if u rotates."""
-    u, u_dot, _ = reduced.start
+    u = reduced.start[0]
 
     def kinetic(u: float) -> float:
         return float(np.clip(reduced.energy - reduced.parts(np.array(u))[1], -LARGEST, LARGEST))
@@ -232,7 +238,7 @@ def _turning_points(reduced: ReducedMotion) -> tuple[float, float] | None:
         points = _with_barriers(reduced, u + side * np.array([0.0, *steps]))[1:]
         values = reduced.energy - reduced.parts(points)[1]
         forbidden = np.flatnonzero(~(values > 0))
-        if not u_dot and forbidden.size and forbidden[0] == 0:
+        if forbidden.size and forbidden[0] == 0 and kinetic(u) <= 0:
             ends.append(u)  # released at rest: the start is a turning point
         elif forbidden.size:
             outer = forbidden[0]
