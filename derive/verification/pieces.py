@@ -113,6 +113,9 @@ class Pieces:
             case ast.Call(func=ast.Name(id="sqrt"), args=[argument]):
                 squares = [x * x if x > 0 else math.nan for x in required]
                 yield self._part(whole, argument, squares, is_term=True)
+            case ast.Call(func=ast.Name(id="exp"), args=[argument]):
+                logarithms = [math.log(x) if x > 0 else math.nan for x in required]
+                yield self._part(whole, argument, logarithms, is_term=True)
 
     def _factor(
         self, whole: Piece, node: ast.expr, required: Numbers, other: ast.expr | None = None

@@ -28,7 +28,9 @@ def applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:
 
 def replaced(text: str, piece: Piece, new: str) -> str:
     """The formula with `new` in place of a piece and of the sign before it."""
-    return f"{text[: piece.start]}{'+' * (piece.sign < 0)}({new}){text[piece.end :]}"
+    before = text[: piece.start]
+    is_first = before.rstrip()[-1:] in ("", "=", "(", ",")
+    return f"{before}{'+' * (piece.sign < 0 and not is_first)}({new}){text[piece.end :]}"
 
 
 def shown(text: str, piece: Piece) -> str:
