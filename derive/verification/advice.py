@@ -7,6 +7,7 @@ the formula correct. Where none do, the advice is the difference from the right 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 
 import sympy as sp
 
@@ -14,6 +15,7 @@ from derive.formulas.expansion import is_expandable
 from derive.formulas.expression import parse
 from derive.mechanics.reduction import reduced
 from derive.verification.derived import printed_formula
+from derive.verification.equations_of_motion import fits
 from derive.verification.goals import Goal, goals
 from derive.verification.model import Model, variables
 from derive.verification.replacement import applied, extended, is_unique, replaced, shown
@@ -28,8 +30,9 @@ from derive.verification.terms import (
 )
 from derive.verification.verdict import Correction, Verdict
 
-#: The number of changes of a formula that are compared in numbers, and those that are checked.
-MAX_CHANGES, MAX_CHECKED = 10, 3
+#: The number of changes of a formula that are fitted into a set of equations of motion, those
+#: that are compared in numbers, and those that are checked.
+MAX_FITTED, MAX_CHANGES, MAX_CHECKED = 40, 10, 3
 #: The number of characters of a formula that is searched, which takes seconds.
 MAX_LENGTH = 5000
 #: The number of operations in a formula whose terms are compared, or that is simplified.
@@ -37,7 +40,12 @@ MAX_OPERATIONS = 500
 
 
 def advised(
-    verdict: Verdict, model: Model, kind: str, name: str, holds: Callable[[str], bool]
+    verdict: Verdict,
+    model: Model,
+    kind: str,
+    name: str,
+    holds: Callable[[str], bool],
+    others: Sequence[str] = (),
 ) -> Verdict:
     """Add corrections to the verdict on a wrong formula, or the difference from the correct form.
 
@@ -51,6 +59,8 @@ def advised(
         The quantity, or ``euler_lagrange``, and its coordinate.
     holds : callable
         ``holds(text)``, whether a formula in place of the printed one is correct.
+    others : sequence of str
+        The other equations of motion of the source.
     """
     text, names = verdict.printed, SourceNames(verdict.printed, model.context.scope)
     value = difference(text, model.context.scope)
@@ -60,7 +70,7 @@ def advised(
     with suppress(NotImplementedError):
         searchable = aims if len(text) <= MAX_LENGTH else []
         searches = [Search(text, names, model, goal, correct) for goal in searchable]
-        proposals = _mending(text, names, model, searches, value, correct)
+        proposals = _mending(text, names, model, searches, value, correct, others)
         corrections = next((one for one, mended in proposals if holds(mended)), ())
     state = _state(model, names, value, aims[0], correct)
     result = replace(verdict, corrections=corrections, state=state)
@@ -95,13 +105,22 @@ def _mending(
     searches: Sequence[Search],
     value: sp.Expr,
     correct: sp.Expr | None,
+    others: Sequence[str],
 ) -> Iterator[tuple[tuple[Correction, ...], str]]:
-    """Yield corrections of one term, and those of all terms, each with the changed formula."""
+    """Yield corrections of one term, and those of all terms, each with the changed formula.
+
+    Those that lead to the correct form of an equation of motion come first.
+    """
     changes = [(one, search) for search in searches for one in search.changes()]
     changes.sort(key=lambda pair: pair[0].cost + (pair[1] is not searches[0]))
+    candidates = ((*applied(text, change), search) for change, search in changes[:MAX_FITTED])
+    if any(search.is_equation for search in searches):
+        candidates = (one for one in candidates if fits(model, text, one[1], correct, others))
+    proposals = [*islice(candidates, MAX_CHANGES)]
+    if any(search.is_equation for search in searches):
+        proposals.sort(key=lambda one: not _is_multiple(model, one[1], correct))
     checked = 0
-    for change, search in changes[:MAX_CHANGES]:
-        corrections, mended = applied(text, change)
+    for corrections, mended, search in proposals:
         if search.is_right(mended):
             yield corrections, mended
             checked += 1
@@ -113,6 +132,13 @@ def _mending(
         and all(is_expandable(one, waves=2) for one in (value, correct))
     ):
         yield from _all_terms(searches[0], text, names, model, correct)
+
+
+def _is_multiple(model: Model, text: str, correct: sp.Expr | None) -> bool:
+    """Whether an equation is the correct one times a factor."""
+    value = difference(text, model.context.scope)
+    accelerations = model.derivation.system.qddot
+    return correct is not None and model.context.are_multiples(value, correct, accelerations)
 
 
 def _all_terms(

@@ -1,6 +1,7 @@
 """Verdicts on equations of motion, one by one and as a set."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
@@ -62,6 +63,59 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
         reason = f"it holds for the momenta of the motion: {', '.join(momenta)}"
         return verdict(verdict="equivalent", note=joined(reason, note))
     return verdict(verdict="verified", note=note)
+
+
+def fits(
+    model: Model, printed: str, changed: str, closest: sp.Expr | None, others: Sequence[str]
+) -> bool:
+    """Whether an equation in place of a wrong one is linear in accelerations, and fits its set.
+
+    It must be the equation of the same coordinate, independent of the correct ones among `others`,
+    and contain no momentum, multiplier or acceleration that the source does not contain, but for
+    the accelerations in the derived equation that is closest to the wrong one.
+    """
+    system, motions, context = model.derivation.system, model.motions, model.context
+    unknown = (*system.qddot, *system.multipliers)
+    values = [*_values(model, [printed, changed])]
+    if len(values) < 2:
+        return False
+    old, new = values
+    if not any(depends_on(value.xreplace(model.momenta), unknown) for value in values):
+        return True  # it states a constraint or a momentum
+    own = [new.diff(a) for a in unknown]
+    if not context.is_small(*(c.diff(a) for c in own for a in unknown)):
+        return False
+    beside = [*_values(model, others)]
+    known = set().union(old.free_symbols, *(value.free_symbols for value in beside))
+    if closest is not None:
+        known |= closest.free_symbols & {*system.qddot}
+    elif not depends_on(old, unknown):  # the mistake is that its accelerations are missing
+        known |= {*system.qddot}
+    if new.free_symbols & {*unknown, *system.p} - known or motions.is_small(*own):
+        return False
+    row = _factors(model, own)
+    if closest is not None and not context.are_multiples(new, closest, system.qddot):
+        before = [old.diff(a) for a in unknown]
+        is_unknown = motions.is_small(*before)
+        if is_unknown or _combined(row) != _combined(_factors(model, before)):
+            return False
+    rows = [
+        _factors(model, [value.diff(a) for a in unknown])
+        for value in beside
+        if depends_on(value.xreplace(model.momenta), unknown) and motions.is_small(value)
+    ]
+    n, size = len(system.q), len(unknown)
+    has_multipliers = any(depends_on(value, system.multipliers) for value in (new, *beside))
+    rows = [*sp.eye(size).tolist()[n:], *rows]  # constraints, differentiated, first
+    before_it = len(independent(rows)) if rows else 0
+    is_complete = before_it >= (size if has_multipliers else n)
+    return is_complete or len(independent([*rows, row])) > before_it
+
+
+def _values(model: Model, texts: Sequence[str]) -> Iterator[sp.Expr]:
+    for text in texts:
+        with suppress(ExpressionError):
+            yield difference(text, model.context.scope)
 
 
 def judge_set(model: Model, judged: Sequence[Verdict]) -> list[Verdict]:
@@ -136,11 +190,15 @@ def _factors(model: Model, coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ..
     return solved(matrix, column, model.motions.evaluators[0])
 
 
+def _combined(factors: Sequence[sp.Expr]) -> list[int]:
+    """The indices of the derived equations that are combined with these factors."""
+    smallest = TINY * max(map(abs, factors))
+    return [i for i, factor in enumerate(factors) if abs(factor) > smallest]
+
+
 def _agreement(model: Model, value: sp.Expr, coefficients: Sequence[sp.Expr]) -> str | None:
     """How an equation that holds at states is known to hold along all motions."""
-    factors = _factors(model, coefficients)
-    smallest = TINY * max(map(abs, factors))
-    combined = [i for i, factor in enumerate(factors) if abs(factor) > smallest]
+    combined = _combined(_factors(model, coefficients))
     if len(combined) > 1:
         reason = "it is a combination of the equations of motion"
         note = model.motions.agreement(value)

@@ -88,8 +88,13 @@ def _verdicts(table: Table, model: Model) -> list[Verdict]:
     judged: dict[str, list[Verdict]] = {}
     source = None
     for kind in sorted(table.values, key=lambda kind: kind != "lagrangian"):
-        rows = _formulas(table, kind, model)
-        judged[kind] = [judge_formula(model, *row, source=source) for row in rows]
+        rows = [*_formulas(table, kind, model)]
+        judged[kind] = [
+            judge_formula(
+                model, *row, source=source, others=[one[1] for one in rows if one is not row]
+            )
+            for row in rows
+        ]
         if kind == "lagrangian" and judged[kind][0].verdict == "equivalent":
             text = table.formula(kind)
             source = model.with_lagrangian(parse(text, model.context.scope))

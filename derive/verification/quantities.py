@@ -1,5 +1,6 @@
 """Verdicts on formulas for quantities of a derivation, and on equations of motion."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -24,11 +25,18 @@ MISTAKES = (substituted_constraints, without_legendre_term)
 
 
 def judge_formula(
-    model: Model, label: str, text: str, kind: str, name: str = "", source: Model | None = None
+    model: Model,
+    label: str,
+    text: str,
+    kind: str,
+    name: str = "",
+    source: Model | None = None,
+    others: Sequence[str] = (),
 ) -> Verdict:
     """Judge a formula for a key of `QUANTITIES`, or an equation of motion, ``euler_lagrange``.
 
-    `source` is the model with the source's Lagrangian, if this is an equivalent one.
+    `source` is the model with the source's Lagrangian, if this is an equivalent one, and `others`
+    are the other equations of motion of the source.
     """
     if kind == "routhian":
         name = eliminated_names(model, text)
@@ -46,7 +54,7 @@ def judge_formula(
         result = _judged(own, label, changed, kind, name)
         return result.verdict in ("verified", "equivalent")
 
-    result = advised(verdict, own, kind, name, holds)
+    result = advised(verdict, own, kind, name, holds, others)
     if verdict.witness:
         value = difference(text, model.context.scope)
         reasons = (find(model, kind, value) for find in MISTAKES)

@@ -61,6 +61,11 @@ class Search:
         self._vocabulary = Vocabulary(names, self._samples, brackets, derived, goal.foreign)
         self._fits: dict[tuple[int, ...], list[Monomials]] = {}
 
+    @property
+    def is_equation(self) -> bool:
+        """Whether the formula is an equation of motion."""
+        return self._goal.is_equation
+
     def changes(self) -> list[Change]:
         """Changes of one piece that give the values of the goal, simplest first."""
         return sorted(self._changes(), key=lambda change: change.cost)

@@ -23,6 +23,8 @@ class SourceNames:
         #: The names in the formula.
         self.names = [self._written[w] for w in sorted(used) if isinstance(scope[w], sp.Expr)]
         words = [word for word, value in scope.items() if isinstance(value, sp.Symbol)]
+        # the rate of a momentum of a unit mass is an acceleration, which has a name
+        words = [word for word in words if word in used or not _is_rate_of_momentum(word, scope)]
         # later ones prevail: names of the source, and above all those in the formula
         words.sort(key=lambda word: (word in used, word != scope[word].name))
         #: The symbols of the system, as the formula writes them.
@@ -45,3 +47,7 @@ class SourceNames:
         """A formula in the symbols of the system."""
         names = {s: self._scope[s.name] for s in written.free_symbols if s.name in self._scope}
         return written.xreplace(names)
+
+
+def _is_rate_of_momentum(word: str, scope: Scope) -> bool:
+    return word.endswith("_dot") and word.startswith("p_") and word[: -len("_dot")] in scope

@@ -1,16 +1,19 @@
 """Advice on wrong formulas names the wrong term, and mends them."""
 
+import re
 from collections import Counter
 from functools import cache
 from pathlib import Path
 
 import pytest
+import sympy as sp
 from advice_campaign import Outcome, outcome
 from formula_mutants import mutants
 from formula_truth import formulas, is_right
 
 from derive import Derivation, load
 from derive.verification.advice import MAX_LENGTH
+from derive.verification.hand import judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict
@@ -193,3 +196,63 @@ def test_advice_mends_mutants(tmp_path: Path) -> None:
 @pytest.mark.timeout(3600)
 def test_advice_mends_600_mutants(tmp_path: Path) -> None:
     check(campaign(1, 600, tmp_path))
+
+
+TODA = """
+title = "Toda chain of unit masses"
+potential = "exp(a - b) + exp(b - c)"
+parameters = {}
+coordinates = { a = { unit = "m" }, b = { unit = "m" }, c = { unit = "m" } }
+"""
+TODA += "".join(f'[[masses]]\nmass = "1"\nposition = ["{q}", "0"]\n' for q in "abc")
+SETS = {
+    "toda.toml": [
+        "a_ddot = -exp(a - b)",
+        "b_ddot = exp(a - b) - exp(b - c)",
+        "c_ddot = exp(b - c)",
+    ],
+    "chaplygin_sleigh": ["v_dot = a*omega**2", "(J + m*a**2)*omega_dot = -m*a*v*omega"],
+}
+NAMES = {
+    "toda.toml": "",
+    "chaplygin_sleigh": '[names]\nv = "x_dot*cos(theta) + y_dot*sin(theta)"\nomega = "theta_dot"\n',
+}
+
+
+@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.parametrize(("system", "index", "slip"), [
+    ("toda.toml", 0, "a_ddot = -exp(a + b)"),
+    ("toda.toml", 1, "b_ddot = exp(a + b) - exp(b - c)"),
+    ("toda.toml", 1, "b_ddot = -exp(-c) + exp(a - b)"),
+    ("toda.toml", 1, "b_ddot = exp(a - b)"),
+    ("chaplygin_sleigh", 0, "v_dot = a*omega**6"),
+    ("chaplygin_sleigh", 1, "m*a**2*omega_dot = -m*a*v*omega"),
+])  # fmt: skip
+def test_corrections_keep_the_set_of_equations_of_motion(
+    system: str, index: int, slip: str, tmp_path: Path
+) -> None:
+    # oracle: in its own letters, the corrected set has the solution of the correct one
+    (tmp_path / "toda.toml").write_text(TODA)
+    equations = [*SETS[system]]
+    equations[index] = slip
+    path = tmp_path / "hand.toml"
+    path.write_text(f"system = '{system}'\neuler_lagrange = {equations}\n{NAMES[system]}")
+    result = judge(path).equations[index]
+    assert result.verdict == "wrong"
+    assert result.corrections or slip.startswith("m*a")  # none is known
+    for one in result.corrections:
+        assert slip.count(one.wrong) == 1 or not one.wrong
+        new = one.correct if one.wrong else f" + {one.correct} ="
+        slip = slip.replace(one.wrong or " =", new)
+        equations[index] = slip
+        assert solutions(equations) == solutions(SETS[system])
+
+
+def solutions(equations: list[str]) -> dict[sp.Symbol, sp.Expr]:
+    """The accelerations, or rates of velocities, that equations determine."""
+    words = {*re.findall(r"[A-Za-z_]+", " ".join(equations))} - {"exp"}
+    names = {word: sp.Symbol(word, real=True) for word in words}
+    residuals = [sp.sympify(f"({one.replace(' = ', ') - (')})", names) for one in equations]
+    rates = [names[word] for word in sorted(words) if word.endswith("dot")]
+    (solution,) = sp.linsolve(residuals, rates)
+    return {rate: sp.simplify(value) for rate, value in zip(rates, solution, strict=True)}
