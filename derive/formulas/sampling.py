@@ -5,18 +5,23 @@ different symbols. Hence every two symbols have all four pairs of signs (D. J. K
 J. Spencer, Discrete Math. 6 (1973) 255).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from itertools import combinations
 from random import Random
+from typing import Any
 
 import sympy as sp
 
-from derive.formulas.numeric import Approximation, Evaluator, NoValueError
+from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
 
 #: The number of states at which formulas are compared.
 STATES = 12
+#: Distances from zeros of numbers, where functions of these saturate and where they do not.
+DISTANCES = tuple(sign * sp.Rational(1, 10) ** power for power in (2, 40) for sign in (1, -1))
+#: The number of zeros near which there are states.
+MOST_ZEROS = 4
 
 
 def sample(symbols: Sequence[sp.Symbol], index: int) -> dict[sp.Symbol, sp.Expr]:
@@ -26,6 +31,52 @@ def sample(symbols: Sequence[sp.Symbol], index: int) -> dict[sp.Symbol, sp.Expr]
         size = 1 + sp.Rational(int(Random(f"{k} {index}").random() * 2000) + 1, 1000)
         values[symbol] = size * _sign(symbol, k, index)
     return values
+
+
+def near_zeros(
+    number: sp.Expr, state: Mapping[sp.Symbol, sp.Expr], symbols: Iterable[sp.Symbol]
+) -> Iterator[dict[sp.Symbol, sp.Expr]]:
+    """Yield states on both sides of zeros of a number, far from them and close to them.
+
+    The first of `symbols` of which it has zeros is changed. Of complex zeros, those of the real
+    parts are taken.
+    """
+    for symbol in symbols:
+        others = {s: value for s, value in state.items() if s != symbol}
+        zeros = _zeros(number.xreplace(others), symbol) if symbol in number.free_symbols else []
+        for zero in zeros:
+            for distance in DISTANCES:
+                value = zero + distance * (1 + abs(zero))
+                if not ((symbol.is_nonnegative and value <= 0) or symbol.is_nonpositive):
+                    yield {**state, symbol: value}
+        if zeros:
+            return
+
+
+def _zeros(number: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
+    """Real parts of zeros of a function of one symbol, to many digits; the smallest ones."""
+    try:
+        roots = sp.Poly(sp.numer(sp.together(number)), symbol).nroots(n=DIGITS, maxsteps=200)
+        zeros = [sp.re(root) for root in roots]
+    except (sp.PolynomialError, mp.NoConvergence):
+        zeros = [*_changes_of_sign(number, symbol)]
+    return sorted(dict.fromkeys(zeros), key=abs)[:MOST_ZEROS]
+
+
+def _changes_of_sign(number: sp.Expr, symbol: sp.Symbol) -> Iterator[sp.Expr]:
+    def value(x: Any) -> Any:
+        return Evaluator({symbol: Approximation(x).rounded()})(number).number.real
+
+    sizes = [mp.mpf(2) ** k for k in range(-3, 11)]
+    places = [*(-x for x in reversed(sizes)), mp.zero, *sizes]
+    with suppress(NoValueError, NotImplementedError):
+        values = [*map(value, places)]
+        for a, b, before, after in zip(places, places[1:], values, values[1:], strict=False):
+            if not before:
+                yield Approximation(a).rounded()
+            elif before * after < 0:
+                with suppress(ValueError):  # no convergence, as at a jump
+                    yield Approximation(mp.findroot(value, (a, b), solver="anderson")).rounded()
 
 
 def check_value(expression: sp.Expr) -> None:

@@ -29,6 +29,26 @@ def decisive_numbers(
     return tuple(sorted(found, key=lambda number: len(number.atoms(*CHOICES))))
 
 
+def turning_arguments(expression: sp.Basic) -> tuple[tuple[sp.Expr, str], ...]:
+    """Numbers near whose zeros an expression can change its form, with the kind of function.
+
+    They are decisive numbers, of the kind "choice", bases of roots, and arguments of functions
+    other than sine, cosine and tangent: ``tanh(300*x)`` is close to 1 or -1 but near x = 0.
+    """
+    found: dict[tuple[sp.Expr, str], None] = {}
+    for part in sp.preorder_traversal(expression):
+        numbers: Iterable[sp.Expr] = ()
+        kind = ""
+        if isinstance(part, CHOICES):
+            numbers, kind = _decisive(part), "choice"
+        elif isinstance(part, sp.Pow) and not part.exp.is_Integer:
+            numbers, kind = (part.base,), f"power {part.exp}"
+        elif isinstance(part, sp.Function) and not isinstance(part, sp.sin | sp.cos | sp.tan):
+            numbers, kind = part.args, part.func.__name__
+        found |= {(number, kind): None for number in numbers if not number.is_number}
+    return tuple(found)
+
+
 def switching_functions(
     expressions: Collection[sp.Basic], variables: Collection[sp.Symbol]
 ) -> tuple[sp.Expr, ...]:

@@ -13,7 +13,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.expression import Scope, parse
-from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError
+from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
 from derive.formulas.sampling import STATES
 from derive.formulas.syntax import RELATION, ExpressionError
 from derive.formulas.zero import is_positive, vanishes
@@ -22,8 +22,14 @@ State = Mapping[sp.Symbol, sp.Expr]
 
 INDEXED = re.compile(r"\b([A-Za-z]\w*?)_i(?=_|\b)")
 
+#: The relative difference of values that a witness shows, if there is one.
+VISIBLE = mp.mpf("1e-6")
 #: The note on what no proof decides.
 IN_NUMBERS = f"not proved: the sides agree to {DIGITS} digits at {STATES} generic states"
+#: The note where a formula can change its form between the states, so that it is not verified.
+UNDECIDED = (
+    "not proved: the sides agree where compared, but the formula can change its form elsewhere"
+)
 
 
 @dataclass(frozen=True)
@@ -57,6 +63,7 @@ class Context:
     substitutions: tuple[State, ...] = ()
     index_count: int = 0  # an index takes the values 1 to index_count
     implicit: frozenset[sp.Symbol] = frozenset()  # dependent, but without a substitution
+    unproved: str = IN_NUMBERS  # the note on what no proof decides
 
     def check(self, text: str, definitions: Scope | None = None) -> Check:
         """Check every part of `text`, with additional names from `definitions`."""
@@ -105,7 +112,7 @@ class Context:
         )
 
     def agreement(self, *differences: sp.Expr) -> str | None:
-        """Return "" if all `differences` are proved zero, `IN_NUMBERS` if they are zero at states.
+        """Return "" if all `differences` are proved zero, `unproved` if they are zero at states.
 
         None if one of them is not zero.
         """
@@ -116,7 +123,7 @@ class Context:
         except NotImplementedError:
             if len(self.states) < STATES:
                 raise
-            return IN_NUMBERS
+            return self.unproved
 
     def witness(self, value: sp.Expr, derived: sp.Expr) -> str:
         """Both values at the first state where they differ, with as many digits as show it."""
@@ -129,10 +136,16 @@ class Context:
         return " instead of ".join(texts)
 
     def first_difference(self, value: sp.Expr, derived: sp.Expr) -> int:
-        """The index of the first state where values differ."""
-        states = range(len(self.states))
-        differs = (k for k in states if not self._is_small(value - derived, self.evaluators[k]))
-        return next(differs, 0)
+        """The index of the first state where values differ visibly, or else of that where most."""
+        largest, result = mp.zero, 0
+        for index, place in enumerate(self.evaluators):
+            difference = self._approximation(value - derived, place)
+            size = abs(difference.number) / (1 + abs(self._approximation(derived, place).number))
+            if not difference.is_zero and size > largest:
+                largest, result = size, index
+            if largest > VISIBLE:
+                break
+        return result
 
     def value(self, expression: sp.Expr, index: int = 0) -> sp.Expr:
         """The value of `expression` at a state."""

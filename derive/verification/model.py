@@ -1,8 +1,9 @@
 """A derivation with generic states, against which formulas about its system are judged."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import islice
 from typing import Self
 
 import sympy as sp
@@ -10,12 +11,14 @@ import sympy as sp
 from derive.formulas.derivative import derivative
 from derive.formulas.expression import FUNCTIONS, Scope, Value
 from derive.formulas.numeric import Evaluator, NoValueError, solved
-from derive.formulas.sampling import STATES, sample
+from derive.formulas.sampling import STATES, is_small, near_zeros, sample
+from derive.formulas.switching import turning_arguments
+from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.constrained_motions import motion
-from derive.verification.engine import Context, State
+from derive.verification.engine import UNDECIDED, Context, State
 
 #: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted in
 #: formulas: with four, this takes a minute. Accelerations of larger ones are judged in numbers.
@@ -24,6 +27,8 @@ LARGEST_INVERSE, LARGEST_DIAGONAL = 3, 7
 #: Factors of coordinates at states, tried until the Lagrangian is real: a thread limits
 #: coordinates from above, a wheel's axis from below.
 SIZES = (sp.S.One, sp.Rational(1, 20), sp.Integer(5))
+#: The number of states near the turning arguments of a formula.
+MOST_TURNING = 60
 #: Factors of all variables, by which decisive numbers change their signs.
 SCALES = tuple(sp.Integer(10) ** power for power in (0, 1, -1, 2, -2, 3, -3))
 
@@ -38,10 +43,37 @@ class Model:
     derivation: Derivation
     names: Scope
     source_lagrangian: sp.Expr | None = None
+    #: A formula near whose own turning arguments there are further states, if it has any.
+    printed: sp.Expr | None = None
 
     def with_lagrangian(self, lagrangian: sp.Expr) -> Self:
         """The model with another Lagrangian that has the same equations of motion."""
         return replace(self, source_lagrangian=lagrangian)
+
+    def about(self, printed: sp.Expr) -> Self:
+        """The model with states near the turning arguments of a formula that the system has not.
+
+        Between states, the formula can have another form: what is not proved is undecided.
+        """
+        if self._own_turns(printed):
+            return replace(self, printed=printed)
+        return replace(self, printed=None) if self.printed is not None else self
+
+    def _own_turns(self, printed: sp.Expr) -> list[sp.Expr]:
+        turns, system = turning_arguments(printed), self.derivation.system
+        if system.conditions:  # their roots are coordinates that constraints give
+            turns = tuple(one for one in turns if not one[1].startswith("power"))
+        if not turns:
+            return []
+        conditions = (one.formula for one in system.conditions)
+        known = turning_arguments(
+            sp.Tuple(self.derivation.lagrangian, *system.applied, *conditions)
+        )
+        return [
+            number
+            for number, kind in turns
+            if not any(kind == own and _turn_together(number, one, kind) for one, own in known)
+        ]
 
     @cached_property
     def lagrangian(self) -> sp.Expr:
@@ -80,7 +112,11 @@ class Model:
         scope = {**own_names(system), **self.names}
         rates = {f"{p}_dot": time_derivative(system, value) for p, value in self.momenta.items()}
         states = (*(self._state(index) for index in range(STATES)), *self._further_states)
-        return Context({**rates, **scope}, states, (self.momenta,))
+        names = {**rates, **scope}
+        if self.printed is None:
+            return Context(names, states, (self.momenta,))
+        states = (*states, *islice(self._turning_states(self.printed), MOST_TURNING))
+        return Context(names, states, (self.momenta,), unproved=UNDECIDED)
 
     @cached_property
     def motions(self) -> Context:
@@ -88,7 +124,7 @@ class Model:
         system, derivation = self.derivation.system, self.derivation
         if system.conditions:
             dependent = frozenset((*system.q, *system.qdot, *system.qddot, *system.multipliers))
-            moved = tuple(motion(derivation, state) for state in self.context.states)
+            moved = tuple(self._moved())
             return replace(self.context, states=moved, implicit=dependent)
         states = []
         for state, evaluator in zip(self.context.states, self.context.evaluators, strict=True):
@@ -104,6 +140,26 @@ class Model:
         """A note if a difference is zero at all states or along motions, otherwise None."""
         note = self.context.agreement(difference)
         return self.motions.agreement(difference) if note is None else note
+
+    def _moved(self) -> Iterator[State]:
+        """The states of motions near the generic ones, and those near others that exist."""
+        for index, state in enumerate(self.context.states):
+            try:
+                yield motion(self.derivation, state)
+            except ExpressionError:
+                if index < STATES:
+                    raise
+
+    def _turning_states(self, printed: sp.Expr) -> Iterator[State]:
+        """States near zeros of the turning arguments of a formula, where it is a real number."""
+        system = self.derivation.system
+        symbols = (*system.qdot, *system.q, TIME, *system.qddot, *system.params)
+        for number in self._own_turns(printed):
+            number = number.xreplace(self.momenta)
+            for near in near_zeros(number, self._state(0), symbols):
+                state = self._with_momenta(near)
+                if _is_real(self.derivation.lagrangian, state) and _is_real(printed, state):
+                    yield state
 
     @property
     def _further_states(self) -> list[State]:
@@ -133,8 +189,11 @@ class Model:
                 break
         else:
             state = values
-        evaluator = Evaluator(state)
-        return state | {p: evaluator(value).rounded() for p, value in self.momenta.items()}
+        return self._with_momenta(state)
+
+    def _with_momenta(self, state: State) -> State:
+        evaluator = Evaluator({s: x for s, x in state.items() if s not in self.momenta})
+        return {**state, **{p: evaluator(x).rounded() for p, x in self.momenta.items()}}
 
 
 def variables(system: System) -> tuple[sp.Symbol, ...]:
@@ -162,5 +221,17 @@ def depends_on(value: Value, symbols: Collection[sp.Symbol]) -> bool:
 def _is_real(expression: sp.Expr, state: State) -> bool:
     try:
         return bool(Evaluator(state)(expression).rounded().is_real)
-    except NoValueError:
+    except (NoValueError, NotImplementedError):
         return False
+
+
+def _turn_together(one: sp.Expr, other: sp.Expr, kind: str) -> bool:
+    """Whether a function of two numbers changes its form at the same states.
+
+    For choices and roots, the quotient of the numbers may depend on positive symbols.
+    """
+    symbols = one.free_symbols | other.free_symbols
+    moving = [symbol for symbol in symbols if not symbol.is_positive]
+    if not moving or not kind.startswith(("choice", "power")):
+        return is_small(one - other) or is_small(one + other)
+    return all(is_small(one.diff(s) * other - one * other.diff(s)) for s in moving)

@@ -1,6 +1,7 @@
 """Verdicts on formulas for quantities of a derivation, and on equations of motion."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
@@ -8,7 +9,7 @@ from derive.formulas.expression import number
 from derive.formulas.syntax import ExpressionError
 from derive.verification.advice import advised
 from derive.verification.derived import QUANTITIES, foreign_symbols
-from derive.verification.engine import joined
+from derive.verification.engine import UNDECIDED, joined
 from derive.verification.equations_of_motion import judge_equation
 from derive.verification.equivalence import TOTAL_ENERGY, equivalence
 from derive.verification.model import Model
@@ -40,6 +41,9 @@ def judge_formula(
     """
     if kind == "routhian":
         name = eliminated_names(model, text)
+    with suppress(ExpressionError):
+        value = difference(text, model.context.scope)
+        model, source = model.about(value), source and source.about(value)
     verdict = _judged(model, label, text, kind, name)
     if verdict.verdict == "wrong" and source and kind in FROM_LAGRANGIAN:
         other = _judged(source, label, text, kind, name)
@@ -63,11 +67,15 @@ def judge_formula(
 
 
 def _judged(model: Model, label: str, text: str, kind: str, name: str) -> Verdict:
-    """Judge a formula without advice."""
+    """Judge a formula without advice; what is undecided is `context`."""
     try:
+        about = model.about(difference(text, model.context.scope))
         if kind == "euler_lagrange":
-            return judge_equation(model, label, text)
-        return _judge_quantity(model, label, text, kind, name)
+            verdict = judge_equation(about, label, text)
+        else:
+            verdict = _judge_quantity(about, label, text, kind, name)
+        is_undecided = UNDECIDED in verdict.note and verdict.verdict in ("verified", "equivalent")
+        return replace(verdict, verdict="context") if is_undecided else verdict
     except ExpressionError as error:
         return Verdict(label, "unreadable", text, note=str(error))
 

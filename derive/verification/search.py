@@ -158,7 +158,7 @@ class Search:
     def _size(self, piece: Piece) -> float:
         """A small cost of long pieces, and of those with accelerations."""
         names = (node.id for node in ast.walk(piece.node) if isinstance(node, ast.Name))
-        values = [self._scope[name] for name in names]
+        values = [self._scope.get(name) for name in names]  # True is none in a condition
         accelerated = any(depends_on(x, self._qddot) for x in values if isinstance(x, sp.Expr))
         return 0.01 * (piece.end - piece.start) + accelerated
 

@@ -21,7 +21,7 @@ class SourceNames:
             for word, value in scope.items()
         } | {"pi": sp.pi}
         #: The names in the formula.
-        self.names = [self._written[w] for w in sorted(used) if isinstance(scope[w], sp.Expr)]
+        self.names = [self._written[w] for w in sorted(used) if isinstance(scope.get(w), sp.Expr)]
         words = [word for word, value in scope.items() if isinstance(value, sp.Symbol)]
         # the rate of a momentum of a unit mass is an acceleration, which has a name
         words = [word for word in words if word in used or not _is_rate_of_momentum(word, scope)]

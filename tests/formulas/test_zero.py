@@ -34,7 +34,9 @@ def test_identities_vanish_and_perturbed_identities_do_not(expression: sp.Expr) 
     "expression",
     [
         sp.sqrt(a) - sp.exp(b),
-        (sp.sqrt(2) + 1) ** 2 - 3 - 2 * sp.sqrt(2),
+        sp.Max(0, a - 100),
+        sp.sign(a) - sp.tanh(300 * a),
+        sp.sqrt(a**2 + 1) - sp.sqrt(a**2 + 2),
         a**1000 - b,
         sp.sin(100001 * a),
         (sp.Add(*sp.symbols("x:9")) + 1) ** 60 - 1,  # too much work
@@ -44,6 +46,27 @@ def test_identities_vanish_and_perturbed_identities_do_not(expression: sp.Expr) 
 def test_irrational_or_too_large_expressions_are_undecided(expression: sp.Expr) -> None:
     with pytest.raises(NotImplementedError, match="cannot"):
         vanishes(expression)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        (sp.sqrt(2) + 1) ** 2 - 3 - 2 * sp.sqrt(2),
+        (sp.sqrt(a**2 + b**2) + 1) ** 2 - a**2 - b**2 - 1 - 2 * sp.sqrt(a**2 + b**2),
+        sp.sqrt((m - n * sp.cos(a)) ** 2 + n**2 * sp.sin(a) ** 2)
+        - sp.sqrt(m**2 + n**2 - 2 * m * n * sp.cos(a)),
+        sp.sqrt(4 * a**2 + 4 * b**2) - 2 * sp.sqrt(a**2 + b**2),
+        m * a / sp.Abs(a) - m * sp.sign(2 * a),
+        sp.Max(0, a) - (a + sp.Abs(a)) / 2,
+        sp.Piecewise((a, a < b), (b, True)) - sp.Min(a, b),
+        sp.tanh(a) - (sp.exp(2 * a) - 1) / (sp.exp(2 * a) + 1),
+        sp.cosh(a / 2) ** 2 - sp.sinh(a / 2) ** 2 - 1,
+        sp.tan(a) * sp.cos(a) - sp.sin(a),
+        m * sp.log(a * (b + 1)) / n - sp.log(a + a * b) * m / n,
+    ],
+)
+def test_identities_of_roots_signs_and_other_functions_vanish(expression: sp.Expr) -> None:
+    assert vanishes(expression)
 
 
 def test_a_vanishing_denominator_is_rejected() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive import Derivation, load
-from derive.verification.engine import IN_NUMBERS
+from derive.verification.engine import IN_NUMBERS, UNDECIDED
 from derive.verification.hand import judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
@@ -37,6 +37,19 @@ G = { value = 1, unit = "N m^2" }
 [[masses]]
 mass = "m"
 position = ["r*cos(theta)", "r*sin(theta)"]
+""",
+    "friction": """
+potential = "k*x**2/2"
+forces = { x = "-F*sign(x_dot)" }
+[coordinates]
+x = { unit = "m" }
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m" }
+F = { value = 1, unit = "N" }
+[[masses]]
+mass = "m"
+position = ["x", "0"]
 """,
     "unstable": """
 potential = "k*x**2/2 - F*x"
@@ -126,6 +139,54 @@ def test_roots_of_squares_are_wrong_where_the_sign_is_free(
     (tmp_path / "unstable.toml").write_text(SYSTEMS["unstable"])
     model = Model(Derivation(load(tmp_path / "unstable.toml")), {})
     result = judge_formula(model, "", text, kind, "x")
+    assert result.verdict == "wrong"
+    printed, derived = result.witness.split(" instead of ")
+    assert printed != derived
+
+
+@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.parametrize(
+    ("force", "verdict"),
+    [
+        ("F*sign(x_dot)", "verified"),
+        ("F*x_dot/abs(x_dot)", "verified"),
+        ("F*x_dot/sqrt(x_dot**2)", "verified"),
+        ("F*Piecewise((-1, x_dot < 0), (1, True))", "verified"),
+        ("F*(max(0, x_dot) - max(0, -x_dot))/sqrt(x_dot**2)", "verified"),
+        ("F*tanh(300*x_dot)", "wrong"),
+        ("F*x_dot/sqrt(x_dot**2 + 1e-99)", "wrong"),
+        ("F*sign(x_dot) + max(0, x - 100)", "wrong"),
+        ("F*sign(x_dot) + Piecewise((0, x < 60), (1, x < 61), (0, True))", "wrong"),
+        ("F*sign(x_dot)*(1 + max(0, m - 100))", "wrong"),
+        # the two switches are never beyond their zeros together where only one number is changed
+        ("F*sign(x_dot) + max(0, min(x - 60, x_dot - 70))", "context"),
+        ("F*sign(x_dot)*tanh(1e20 + x**2)", "context"),
+    ],
+)
+def test_formulas_that_switch_where_the_system_does_not_are_not_verified_in_numbers(
+    force: str, verdict: str, tmp_path: Path
+) -> None:
+    text = f'euler_lagrange = ["m*x_ddot + k*x + {force} = 0"]'
+    (one,) = judged(tmp_path, "friction", text)
+    assert one.verdict == verdict
+    assert (UNDECIDED in one.note) == (verdict == "context")
+    if verdict == "verified":
+        assert IN_NUMBERS not in one.note
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ("potential_energy", "-m*g*l*cos(theta) + max(0, theta - 100)"),
+        ("kinetic_energy", "Piecewise((m*l**2*theta_dot**2/2, theta < 60), (0, True))"),
+        (
+            "lagrangian",
+            "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)*sqrt(theta**2 + 1e-99)/abs(theta)",
+        ),
+    ],
+)
+def test_the_witness_is_beyond_the_switch_of_the_printed_formula(kind: str, text: str) -> None:
+    result = judge_formula(Model(Derivation(load("single_pendulum")), {}), "", text, kind)
     assert result.verdict == "wrong"
     printed, derived = result.witness.split(" instead of ")
     assert printed != derived

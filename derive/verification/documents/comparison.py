@@ -14,6 +14,7 @@ from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import Text
+from derive.verification.engine import UNDECIDED
 from derive.verification.model import depends_on
 from derive.verification.verdict import Correction
 
@@ -44,14 +45,15 @@ class Comparison:
             return self._matrices(formula, first, side, left, right)
         # a Lagrangian of motions alone has other equations
         is_lagrangian = self._scope.letters.quantities.get(first.text) == "lagrangian"
-        model = self._model.context if is_lagrangian else self._model
+        about = self._model.about(left - right)
+        model = about.context if is_lagrangian else about
         has_reactions = is_lagrangian and depends_on(
             right, self._scope.derivation.system.multipliers
         )
         if has_reactions:
             left += self._reactions
         if (note := model.agreement(left - right)) is not None:
-            return plain("verified", formula, note)
+            return plain("context" if note == UNDECIDED else "verified", formula, note)
         if has_reactions:
             result = self._roles.value(side, first.text, left)
             if result.verdict.verdict not in CORRECT:
@@ -109,14 +111,18 @@ class Comparison:
             moving = difference
             for values in self._model.motions.substitutions:
                 moving = moving.xreplace(values)
-            if self._model.agreement(moving.xreplace(stated)) is not None:
+            if self._agree(moving.xreplace(stated)):
                 return stated
         parameters = left.free_symbols & {*self._scope.derivation.system.params}
         units = dict.fromkeys(sorted(parameters, key=str), sp.S.One)
         # one parameter that is lacking is a mistake
         if len(parameters) > 1 and not right.free_symbols & parameters:
-            return units if self._model.agreement(difference.xreplace(units)) is not None else {}
+            return units if self._agree(difference.xreplace(units)) else {}
         return {}
+
+    def _agree(self, difference: sp.Expr) -> bool:
+        """Whether a difference is zero, by proof or at states between which it keeps its form."""
+        return self._model.about(difference).agreement(difference) not in (None, UNDECIDED)
 
     def _matrices(
         self, formula: DocumentFormula, first: Text, side: Text, left: Value, right: Value
@@ -129,8 +135,11 @@ class Comparison:
         if shapes[0] != shapes[1]:
             return plain("context", formula, "it compares quantities of different shapes")
         is_displaced = any(name in self._scope.displacements for name in formula.words)
+        undecided = ""
         for index, (a, b) in enumerate(zip(left, right, strict=True)):
-            if self._model.agreement(a - b) is not None or self._linear.holds(
+            note = self._model.about(a - b).agreement(a - b)
+            undecided = UNDECIDED if note == UNDECIDED else undecided
+            if note is not None or self._linear.holds(
                 a - b, self._model, is_displaced=is_displaced
             ):
                 continue
@@ -148,7 +157,7 @@ class Comparison:
             if mine:
                 return self._roles.value(mine, "entry", b)
             return plain("wrong", formula, "", witness)
-        return plain("verified", formula, "")
+        return plain("context" if undecided else "verified", formula, undecided)
 
     def _with_shape(self, value: Value, other: Value) -> Value:
         """Zeros in place of zero on one side of a set of equations of motion."""
