@@ -72,7 +72,7 @@ def advised(
         searches = [Search(text, names, model, goal, correct) for goal in searchable]
         proposals = _mending(text, names, model, searches, value, correct, others)
         corrections = next((one for one, mended in proposals if holds(mended)), ())
-    state = _state(model, names, value, aims[0], correct)
+    state = _state(model, names, value, aims[0], correct) if verdict.witness else ""
     result = replace(verdict, corrections=corrections, state=state)
     if correct is None and not verdict.note:
         size = f"{len(model.derivation.system.q)} × {len(model.derivation.system.q)}"
@@ -175,18 +175,15 @@ def _correct_form(model: Model, kind: str, name: str, value: sp.Expr) -> sp.Expr
 def _state(
     model: Model, names: SourceNames, value: sp.Expr, goal: Goal, correct: sp.Expr | None
 ) -> str:
-    """The first state at which a formula has not the values of the goal."""
+    """The state of the witness: all numbers with which both values can be computed again."""
     context = model.motions if goal.along_motions else model.context
-    state = context.states[context.first_difference(value, goal.value)]
     derived = goal.value if correct is None or goal.is_equation else correct
-    used = value.free_symbols | derived.free_symbols
-    used -= {*model.derivation.system.qddot}
-    numbers = (
-        f"{names.write(symbol)} = {sp.sstr(number if number.is_Rational else number.n(8))}"
-        for symbol, number in state.items()
-        if symbol in used
-    )
-    return ", ".join(numbers)
+    used = derived.free_symbols | (value.free_symbols if names.has_operators else set())
+    quantities = names.quantities(used)
+    order = {symbol: index for index, symbol in enumerate(context.states[0])}
+    quantities = dict(sorted(quantities.items(), key=lambda one: order.get(one[1], len(order))))
+    numbers = context.state(value, goal.value, quantities)
+    return ", ".join(f"{name} = {number}" for name, number in numbers.items())
 
 
 def _closest_equation(value: sp.Expr, model: Model) -> sp.Expr:

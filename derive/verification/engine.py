@@ -24,6 +24,8 @@ INDEXED = re.compile(r"\b([A-Za-z]\w*?)_i(?=_|\b)")
 
 #: The relative difference of values that a witness shows, if there is one.
 VISIBLE = mp.mpf("1e-6")
+#: Digits of the numbers of a state, and characters of the longest fraction among them.
+SHOWN, MAX_FRACTION = 10, 12
 #: The note on what no proof decides.
 IN_NUMBERS = f"not proved: the sides agree to {DIGITS} digits at {STATES} generic states"
 #: The note where a formula can change its form between the states, so that it is not verified.
@@ -134,6 +136,25 @@ class Context:
             if texts[0] != texts[1]:
                 break
         return " instead of ".join(texts)
+
+    def state(
+        self, value: sp.Expr, derived: sp.Expr, quantities: Mapping[str, sp.Expr]
+    ) -> dict[str, str]:
+        """Numbers of quantities where values differ, by their names.
+
+        They have as many digits as the difference needs to be computed again.
+        """
+        index = self.first_difference(value, derived)
+        size = abs(self._approximation(value - derived, self.evaluators[index]).number)
+        lost = -mp.log10(size) if size else 0
+        digits = min(SHOWN + max(0, int(mp.ceil(lost))), DIGITS)
+        return {name: self._written(one, index, digits) for name, one in quantities.items()}
+
+    def _written(self, quantity: sp.Expr, index: int, digits: int) -> str:
+        number = self.states[index].get(quantity, quantity)
+        if not number.is_Rational or len(str(number)) > MAX_FRACTION:
+            number = self.value(quantity, index).n(digits)
+        return str(sp.sstr(number))
 
     def first_difference(self, value: sp.Expr, derived: sp.Expr) -> int:
         """The index of the first state where values differ visibly, or else of that where most."""

@@ -1,12 +1,12 @@
 """The names of a formula, and expressions of its system written with them."""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import Scope, parse
+from derive.formulas.expression import FUNCTIONS, Scope, parse
 from derive.formulas.syntax import syntax_tree
 
 
@@ -29,6 +29,25 @@ class SourceNames:
         words.sort(key=lambda word: (word in used, word != scope[word].name))
         #: The symbols of the system, as the formula writes them.
         self.symbols = {scope[word]: self._written[word] for word in words}
+
+    def quantities(self, others: Iterable[sp.Symbol]) -> dict[str, sp.Expr]:
+        """The names in the formula, and `others`, with the values that they stand for.
+
+        Operators such as ``ddt(a)`` are not computed from the names in them: `others` should then
+        contain the symbols of the formula's value.
+        """
+        known = {str(name): self._scope[str(name)] for name in self.names if not name.is_number}
+        known = {name: x for name, x in known.items() if not isinstance(x, sp.MatrixBase)}
+        symbols = {value: name for name, value in known.items() if value.is_Symbol}
+        symbols = {symbol: str(self.write(symbol)) for symbol in others} | symbols
+        own = {name: symbol for symbol, name in symbols.items()}
+        return own | {name: value for name, value in known.items() if not value.is_number}
+
+    @property
+    def has_operators(self) -> bool:
+        """Whether the formula contains operators, such as derivatives."""
+        calls = (node.func for node in self.nodes() if isinstance(node, ast.Call))
+        return any(isinstance(one, ast.Name) and one.id not in FUNCTIONS for one in calls)
 
     def nodes(self) -> Iterator[ast.AST]:
         """Yield all parts of the formula."""

@@ -32,7 +32,7 @@ class Outcome:
 
 def outcome(mutant: Mutant, path: Path) -> Outcome:
     """Print the verdict on a mutant, and follow its advice."""
-    path.write_text(_document(mutant), encoding="utf-8")
+    path.write_text(document(mutant), encoding="utf-8")
     with redirect_stdout(StringIO()) as printed:
         main(["verify", str(path)])
     verdict, advice = read_advice(printed.getvalue())
@@ -41,7 +41,7 @@ def outcome(mutant: Mutant, path: Path) -> Outcome:
     return Outcome(mutant, verdict, advice, mends, _is_named(mutant, advice))
 
 
-def _document(mutant: Mutant) -> str:
+def document(mutant: Mutant) -> str:
     formula, original = mutant.formula, tomllib.loads(DOCUMENTS[mutant.formula.document])
     header = DOCUMENTS[formula.document].strip().split("\n")[0]
     tables = [f"[{t}]\n" + "".join(f'{k} = "{v}"\n' for k, v in original[t].items())

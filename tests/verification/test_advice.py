@@ -4,15 +4,19 @@ import re
 from collections import Counter
 from functools import cache
 from pathlib import Path
+from typing import Any
 
+import mpmath as mp
 import pytest
 import sympy as sp
-from advice_campaign import Outcome, outcome
+from advice_campaign import Outcome, document, outcome
 from formula_mutants import mutants
 from formula_truth import formulas, is_right
 
 from derive import Derivation, load
+from derive.reading.documents import read_document
 from derive.verification.advice import MAX_LENGTH
+from derive.verification.documents.judgement import judge_document
 from derive.verification.hand import judge
 from derive.verification.model import Model
 from derive.verification.quantities import judge_formula
@@ -156,7 +160,100 @@ def test_the_values_of_a_witness_differ(error: str) -> None:
 def test_the_witness_of_an_equation_of_motion_is_its_value_along_a_motion() -> None:
     result = judged("single_pendulum", "euler_lagrange", "", "theta_ddot = 2*g/l*sin(theta)")
     assert result.witness.endswith(" instead of 0")
-    assert "theta_ddot" not in result.state
+    state = numbers(result.state)
+    along = -state["g"] / state["l"] * mp.sin(state["theta"])
+    assert abs(state["theta_ddot"] - along) < 1e-8
+
+
+def numbers(state: str) -> dict[str, Any]:
+    """The numbers of a state as printed."""
+    pairs = (one.split(" = ") for one in state.split(", "))
+    return {name: mp.fdiv(*[*number.split("/"), "1"][:2]) for name, number in pairs}
+
+
+def value(text: str, state: dict[str, Any]) -> Any:
+    """Left minus right side of a formula, computed with the printed numbers alone."""
+    functions = {name: getattr(mp, name) for name in ("sin", "cos", "exp", "sqrt", "pi")}
+    sides = [eval(side.replace("\n", " "), {**functions, **state}) for side in text.split("=")]
+    return sides[0] - sum(sides[1:])
+
+
+WITNESSES = {
+    "names": (
+        'system = "double_pendulum"\neuler_lagrange = ["(m1 + m2)*l1*theta1_ddot'
+        ' + m2*l2*(a2*cos(D) + theta2_dot**2*cos(D)) = -(m1 + m2)*g*sin(theta1)"]\n'
+        '[names]\nD = "theta1 - theta2"\na2 = "theta2_ddot"'
+    ),
+    "momenta": (
+        'system = "spherical_pendulum"\nhamiltonian = "p_theta**2/(2*m*l**2)'
+        ' + p_phi**2/(m*l**2*sin(theta)**2) - m*g*l*cos(theta)"'
+    ),
+    "multiplier": (
+        'system = "chaplygin_sleigh"\neuler_lagrange = ["m*x_ddot - m*a*theta_ddot*sin(theta)'
+        ' - m*a*theta_dot**2*cos(theta) = -lambda*cos(theta)", "m*y_ddot'
+        ' + m*a*theta_ddot*cos(theta) - m*a*theta_dot**2*sin(theta) = lambda*cos(theta)"]'
+    ),
+    "rates": (
+        'system = "chaplygin_sleigh"\neuler_lagrange = ["v_dot = a*theta_dot"]\n'
+        '[names]\nv = "x_dot*cos(theta) + y_dot*sin(theta)"'
+    ),
+    "large": 'system = "chain_5"\naccelerations = { theta1 = "-g*sin(theta1)/l1" }',
+    "small": (
+        'system = "single_pendulum"\neuler_lagrange = '
+        '["l*theta_ddot + g*sin(theta)*(1 + 1e-25*theta_dot) = 0"]'
+    ),
+    "switch": 'system = "single_pendulum"\npotential_energy = "-m*g*l*cos(theta + 0*t)'
+    ' + exp(theta - 70)/10**9"',
+}
+
+
+@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.parametrize("name", WITNESSES)
+def test_witnesses_are_computed_again_from_the_printed_numbers(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "hand.toml"
+    path.write_text(WITNESSES[name])
+    result = next(one for one in judge(path).equations if one.verdict == "wrong")
+    check_witness(result)
+
+
+@pytest.mark.long("many mutants")
+def test_witnesses_of_mutants_are_computed_again(tmp_path: Path) -> None:
+    for mutant in mutants(3, 20):
+        path = tmp_path / "mutant.toml"
+        path.write_text(document(mutant))
+        for result in judge(path).equations:
+            check_witness(result)
+
+
+def check_witness(result: Verdict) -> None:
+    assert result.witness
+    with mp.workdps(60):
+        state = numbers(result.state)
+        printed, derived = map(mp.mpf, result.witness.split(" instead of "))
+        digits = len(result.witness.split(" ")[0].split("e")[0].strip("-0.").replace(".", ""))
+        close = 1e-5 * abs(printed - derived) + abs(printed) * mp.mpf(10) ** (1 - digits)
+        text = result.printed.replace("lambda", "multiplier")
+        if "lambda" in state:
+            state["multiplier"] = state.pop("lambda")
+        assert abs(value(text, state) - printed) < close
+        if result.correction and "=" not in result.correction:
+            assert abs(value(result.correction, state) - derived) < close
+
+
+def test_witnesses_in_documents_are_computed_again(tmp_path: Path) -> None:
+    # oracle: the wrong equations by hand, left minus right
+    path = tmp_path / "skate.md"
+    path.write_text(
+        "A skate cannot slip sideways, which is the constraint"
+        r" $\dot x\sin\phi - \dot y\cos\phi = 0$."
+        r" $$ L = \frac12 m (\dot x^2 + \dot y^2) + \frac12 J \dot\phi^2 $$"
+        r" $$ m \ddot x = \lambda\sin\phi, \quad m \ddot y = \lambda\cos\phi $$"
+    )
+    (one,) = (f for f in judge_document(read_document(path)).formulas if f.verdict == "wrong")
+    state = numbers(one.state)
+    a, force = state[r"\ddot y"], state[r"\lambda"]
+    printed = mp.mpf(one.witness.split(" instead of ")[0])
+    assert abs(state["m"] * a - force * mp.cos(state[r"\phi"]) - printed) < 1e-6
 
 
 SHARE = 0.95  # of the rejected mutants; none has advice that does not mend it

@@ -85,7 +85,8 @@ def test_json_has_the_formulas_of_each_document(
     assert "cos" in third["wrong_term"]
     assert "sin" in third["correction"]
     assert set(third) == {
-        "line", "display", "latex", "verdict", "wrong_term", "correction", "witness", "note",
+        "line", "display", "latex", "verdict", "wrong_term", "correction", "witness", "state",
+            "note",
     }  # fmt: skip
 
 

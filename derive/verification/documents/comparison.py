@@ -16,6 +16,7 @@ from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import Text
 from derive.verification.engine import UNDECIDED
 from derive.verification.model import depends_on
+from derive.verification.source_names import SourceNames
 from derive.verification.verdict import Correction
 
 #: The largest denominator of a factor that is looked for.
@@ -60,7 +61,7 @@ class Comparison:
                 return result
             # it has the value along motions alone
             note = "the multipliers have not the signs and factors of the equations of motion"
-            return plain("wrong", formula, note, self._model.context.witness(right, left))
+            return plain("wrong", formula, note, *self._witness(formula, right, left))
         small = "it holds for small motions about the origin"
         if is_product:
             return self._scaled(formula, side, left, right)
@@ -80,6 +81,17 @@ class Comparison:
             return plain("equivalent", formula, f"it holds for {text}")
         return result
 
+    def _witness(
+        self, formula: DocumentFormula, value: sp.Expr, derived: sp.Expr
+    ) -> tuple[str, str]:
+        """Two values at a state, and the numbers with which they can be computed again."""
+        context = self._model.context
+        names = SourceNames(formula.text, self._scope.all_names)
+        quantities = names.quantities((value - derived).free_symbols)
+        numbers = context.state(value, derived, quantities)
+        state = ", ".join(f"{name} = {number}" for name, number in numbers.items())
+        return context.witness(value, derived), state
+
     @property
     def _reactions(self) -> sp.Expr:
         """The terms Σ λ φ that the constraints of coordinates add to a Lagrangian."""
@@ -93,7 +105,7 @@ class Comparison:
     ) -> SideVerdict:
         """The verdict on a wrong scalar product of columns, perhaps but for a factor."""
         context = self._model.context
-        result = plain("wrong", formula, "", context.witness(right, left))
+        result = plain("wrong", formula, "", *self._witness(formula, right, left))
         ratio = sp.nsimplify(context.value(left) / context.value(right), rational=True)
         if ratio.q < MAX_DENOMINATOR and self._model.agreement(left - ratio * right) is not None:
             correction = Correction(side.text, f"{ratio}*{side.text}")
@@ -147,16 +159,17 @@ class Comparison:
                 one.entries[index] if len(one.entries) == len(left) else None
                 for one in (first, side)
             )
-            witness = self._model.context.witness(b, a)
+            witness, state = self._witness(formula, b, a)
             if other is None and (result := self._terms.verdict(first, side, left, right, witness)):
-                return result
+                own = result.verdict.state or state
+                return replace(result, verdict=replace(result.verdict, state=own))
             if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
                 return self._roles.equation(mine, other)
             if other:
                 return self._roles.value(other, "entry", a)
             if mine:
                 return self._roles.value(mine, "entry", b)
-            return plain("wrong", formula, "", witness)
+            return plain("wrong", formula, "", witness, state)
         return plain("context" if undecided else "verified", formula, undecided)
 
     def _with_shape(self, value: Value, other: Value) -> Value:

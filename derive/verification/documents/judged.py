@@ -39,6 +39,8 @@ class JudgedFormula:
         Of the wrong terms in the text of the document; empty for programs.
     cell
         Number of a notebook's cell, counted from 1; 0 in other documents.
+    state
+        The numbers of the letters with which the witness can be computed again.
     """
 
     line: int
@@ -53,6 +55,7 @@ class JudgedFormula:
     span: Span = (0, 0)
     cell: int = 0
     wrong_spans: tuple[Span, ...] = ()
+    state: str = ""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from derive.verification.documents.alternatives import alternatives
 from derive.verification.documents.constraints import WAY_OUT
 from derive.verification.documents.convention import convention
 from derive.verification.documents.corrections import corrected
+from derive.verification.documents.corrections import written as latex_of
 from derive.verification.documents.hints import Hints
 from derive.verification.documents.interpretation import Work, interpretation, judge_of
 from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
@@ -125,8 +126,14 @@ def _judged(
     return JudgedFormula(
         place.line, place.column, place.display, place.source, verdict.verdict,
         correction.wrong_term, correction.correction, verdict.witness, verdict.note,
-        place.span, place.cell, spans,
+        place.span, place.cell, spans, _state(verdict.state, written),
     )  # fmt: skip
+
+
+def _state(state: str, letters: dict[str, str]) -> str:
+    """The numbers of a state, with the letters as the document writes them."""
+    pairs = (one.partition(" = ") for one in filter(None, state.split(", ")))
+    return ", ".join(f"{latex_of(name, letters)} = {number}" for name, _, number in pairs)
 
 
 def _is_graver(one: SideVerdict, other: SideVerdict) -> bool:

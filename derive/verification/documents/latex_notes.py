@@ -136,4 +136,5 @@ def _details(one: JudgedFormula, macros: Mapping[str, Macro] | None) -> Iterator
     yield "wrong term", _written(one.wrong_term, macros)
     yield "correct formula", _written(one.correction, macros)
     yield "value", escaped(one.witness)
+    yield "state", ", ".join(_written(number, macros) for number in one.state.split(", ") if number)
     yield "note", escaped(one.note)

@@ -113,6 +113,7 @@ def _details(one: JudgedFormula, macros: Macros) -> Iterator[tuple[str, str]]:
         changed = _changed(one.latex, one.correction)
         yield "should be", _math(one.correction, macros, changed, "right-term")
     yield "value", escape(one.witness)
+    yield "state", _math(one.state, macros, (), "") if one.state else ""
     yield "note", escape(one.note)
 
 

@@ -71,7 +71,7 @@ def _judged(equation: Equation, result: SideVerdict) -> JudgedFormula:
         correction = f"{equation.text.partition(' = ')[0]} = {correction}"
     return JudgedFormula(
         line, 1, 0, equation.text, verdict.verdict, "; ".join(terms), correction,
-        verdict.witness, verdict.note,
+        verdict.witness, verdict.note, state=verdict.state,
     )  # fmt: skip
 
 

@@ -21,9 +21,11 @@ class SideVerdict:
     is_understood: bool = True  # all its letters have a meaning
 
 
-def plain(verdict: str, formula: DocumentFormula, note: str, witness: str = "") -> SideVerdict:
+def plain(
+    verdict: str, formula: DocumentFormula, note: str, witness: str = "", state: str = ""
+) -> SideVerdict:
     """A verdict without corrections."""
-    one = Verdict("", verdict, formula.text, note=note, witness=witness)  # type: ignore[arg-type]
+    one = Verdict("", verdict, formula.text, note=note, witness=witness, state=state)  # type: ignore[arg-type]
     return SideVerdict(one, (), "")
 
 

@@ -32,6 +32,7 @@ def _details(one: JudgedFormula) -> Iterator[str]:
         "wrong term": _line(one.wrong_term),
         "correct formula": _line(one.correction),
         "value": one.witness,
+        "state": one.state,
         "note": one.note,
     }
     return (f"{title}: {text}" for title, text in details.items() if text)
@@ -65,5 +66,6 @@ def _record(one: JudgedFormula) -> dict[str, Any]:
         "wrong_term": one.wrong_term,
         "correction": one.correction,
         "witness": one.witness,
+        "state": one.state,
         "note": one.note,
     }
