@@ -59,11 +59,13 @@ def _zeros(number: sp.Expr, symbol: sp.Symbol) -> list[sp.Expr]:
         roots = sp.Poly(sp.numer(sp.together(number)), symbol).nroots(n=DIGITS, maxsteps=200)
         zeros = [sp.re(root) for root in roots]
     except (sp.PolynomialError, mp.NoConvergence):
-        zeros = [*_changes_of_sign(number, symbol)]
+        zeros = [*changes_of_sign(number, symbol)]
     return sorted(dict.fromkeys(zeros), key=abs)[:MOST_ZEROS]
 
 
-def _changes_of_sign(number: sp.Expr, symbol: sp.Symbol) -> Iterator[sp.Expr]:
+def changes_of_sign(number: sp.Expr, symbol: sp.Symbol) -> Iterator[sp.Expr]:
+    """Yield zeros of a function of one symbol, of those between which its sign changes."""
+
     def value(x: Any) -> Any:
         return Evaluator({symbol: Approximation(x).rounded()})(number).number.real
 

@@ -13,7 +13,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.verification.constrained_motions import equations
 from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
-from derive.verification.other_solutions import has_other_solutions
+from derive.verification.other_solutions import has_other_solutions, without_outer_function
 from derive.verification.terms import difference
 from derive.verification.verdict import Verdict
 
@@ -27,8 +27,19 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
     """Judge an equation that must hold along every motion, and determine accelerations."""
     if text.count("=") > 1:
         raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
-    system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
     value = difference(text, model.context.scope)
+    inner = without_outer_function(model, value)
+    if inner is not None:
+        result = _judged(model, label, text, inner)
+        if result.verdict in ("verified", "equivalent"):
+            reason = "it is a function of an equation of motion, and vanishes with it alone"
+            return replace(result, verdict="equivalent", note=joined(reason, result.note))
+    return _judged(model, label, text, value)
+
+
+def _judged(model: Model, label: str, text: str, value: sp.Expr) -> Verdict:
+    """The verdict on an equation by its left side minus its right side."""
+    system, verdict = model.derivation.system, partial(Verdict, label, printed=text)
     unknown = (*system.qddot, *system.multipliers)
     if not depends_on(value.xreplace(model.momenta), unknown):
         if system.conditions and (note := model.agreement(value)) is not None:
@@ -49,10 +60,20 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
         reason = "has too many terms to compare them" if is_linear else NOT_LINEAR
         return verdict(verdict="wrong", witness=witness, note=f"it {reason}")
     if model.motions.is_small_somewhere(*coefficients):
-        note = "it holds along every motion, but determines no acceleration"
-        return verdict(verdict="wrong", note=note)
-    if not is_linear and has_other_solutions(model, value):
+        if is_linear:
+            note = "it holds along every motion, but determines no acceleration"
+            return verdict(verdict="wrong", note=note)
+        if _is_product(model, value):
+            note = "it is a product of equations of motion, and holds where one of them does"
+            return verdict(verdict="wrong", note=note)
+        note = f"it holds along every motion, but {NOT_LINEAR}, and may not determine them"
+        return verdict(verdict="context", note=note)
+    others = False if is_linear else has_other_solutions(model, value)
+    if others:
         return verdict(verdict="wrong", note=f"it {NOT_LINEAR}, and has other solutions")
+    if others is None:
+        note = f"it holds along every motion, but {NOT_LINEAR}, and may have other solutions"
+        return verdict(verdict="context", note=note)
     note = _agreement(model, value, coefficients)
     if note is None:
         return verdict(verdict="wrong", note="it holds at single states only")
@@ -63,6 +84,12 @@ def judge_equation(model: Model, label: str, text: str) -> Verdict:
         reason = f"it holds for the momenta of the motion: {', '.join(momenta)}"
         return verdict(verdict="equivalent", note=joined(reason, note))
     return verdict(verdict="verified", note=note)
+
+
+def _is_product(model: Model, value: sp.Expr) -> bool:
+    """Whether several factors of an equation are equations of motion."""
+    factors = (one for one in value.args if depends_on(one, model.derivation.system.qddot))
+    return value.is_Mul and sum(model.motions.is_small(one) for one in factors) > 1
 
 
 def fits(

@@ -376,7 +376,16 @@ def test_functions_of_coordinates_have_accelerations(tmp_path: Path) -> None:
         ("(theta_ddot - theta_dot)*(l*theta_ddot + g*sin(theta))", "wrong"),
         ("theta_ddot**2 = (g/l*sin(theta))**2", "wrong"),
         ("theta_ddot**2 = -g/l*sin(theta)", "wrong"),
-        ("(l*theta_ddot + g*sin(theta))**2", "wrong"),
+        ("(l*theta_ddot + g*sin(theta))**2", "equivalent"),
+        ("exp(l*theta_ddot + g*sin(theta)) = 1", "equivalent"),
+        ("m*abs(l*theta_ddot + g*sin(theta)) = 0", "equivalent"),
+        ("(l*theta_ddot + g*sin(theta))*(theta_ddot + g/l*sin(theta)) = 0", "equivalent"),
+        ("tanh(theta_ddot) = -tanh(g/l*sin(theta))", "equivalent"),
+        ("(l*theta_ddot + g*cos(theta))**2", "wrong"),
+        ("exp(l*theta_ddot + g*sin(theta)) = 2", "wrong"),
+        ("(g - sqrt(g**2))*(l*theta_ddot + g*sin(theta))**2", "context"),  # 0 = 0 for positive g
+        ("sin(l*theta_ddot + g*sin(theta)) = 0", "wrong"),  # or a multiple of pi
+        ("(l*theta_ddot + g*sin(theta))*(1 - cos(theta_ddot)) = 0", "context"),
         ("(g - sqrt(g**2))*(l*theta_ddot + g*sin(theta))", "wrong"),  # 0 = 0 for positive g
         ("sin(theta_ddot) = -sin(g/l*sin(theta))", "wrong"),
     ],
@@ -390,7 +399,11 @@ def test_factors_can_contain_accelerations(text: str, verdict: str) -> None:
 
 def test_a_product_of_two_equations_of_motion_is_neither() -> None:
     model = Model(Derivation(load("double_pendulum")), {})
-    for text, verdict in ((f"({E1})*({E2})", "wrong"), (f"theta2_ddot*({E1})", "equivalent")):
+    for text, verdict in (
+        (f"({E1})*({E2})", "wrong"),
+        (f"theta2_ddot*({E1})", "equivalent"),
+        (f"({E1})**2 + ({E2})**2", "context"),
+    ):
         assert judge_formula(model, "", text, "euler_lagrange").verdict == verdict
 
 
