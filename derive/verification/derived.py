@@ -17,7 +17,7 @@ def _acceleration(model: Model, name: str) -> sp.Expr:
 def _hamilton(model: Model, name: str) -> sp.Expr:
     """The rate of a coordinate or momentum; that of a momentum is ∂L/∂q + Q."""
     system = model.derivation.system
-    pairs = zip(system.q, system.applied, strict=True)
+    pairs = zip(system.q, model.forces, strict=True)
     return _rate(model, name, system.qdot, [model.lagrangian.diff(q) + force for q, force in pairs])
 
 

@@ -4,9 +4,11 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from derive.formulas.expansion import is_expandable
 from derive.system.symbols import TIME
+from derive.system.system import System
 from derive.verification.engine import joined
-from derive.verification.model import Model, depends_on, time_derivative
+from derive.verification.model import Model, depends_on, euler_lagrange
 from derive.verification.routhians import equivalents
 
 Differences = tuple[sp.Expr, ...]
@@ -25,34 +27,60 @@ def equivalence(model: Model, kind: str, value: sp.Expr) -> str | None:
 def _lagrangians(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
     system, mass = model.derivation.system, model.derivation.mass_matrix[0, 0]
     difference = value - model.lagrangian
+    own = euler_lagrange(system, difference)
+    constant = _gradient(difference, system.multipliers)
     gauge = "it differs by a total time derivative: it has the same equations of motion"
-    yield _euler_lagrange(model, difference), gauge
+    yield (*own, *constant), gauge
+    if (absorbed := _absorbed(system, own)) is not None:
+        potential = (
+            "it contains a potential of applied forces: with the other forces alone, it has the "
+            "same equations of motion"
+        )
+        yield (*(a + force for a, force in zip(own, absorbed, strict=True)), *constant), potential
     factor = value.diff(system.qdot[0], 2) / mass
     # a negative factor exchanges kinetic and potential energy; applied forces admit no factor
     if any(system.applied) or not model.context.value(factor).is_positive:
         return
     multiple = "it is a constant times the Lagrangian: it has the same equations of motion"
     constant = _gradient(factor, (*system.q, *system.qdot, TIME))
-    own, derived = _euler_lagrange(model, value), model.derivation.euler_lagrange
+    own, derived = euler_lagrange(system, value), model.derivation.euler_lagrange
     yield (*constant, *(a - factor * b for a, b in zip(own, derived, strict=True))), multiple
 
 
+def _absorbed(system: System, own: Differences) -> list[sp.Expr] | None:
+    """The terms of applied forces that a term in the Lagrangian gives; None if it gives others."""
+    forces = list[sp.Expr]()
+    for force, given in zip(system.applied, own, strict=True):
+        if not all(map(is_expandable, (force, given))):
+            return None
+        terms = {*sp.Add.make_args(sp.expand(-given))}
+        forces.append(sp.Add(*(t for t in sp.Add.make_args(sp.expand(force)) if t in terms)))
+    return forces if any(forces) else None
+
+
 def _potentials(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
-    difference, q = value - model.derivation.potential_energy, model.derivation.system.q
-    yield _gradient(difference, (*q, TIME)), "it differs by a constant"
-    yield _gradient(difference, q), "it differs by a function of time, which exerts no force"
+    difference, system = value - model.derivation.potential_energy, model.derivation.system
+    state = (*system.q, *system.qdot, *system.multipliers)
+    yield _gradient(difference, (*state, *_of_time(system))), "it differs by a constant"
+    yield _gradient(difference, state), "it differs by a function of time, which exerts no force"
+
+
+def _of_time(system: System) -> tuple[sp.Symbol, ...]:
+    """The time, and inputs, which are functions of it."""
+    return (TIME, *(one.symbol for one in system.inputs))
 
 
 def _energies(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
-    derivation = model.derivation
-    variables = (*derivation.system.q, *derivation.system.qdot, TIME)
+    derivation, system = model.derivation, model.derivation.system
+    variables = (*system.q, *system.qdot, *system.multipliers, *_of_time(system))
     terms = sp.Add.make_args(derivation.potential_energy)
     of_time = sp.Add(*(term for term in terms if not depends_on(term, derivation.system.q)))
     total = derivation.kinetic_energy + derivation.potential_energy
-    for energy, reason in ((model.energy, ""), (total, TOTAL_ENERGY)):
+    is_total = model.context.is_small(total - model.energy)
+    for energy, reason in ((model.energy, "" if is_total else JACOBI), (total, TOTAL_ENERGY)):
         difference = value - energy
         yield _gradient(difference, variables), joined(reason, "it differs by a constant")
-        if depends_on(of_time, (TIME,)):
+        if depends_on(of_time, _of_time(system)):
             lacking = "it lacks a function of time in the potential energy, which exerts no force"
             yield _gradient(difference + of_time, variables), joined(reason, lacking)
 
@@ -60,8 +88,8 @@ def _energies(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]
 def _hamiltonians(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
     system = model.derivation.system
     difference = value.xreplace(model.momenta) - model.energy
-    state = (*system.q, *system.qdot)
-    yield _gradient(difference, (*state, TIME)), "it differs by a constant"
+    state = (*system.q, *system.qdot, *system.multipliers)
+    yield _gradient(difference, (*state, *_of_time(system))), "it differs by a constant"
     yield _gradient(difference, state), "it differs by a function of time: the same motions follow"
 
 
@@ -74,18 +102,10 @@ CANDIDATES = {
     "routhian": equivalents,
 }
 
-#: The note on T + V where positions depend on time.
+#: The notes on Jacobi's integral and on T + V where positions depend on time.
+JACOBI = "it is Jacobi's integral, not T + V"
 TOTAL_ENERGY = "it is T + V; Jacobi's integral, the value of H, is another quantity"
 
 
 def _gradient(value: sp.Expr, symbols: tuple[sp.Symbol, ...]) -> Differences:
     return tuple(value.diff(symbol) for symbol in symbols)
-
-
-def _euler_lagrange(model: Model, lagrangian: sp.Expr) -> Differences:
-    """d/dt ∂L/∂q̇ - ∂L/∂q for each coordinate."""
-    system = model.derivation.system
-    pairs = zip(system.q, system.qdot, strict=True)
-    return tuple(
-        time_derivative(system, lagrangian.diff(qdot)) - lagrangian.diff(q) for q, qdot in pairs
-    )

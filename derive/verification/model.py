@@ -90,6 +90,15 @@ class Model:
         return dict(zip(system.p, values, strict=True))
 
     @cached_property
+    def forces(self) -> tuple[sp.Expr, ...]:
+        """The applied forces without those that are in the Lagrangian of the source."""
+        system = self.derivation.system
+        if self.source_lagrangian is None or not any(system.applied):
+            return tuple(system.applied)
+        own = euler_lagrange(system, self.source_lagrangian - self.derivation.lagrangian)
+        return tuple(force + given for force, given in zip(system.applied, own, strict=True))
+
+    @cached_property
     def energy(self) -> sp.Expr:
         """q̇·∂L/∂q̇ - L of the Lagrangian."""
         if self.source_lagrangian is None:
@@ -211,6 +220,14 @@ def time_derivative(system: System, value: Value) -> Value:
     rates = zip((*system.q, *system.qdot), (*system.qdot, *system.qddot), strict=True)
     slope = derivative if isinstance(value, sp.Expr) else sp.diff
     return sum((slope(value, symbol) * rate for symbol, rate in rates), slope(value, TIME))
+
+
+def euler_lagrange(system: System, lagrangian: sp.Expr) -> tuple[sp.Expr, ...]:
+    """d/dt ∂L/∂q̇ - ∂L/∂q for each coordinate."""
+    pairs = zip(system.q, system.qdot, strict=True)
+    return tuple(
+        time_derivative(system, lagrangian.diff(qdot)) - lagrangian.diff(q) for q, qdot in pairs
+    )
 
 
 def depends_on(value: Value, symbols: Collection[sp.Symbol]) -> bool:

@@ -38,6 +38,19 @@ G = { value = 1, unit = "N m^2" }
 mass = "m"
 position = ["r*cos(theta)", "r*sin(theta)"]
 """,
+    "charge": """
+potential = "0"
+forces = { x = "q*B*y_dot - c*x_dot", y = "-q*B*x_dot - c*y_dot" }
+coordinates = { x = { unit = "m" }, y = { unit = "m" } }
+[parameters]
+m = { value = 1, unit = "kg" }
+q = { value = 1, unit = "C" }
+B = { value = 1, unit = "T" }
+c = { value = 1, unit = "N s/m" }
+[[masses]]
+mass = "m"
+position = ["x", "y"]
+""",
     "friction": """
 potential = "k*x**2/2"
 forces = { x = "-F*sign(x_dot)" }
@@ -277,6 +290,48 @@ def test_quantities_can_follow_from_the_equivalent_lagrangian_of_the_source(
 def test_a_lagrangian_can_be_divided_by_a_constant(text: str, verdict: str) -> None:
     model = Model(Derivation(load("single_pendulum")), {})
     assert judge_formula(model, "", text, "lagrangian").verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("potential", "verdicts"),
+    [
+        ("q*B*(x*y_dot - y*x_dot)/2", "e e e e"),
+        ("q*B*x*y_dot", "e w w w"),  # another gauge has other momenta
+        ("q*B*(y*x_dot - x*y_dot)/2", "w w w w"),
+        ("2*q*B*x*y_dot", "w w w w"),
+    ],
+)
+def test_a_lagrangian_can_contain_a_velocity_potential_of_applied_forces(
+    potential: str, verdicts: str, tmp_path: Path
+) -> None:
+    # a charge in a magnetic field with friction: H. Goldstein, Classical Mechanics, § 1.5
+    text = (
+        f'lagrangian = "m*(x_dot**2 + y_dot**2)/2 + {potential}"\n'
+        'momenta = { x = "m*x_dot - q*B*y/2" }\n'
+        'hamiltonian = "((p_x + q*B*y/2)**2 + (p_y - q*B*x/2)**2)/(2*m)"\n'
+        'hamilton = { p_x = "q*B/2*(p_y - q*B*x/2)/m - c*(p_x + q*B*y/2)/m" }\n'
+    )
+    check(tmp_path, "charge", text, verdicts)
+
+
+@pytest.mark.parametrize(("system", "kind", "text"), [
+    ("two_link_arm", "potential_energy", "g*((m1*c1 + m2*l1)*sin(q1) + m2*c2*sin(q1 + q2))"),
+    ("chaplygin_sleigh", "potential_energy", "0"),
+    ("chaplygin_sleigh", "lagrangian", "m*((x_dot - a*theta_dot*sin(theta))**2"
+     " + (y_dot + a*theta_dot*cos(theta))**2)/2 + J*theta_dot**2/2"),
+])  # fmt: skip
+def test_inputs_and_multipliers_are_no_constants(system: str, kind: str, text: str) -> None:
+    model = Model(Derivation(load(system)), {})
+    varying = "tau1" if system == "two_link_arm" else "skate"
+    constant, other = (
+        judge_formula(model, "", f"{text} + {added}", kind)
+        for added in (model.derivation.system.params[0], varying)
+    )
+    assert constant.verdict == "equivalent"
+    if varying == "skate":
+        assert other.verdict == "wrong"
+    else:
+        assert "function of time" in other.note
 
 
 def test_a_lagrangian_is_not_divided_where_forces_are_applied(tmp_path: Path) -> None:
