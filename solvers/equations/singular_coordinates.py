@@ -45,7 +45,7 @@ def singular_coordinates(
                 for step in (-DISPLACEMENT, DISPLACEMENT))
             for one in np.eye(len(y))[: len(names)]
         ]  # fmt: skip
-    except (ArithmeticError, np.linalg.LinAlgError):
+    except (ArithmeticError, ValueError, np.linalg.LinAlgError):
         return ""
     if not least * SINGULAR < before:
         return ""
