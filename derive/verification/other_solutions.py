@@ -23,7 +23,7 @@ VANISHING, INJECTIVE = (sp.Abs, *ODD), (sp.exp, sp.log, *ODD)
 def without_outer_function(model: Model, value: sp.Expr) -> sp.Expr | None:
     """The number g of a function f(g) that vanishes where g does, and only there, or None.
 
-    Such are powers, absolute values, products of multiples, and ``exp(g) - 1``.
+    Such are powers, absolute values, products of multiples, ``exp(g) - 1`` and ``log(1 + g)``.
     """
     accelerations = model.derivation.system.qddot
     inner = _inside(model, value)
@@ -39,6 +39,8 @@ def _inside(model: Model, value: sp.Expr) -> sp.Expr | None:
         return value.base
     if isinstance(value, VANISHING):
         return value.args[0]
+    if isinstance(value, sp.log):
+        return value.args[0] - 1
     if value.is_Mul:
         rest, dependent = value.as_independent(*accelerations, as_Add=False)
         first, *others = sp.Mul.make_args(dependent)
