@@ -98,8 +98,10 @@ def verdict_on(equation: Equation, text: str, order_of: OrderOf) -> Verdict:
         return Verdict(label, "wrong", text, witness=witness, note=note)
     if not is_printed:
         return Verdict(label, "wrong", text, corrected, witness=witness)
-    residual = _residual(equation, result.comparison)
-    return Verdict(label, "misprint", text, corrected, residual, witness=witness, note=note)
+    residual, state = _residual(equation, result.comparison)
+    return Verdict(
+        label, "misprint", text, corrected, residual, witness=witness, state=state, note=note
+    )
 
 
 def check(equation: Equation, text: str, order_of: OrderOf) -> Check:
@@ -121,12 +123,15 @@ def check(equation: Equation, text: str, order_of: OrderOf) -> Check:
     return context.check(text, known | defined) if result.holds and "<" in text else result
 
 
-def _residual(equation: Equation, index: int) -> str:
-    """Printed minus corrected form, in the comparison where they first differ."""
+def _residual(equation: Equation, index: int) -> tuple[str, str]:
+    """Printed minus corrected form, in the comparison where they first differ, and a state."""
     context, known = _context(equation), _definitions_used(equation)
     texts = (_with_measure(equation, text) for text in (equation.printed, equation.corrected))
     printed, corrected = (context.comparisons(text, known)[index].residual for text in texts)
-    return sp.sstr(sp.factor_terms(sp.together(sp.expand(printed - corrected))))
+    residual = sp.factor_terms(sp.together(sp.expand(printed - corrected)))
+    names = {str(symbol): symbol for symbol in context.states[0] if symbol in residual.free_symbols}
+    state = context.state(residual, sp.S.Zero, names)
+    return sp.sstr(residual), ", ".join(f"{name} = {number}" for name, number in state.items())
 
 
 def _context(equation: Equation) -> Context:
