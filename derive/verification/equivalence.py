@@ -78,8 +78,11 @@ def _energies(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]
     total = derivation.kinetic_energy + derivation.potential_energy
     is_total = model.context.is_small(total - model.energy)
     for energy, reason in ((model.energy, "" if is_total else JACOBI), (total, TOTAL_ENERGY)):
-        difference = value - energy
-        yield _gradient(difference, variables), joined(reason, "it differs by a constant")
+        difference, others = value - energy, variables
+        if reason == TOTAL_ENERGY:  # T is not arbitrary: the constant is one of V
+            known = derivation.potential_energy.free_symbols
+            others += tuple(p for p in system.params if p not in known)
+        yield _gradient(difference, others), joined(reason, "it differs by a constant")
         if depends_on(of_time, _of_time(system)):
             lacking = "it lacks a function of time in the potential energy, which exerts no force"
             yield _gradient(difference + of_time, variables), joined(reason, lacking)

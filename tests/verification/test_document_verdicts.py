@@ -241,3 +241,29 @@ $$x = l\sin\theta,\quad y = -l\cos\theta$$
     notes = [(one.line, one.note) for one in document.formulas if one.verdict == "wrong"]
     follows = "it follows from line 2"
     assert notes == [(2, ""), (3, follows), (4, follows), (5, follows), (6, "")]
+
+
+HOOP = r"""
+$$ T = \frac12 m R^2 (\dot\theta^2 + \Omega^2 \sin^2\theta), \quad V = -m g R \cos\theta $$
+$$ L = \frac12 m R^2 (\dot\theta^2 + \Omega^2 \sin^2\theta) + m g R \cos\theta $$
+$$ E = \frac12 m R^2 (\dot\theta^2 + \Omega^2 \sin^2\theta) - m g R \cos\theta $$
+$$ H = \frac12 m R^2 (\dot\theta^2 - \Omega^2 \sin^2\theta) - m g R \cos\theta $$
+"""
+
+
+@pytest.mark.parametrize(("text", "verdict"), [
+    (r"H = E - m R^2 \Omega^2 \sin^2\theta", "verified"),
+    (r"E - H = m R^2 \Omega^2 \sin^2\theta", "verified"),
+    (r"H = T + V - m R^2 \Omega^2 \sin^2\theta + m g R", "equivalent"),
+    (r"H = E - 2 \frac{m R^2 \Omega^2}{2}", "wrong"),
+    (r"E = H + m R^2 \Omega^2", "wrong"),
+    (r"H = T + V - m R^2 \Omega^2", "wrong"),
+    ("H = T + V", "wrong"),
+])  # fmt: skip
+def test_the_energy_of_a_rotating_system_is_not_its_hamiltonian_plus_a_constant(
+    text: str, verdict: str, tmp_path: Path
+) -> None:
+    # E - H = 2 T_0, the part of T without velocities: H. Goldstein, Classical Mechanics, § 2.7
+    *stated, last = verdicts(tmp_path, f"{HOOP}$$ {text} $$\n")
+    assert stated == ["verified"] * 5
+    assert last == verdict

@@ -10,15 +10,17 @@ import sympy as sp
 
 from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.system.symbols import TIME
 from derive.verification.documents.linear import Linear
 from derive.verification.documents.rates import order, stem
 from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import WORD
 from derive.verification.documents.text import Text
+from derive.verification.engine import joined
 from derive.verification.model import Model, depends_on
 from derive.verification.quantities import judge_formula
-from derive.verification.verdict import Correction
+from derive.verification.verdict import Correction, Verdict
 
 
 class Roles:
@@ -48,6 +50,8 @@ class Roles:
             small = self._linear.acceleration(self._scope.all_names[subject], right)
             if small is not None:
                 return self.value(side, "linearised", small)
+        if kind == "energy" and self._relates_energies(subject, side):
+            return self._energy(side, subject, left, right)
         if kind:
             with suppress(ExpressionError):
                 verdict = judge_formula(self._model_of(side, name), "", side.text, kind, name)
@@ -65,6 +69,23 @@ class Roles:
             if result.verdict.corrections:
                 return result
         return self.equation(first, side)
+
+    def _relates_energies(self, subject: str, side: Text) -> bool:
+        """Whether a side states H, or another energy by H, where this is not T + V."""
+        quantities, d = self._scope.letters.quantities, self._scope.derivation
+        words = (subject, *WORD.findall(side.text))
+        total = d.kinetic_energy + d.potential_energy
+        has_hamiltonian = any(quantities.get(word) == "hamiltonian" for word in words)
+        return has_hamiltonian and not self._model.context.is_small(total - d.energy)
+
+    def _energy(self, side: Text, subject: str, left: sp.Expr, right: sp.Expr) -> SideVerdict:
+        """The verdict on an energy that must be that of the document up to a constant."""
+        system = self._scope.derivation.system
+        rates = [(right - left).diff(s) for s in (*system.q, *system.qdot, TIME)]
+        if (note := self._model.context.agreement(*rates)) is None:
+            return self.value(side, subject, left)
+        note = joined("it differs by a constant", note)
+        return SideVerdict(Verdict("", "equivalent", side.text, note=note), ((0, side),), "energy")
 
     def _inside_rate(self, first: Text, side: Text) -> SideVerdict | None:
         """The verdict on a wrong momentum whose rate is taken, if there is one."""

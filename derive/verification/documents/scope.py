@@ -53,6 +53,7 @@ class DocumentScope:
         self._add_routhians(formulas)
         self._add_derivatives()
         self._add_usual_names()
+        self._add_total_energies(formulas)
         defined = {formula.subject for formula in formulas}
         for name, text in meanings.items():
             operand, _ = derivatives.get(name, ("", ()))
@@ -170,6 +171,32 @@ class DocumentScope:
                 indices = tuple(k for k, symbol in enumerate(p) if symbol in momenta)
                 function = Routhian(self.derivation, indices).function
                 self.names[name] = -function if self._has_value(own, -function) else function
+
+    def _add_total_energies(self, formulas: Sequence[DocumentFormula]) -> None:
+        """T + V for energies with which more formulas hold than with Jacobi's integral."""
+        d = self.derivation
+        total = d.kinetic_energy + d.potential_energy
+        momenta = dict(zip(self._system.p, d.momenta, strict=True))
+        energies = [n for n, kind in self.letters.quantities.items() if kind == "energy"]
+        for name in energies if not is_small(total - d.energy) else ():
+            own = [one for one in formulas if name in one.words]
+            counts = [self._holding(own, {name: x}, momenta) for x in (d.energy, total)]
+            if counts[1] > counts[0]:
+                self.names[name] = total
+
+    def _holding(
+        self,
+        formulas: Sequence[DocumentFormula],
+        names: Mapping[str, Any],
+        momenta: Mapping[sp.Symbol, sp.Expr],
+    ) -> int:
+        """The number of formulas whose first two sides are equal with other values of names."""
+        scope, count = {**self.all_names, **names}, 0
+        for one in formulas:
+            with suppress(ExpressionError, TypeError, ValueError):
+                left, right = (parse(side.text, scope) for side in one.sides[:2])
+                count += is_small((left - right).xreplace(dict(momenta)))
+        return count
 
     def _has_value(self, formulas: Sequence[DocumentFormula], value: sp.Expr) -> bool:
         """Whether a side of formulas has this value, with the momenta of any motion."""
