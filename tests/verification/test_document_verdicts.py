@@ -251,6 +251,7 @@ $$ H = \frac12 m R^2 (\dot\theta^2 - \Omega^2 \sin^2\theta) - m g R \cos\theta $
 """
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("text", "verdict"), [
     (r"H = E - m R^2 \Omega^2 \sin^2\theta", "verified"),
     (r"E - H = m R^2 \Omega^2 \sin^2\theta", "verified"),
