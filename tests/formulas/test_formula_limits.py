@@ -108,6 +108,7 @@ def test_all_formulas_of_a_file_share_one_budget(
     assert "the formulas of the file have more than 100000 numbers" in capsys.readouterr().err
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("formula", [
     "(m1 + m2 + l1 + l2 + g)**30", "m1/(m1 + m2 + l1 + l2 + g)**60", nested(14, inner="theta1"),
     "exp(exp(exp(100)))*theta1", nested(190, inner="theta1"), "cos(100*theta1 + 99*theta2)**50",

@@ -133,6 +133,7 @@ def test_every_number_is_in_every_format(documents, name: str) -> None:
         assert texts["ipynb"].count(rf"\\tag{{{number}}}") == 1
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_page_is_one_file_of_balanced_elements(documents, name: str) -> None:
     tags = Tags(page(documents(name)))

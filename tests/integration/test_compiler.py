@@ -126,6 +126,7 @@ def fake_compiler(folder: Path, script: str) -> tuple[str, ...]:
     return (str(path),)
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize(
     ("script", "message"),
     [

@@ -96,6 +96,7 @@ def test_two_constraints_that_are_integrable_together(seed: int) -> None:
     assert set(result.held.values()) <= set(result.integrals)
 
 
+@pytest.mark.long("more cases of the same kind", keep=16)
 @pytest.mark.parametrize("seed", range(40))
 def test_a_constraint_without_an_integral(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -80,6 +80,7 @@ def mutated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, old: str
     monkeypatch.setattr(page, "SOURCES", sources)
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [
@@ -118,6 +119,7 @@ def pace(player: Player) -> float:
     return (last[1] - first[1]) / (last[0] - first[0])
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("speed", [0.25, 1, 4])
 def test_it_plays_at_the_selected_speed(
     speed: float, player: Player, slow_tracks: list[Track]

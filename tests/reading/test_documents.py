@@ -258,6 +258,7 @@ def test_latin_1_is_read(tmp_path: Path) -> None:
     assert read_document(path).displays[0].column == 7
 
 
+@pytest.mark.long("more cases of the same kind", keep=40)
 @pytest.mark.parametrize("name", ["a.md", "a.tex", "a.html", "a.rst"])
 @pytest.mark.parametrize(
     "piece",

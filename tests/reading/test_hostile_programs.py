@@ -38,6 +38,7 @@ HOSTILE_PROGRAMS = {
 }
 
 
+@pytest.mark.long("more cases of the same kind", keep=16)
 @pytest.mark.timeout(60)  # they take less than two seconds each
 @pytest.mark.parametrize("language", [one.name for one in LANGUAGES])
 @pytest.mark.parametrize("name", HOSTILE)

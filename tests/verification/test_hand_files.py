@@ -50,6 +50,7 @@ def test_a_parameter_that_is_a_column_is_refused(column: str, tmp_path: Path) ->
         judge(path)
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("name", kwlist)
 def test_a_word_of_python_can_be_a_name(name: str, tmp_path: Path) -> None:
     path = written(
