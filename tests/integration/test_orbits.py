@@ -17,7 +17,7 @@ import generated.four_bar as four_bar
 import generated.henon_heiles as henon
 import generated.single_pendulum as single
 import generated.swinging_atwood as atwood
-from derive import Coordinate, PointMass, System
+from derive import Coordinate, Parameter, PointMass, System
 from solvers.app.modules import build
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.normal_modes import Modes
@@ -239,10 +239,11 @@ def test_an_orbit_of_a_given_energy() -> None:
 @pytest.fixture(scope="module")
 def kepler() -> ModuleType:
     """A planet of mass 1 about a fixed centre."""
-    x, y = sp.symbols("x y", real=True)
+    (x, y), mu = sp.symbols("x y", real=True), sp.Symbol("mu", positive=True)
     coordinates = [Coordinate(x, "m", "position"), Coordinate(y, "m", "position")]
-    potential = -1 / sp.sqrt(x**2 + y**2)
-    return build(System("planet", "", coordinates, [], [PointMass(1, (x, y))], potential))
+    parameters = [Parameter(mu, "m^3/s^2", 1, "mass of the centre, times the constant of gravity")]
+    potential = -mu / sp.sqrt(x**2 + y**2)
+    return build(System("planet", "", coordinates, parameters, [PointMass(1, (x, y))], potential))
 
 
 @pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.6, 0.9])
@@ -258,6 +259,16 @@ def test_keplers_orbits_are_all_periodic(kepler: ModuleType, eccentricity: float
         assert orbit.energy == pytest.approx(-0.5, abs=1e-12 if isinstance(guess, Event) else 0.02)
         assert orbit.period == pytest.approx(2 * np.pi * (-2 * orbit.energy) ** -1.5, rel=1e-8)
         assert orbit.multipliers == pytest.approx([1.0] * 4, abs=1e-5)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.7])
+def test_periods_on_a_section_may_be_hours(kepler: ModuleType, eccentricity: float) -> None:
+    lowest, mu = 7e6, 3.986e14  # of a satellite of the earth
+    start = (lowest, 0, 0, np.sqrt(mu * (1 + eccentricity) / lowest))
+    section = Event(kepler, "y", 0.0, direction=1)
+    orbit = periodic_orbit(kepler, start, section, {"mu": mu})
+    third_law = 2 * np.pi * np.sqrt((lowest / (1 - eccentricity)) ** 3 / mu)
+    assert orbit.period == pytest.approx(third_law, rel=1e-12)
 
 
 @pytest.mark.long("another kind of constraints")

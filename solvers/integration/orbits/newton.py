@@ -132,6 +132,8 @@ def solve(
             stalls, damping = stalls + 1, damping * MORE
             if not is_damped:
                 break
+    else:
+        stalls += 1  # rounding errors may still decrease a little
     if now.defect < SMALL and stalls:
         return now.point, now.shot
     at, way_out = "", "give a better guess"

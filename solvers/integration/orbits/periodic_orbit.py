@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -18,11 +17,12 @@ from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.orbits.shooting import SMALL, Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
 from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Array, Solution
+from solvers.integration.solution import Array, Status
 from solvers.io.suggestion import shortened
 
-#: Time in s after which a motion that has not come back to a section never does.
-LONGEST = 1e3
+#: Durations in s of motions to a section, one after the other: periods may be those of a molecule
+#: or of a planet. A motion that has not come back after so many steps never does.
+DURATIONS, MAX_STEPS = (1e3, 1e6, 1e9, 1e12), 100_000
 
 
 @checked
@@ -138,23 +138,30 @@ def _returned(
 ) -> tuple[Array, float]:
     """The state at which a motion first meets a section, and the time until its return."""
     section = replace(section, terminal=True)
-    motion = partial(integrate, module, (0.0, LONGEST), params=params, events=section, t_eval=())
     y, duration, count = y0, 0.0, validation.count("returns", returns, 1)
-    with ignore_predictability():  # of motions that do not meet the section
-        if section(0.0, y0) != 0:
-            y = _end(motion(y0=y0), section)[1]
-            y[module.STATE.index(section.name)] = section.value
-        state = y
-        for _ in range(count):
-            t, state = _end(motion(y0=state), section)
-            duration += t
+    if section(0.0, y0) != 0:
+        y = _met(module, y0, section, params)[1]
+        y[module.STATE.index(section.name)] = section.value
+    state = y
+    for _ in range(count):
+        t, state = _met(module, state, section, params)
+        duration += t
     return y, duration
 
 
-def _end(motion: Solution, section: Event) -> tuple[float, Array]:
-    if not len(motion.t_events[0]):
-        raise NoPeriodicOrbitError(
-            f"the motion does not meet {section.name} = {section.value} again "
-            f"({motion.status.value}): choose another section or start"
-        )
-    return float(motion.t_events[0][0]), motion.y_events[0][0].copy()
+def _met(module: GeneratedModule, y0: Array, section: Event, params: Array) -> tuple[float, Array]:
+    """The time after which a motion meets a section, and the state there."""
+    for duration in DURATIONS:
+        with ignore_predictability():  # of motions that do not meet the section
+            motion = integrate(
+                module, (0.0, duration), y0, params,
+                events=section, t_eval=(), max_steps=MAX_STEPS,
+            )  # fmt: skip
+        if len(motion.t_events[0]):
+            return float(motion.t_events[0][0]), motion.y_events[0][0].copy()
+        if motion.status is not Status.FINISHED:
+            break
+    raise NoPeriodicOrbitError(
+        f"the motion does not meet {section.name} = {section.value} again "
+        f"({motion.status.value}): choose another section or start"
+    )
