@@ -138,6 +138,11 @@ class _Functions:
                 return parts[0] ** expression.exp
             case sp.Pow() if expression.exp.is_Rational:
                 return self._root(parts[0], expression.exp.q) ** expression.exp.p
+            case sp.Pow():
+                number, rest = sp.expand(parts[1]).as_coeff_Add()
+                whole = sp.floor(number)
+                power = sp.Pow(_normal(parts[0]), number - whole + rest, evaluate=False)
+                return parts[0] ** whole * self._other(power)
             case sp.tan():
                 return sp.sin(parts[0]) / sp.cos(parts[0])
             case sp.exp():
@@ -148,6 +153,8 @@ class _Functions:
                 return parts[0] * self._sign(parts[0])
             case sp.sign():
                 return self._sign(parts[0])
+            case sp.Heaviside():
+                return (1 + self._sign(parts[0])) / 2
             case sp.Max() | sp.Min():
                 sign = 1 if isinstance(expression, sp.Max) else -1
                 return reduce(lambda a, b: (a + b + sign * (a - b) * self._sign(a - b)) / 2, parts)

@@ -36,6 +36,7 @@ def test_identities_vanish_and_perturbed_identities_do_not(expression: sp.Expr) 
         sp.sqrt(a) - sp.exp(b),
         sp.Max(0, a - 100),
         sp.sign(a) - sp.tanh(300 * a),
+        sp.Abs(a) ** (b + 1) - sp.Abs(a) ** b,
         sp.sqrt(a**2 + 1) - sp.sqrt(a**2 + 2),
         a**1000 - b,
         sp.sin(100001 * a),
@@ -63,6 +64,8 @@ def test_irrational_or_too_large_expressions_are_undecided(expression: sp.Expr) 
         sp.cosh(a / 2) ** 2 - sp.sinh(a / 2) ** 2 - 1,
         sp.tan(a) * sp.cos(a) - sp.sin(a),
         m * sp.log(a * (b + 1)) / n - sp.log(a + a * b) * m / n,
+        sp.Abs(a) ** (b - 1) * sp.sign(a) - sp.Abs(a) ** b / a,
+        sp.Heaviside(a) * sp.Max(0, a) - sp.Max(0, a),
     ],
 )
 def test_identities_of_roots_signs_and_other_functions_vanish(expression: sp.Expr) -> None:
