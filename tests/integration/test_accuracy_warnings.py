@@ -73,7 +73,7 @@ def test_an_unstable_step_states_the_last_good_time_and_the_longest_step(
     assert good < broken.end[0]
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-6])
 @pytest.mark.parametrize(("module", "start"), REGULAR)
 def test_correct_runs_at_loose_tolerances_do_not_warn(

@@ -72,7 +72,7 @@ def change(module: GeneratedModule, t: np.ndarray, y: np.ndarray) -> float:
 METHODS = ("rk4", "verner853", "gauss4", "gauss8", "radau3", "radau5")
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("name", "method", "backend"),
     [

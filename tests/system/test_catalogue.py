@@ -322,6 +322,7 @@ def test_the_hamiltonian_is_the_maximum_of_p_v_minus_the_lagrangian_over_velocit
         assert_allclose(found.x, velocities, atol=1e-4 * np.abs(velocities).max())
 
 
+@pytest.mark.long("more cases of the same kind", keep=18)
 @pytest.mark.parametrize("form", ["", "_hamiltonian"])
 def test_jacobians_are_derivatives(module: ModuleType, form: str) -> None:
     if form.removeprefix("_") not in ("", *module.FORMS):
@@ -334,7 +335,7 @@ def test_jacobians_are_derivatives(module: ModuleType, form: str) -> None:
         assert_allclose(results, expected, rtol=1e-8, atol=1e-10 * np.abs(expected).max())
 
 
-@pytest.mark.long("more cases of the same kind", keep=7)
+@pytest.mark.long("more cases of the same kind", keep=4)
 def test_other_forms_are_the_same_motion(module: ModuleType) -> None:
     n = len(module.COORDINATES)
     for t, y, params in cases(module):

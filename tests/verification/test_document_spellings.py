@@ -179,6 +179,7 @@ $$m\ddot x=\lambda\sin(\omega t),\quad m\ddot y=-mg-\lambda\cos(\omega t)$$
 """
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("text", "old", "new"),
     [

@@ -427,6 +427,7 @@ def test_functions_of_coordinates_have_accelerations(tmp_path: Path) -> None:
     check(tmp_path, "elastic_pendulum", text.replace("-g + k", "-g - k"), "v w v")
 
 
+@pytest.mark.long("more cases of the same kind", keep=7)
 @pytest.mark.parametrize(
     ("text", "verdict"),
     [
