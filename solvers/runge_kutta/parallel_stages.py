@@ -24,6 +24,9 @@ Array = NDArray[np.float64]
 #: The iteration ends when the next change would be below this part of the tolerance; the second is
 #: that within a step of more than `FEW` stages, whose end has an error far below the tolerance.
 CLOSE, CLOSE_WITHIN, FEW = 0.02, 2e-3, 4
+#: The least square of the contraction that the first two changes can show: parts of the error of
+#: the prediction decrease much faster than what is left.
+LEAST_SQUARE = 3e-4
 #: The error of a step is estimated after this many iterations: the top coefficient of the
 #: polynomial converges faster than the stages. It is estimated again at the end where the square of
 #: the contraction is larger than `SLOW`.
@@ -183,7 +186,8 @@ class ParallelStages:
                 change = float(np.sum(((increments - before) / allowed) ** 2))
                 least = ROUNDING**2 * len(self.b) * float(np.sum((size / allowed) ** 2))
             if iteration > 1:
-                square = max(change / previous if previous else 0.0, square / 4)
+                bound = LEAST_SQUARE if iteration == 2 else square / 4
+                square = max(change / previous if previous else 0.0, bound)
                 is_last = change * (square * square) <= limit
                 if change * square <= limit or previous <= change < least:
                     break

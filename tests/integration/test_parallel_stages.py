@@ -101,6 +101,23 @@ def test_errors_are_proportional_to_the_tolerance(method: str, tolerance: float)
     assert errors.max() < 1000  # some of these motions amplify errors a hundred times
 
 
+@pytest.mark.parametrize("method", PARALLEL)
+def test_errors_of_springs_of_any_stiffness_are_near_the_tolerance(method: str) -> None:
+    # the first changes of the stages of long steps do not show how slowly later ones decrease
+    rng, largest = np.random.default_rng(4), 0.0
+    for _ in range(40):
+        mass, length = rng.uniform(0.4, 1.5, 2)
+        params, tolerance = (mass, 10 ** rng.uniform(1, 5), length, 9.81), 10 ** rng.uniform(-9, -4)
+        start = ep.equilibrium(params)[0] * rng.uniform(0.95, 1.05), rng.uniform(-1, 1), 0, 0
+        options = {"rtol": tolerance, "atol": 1e-3 * tolerance}
+        run = integrate(ep, (0, 2), start, params, method=method, **options)
+        tight = {"t_eval": run.t, "rtol": 1e-13, "atol": 1e-15}
+        exact = integrate(ep, (0, 2), start, params, method="verner98", form="lagrangian", **tight)
+        size = np.maximum(1, np.abs(exact.y).max(axis=1, keepdims=True))
+        largest = max(largest, (np.abs(run.y - exact.y) / size).max() / tolerance)
+    assert largest < 400
+
+
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("method", PARALLEL)
 def test_states_within_steps_are_as_accurate_as_their_ends(method: str, backend: str) -> None:

@@ -16,6 +16,9 @@ static const double SLOW = 0.25;
    that within a step of more than FEW stages, whose end has an error far below the tolerance. */
 enum { FEW = 4 };
 static const double CLOSE = 0.02, CLOSE_WITHIN = STAGES > FEW ? 2e-3 : 0.02;
+/* The least square of the contraction that the first two changes can show: parts of the error of the
+   prediction decrease much faster than what is left. */
+static const double LEAST_SQUARE = 3e-4;
 /* Relative rounding errors of the derivatives, below which an iteration may stagnate. */
 static const double ROUNDING = 32*DBL_EPSILON;
 
@@ -113,7 +116,8 @@ static inline void solve_stages(
         }
         const double change = sum_of(squares);
         if (iteration > 1) {
-            square = lane_fmax(change/previous, square/4);      /* of the contraction */
+            /* of the contraction */
+            square = lane_fmax(change/previous, iteration == 2 ? LEAST_SQUARE : square/4);
             is_last = change*(square*square) <= limit;
             if (change*square <= limit || (change >= previous
                     && change < rounding_change(start->z, increments, inverse))) {
