@@ -38,7 +38,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile with less optimisation, and let all workers choose the same cases."""
-    gc.disable()  # what is imported stays
+    gc.disable()  # until all files are imported, of which nothing is garbage
     flags = cheap_compiler.LONG if config.getoption("long") else cheap_compiler.SHORT
     cheap_compiler.install(flags)
     os.environ.setdefault(SEED, date.today().isoformat())
@@ -60,7 +60,7 @@ def long_part(items: list[pytest.Item]) -> set[pytest.Item]:
     """Tests that are marked long, but for the number of cases that their marker keeps."""
     cases: dict[str, list[pytest.Item]] = defaultdict(list)
     for item in items:
-        if item.get_closest_marker("long"):
+        if item.get_closest_marker("long") and not item.get_closest_marker("campaign"):
             cases[item.nodeid.partition("[")[0]].append(item)
     left_out: set[pytest.Item] = set()
     for name, own in cases.items():

@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import platform
 import shutil
 import signal
 import subprocess
@@ -83,6 +84,18 @@ def test_a_library_is_built_once(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_other_code_or_other_flags_are_another_library() -> None:
     paths = {build(SOURCE).path, build(SOURCE + "\n").path, build(SOURCE, reproducible=True).path}
     assert len(paths) == 3
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="needs a processor of Intel or AMD")
+def test_the_system_s_compiler_tunes_for_processors_with_vectors_of_32_bytes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    wide = build(SOURCE)
+    monkeypatch.setattr(compiler, "_processor", lambda: "flags : fpu sse2 avx avx2")
+    assert answer(build(SOURCE).path) == 42
+    assert build(SOURCE).path != wide.path
+    assert compiler._tuning(("/usr/bin/cc",)) == ("-mtune=skylake-avx512",)
+    assert compiler._tuning(("/usr/bin/zig", "cc")) == ()
 
 
 @pytest.mark.parametrize(

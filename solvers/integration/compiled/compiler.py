@@ -58,9 +58,9 @@ def build(source: str, *, reproducible: bool = False) -> Library:
         When no compiler builds a library that works.
     """
     contraction = "-ffp-contract=off" if reproducible else "-ffp-contract=fast"
-    flags = (*FLAGS, *_tuning(), contraction)
     errors: list[str] = []
     for compiler in compilers():
+        flags = (*FLAGS, *_tuning(compiler), contraction)
         try:
             library = _library(Compilation(source, compiler, flags, _key(source, compiler, flags)))
         except CommandError as error:
@@ -103,10 +103,11 @@ def _key(source: str, compiler: Sequence[str], flags: Sequence[str]) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
 
 
-def _tuning() -> tuple[str, ...]:
-    """GCC copies vectors of 32 bytes in halves, unless it tunes for processors that load both."""
+def _tuning(compiler: Sequence[str]) -> tuple[str, ...]:
+    """A flag with which GCC copies vectors of 32 bytes as a whole; Zig refuses it."""
     features = _processor().split()
-    return ("-mtune=skylake-avx512",) if "avx" in features and "avx512f" not in features else ()
+    is_needed = "avx" in features and "avx512f" not in features and len(compiler) == 1
+    return ("-mtune=skylake-avx512",) if is_needed else ()
 
 
 @cache

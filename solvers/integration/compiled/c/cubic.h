@@ -63,7 +63,7 @@ static inline double cubic_value(const Cubic *cubic, const Event *event, double 
     const int64_t n = SINE[event->index];
     const double sine = cubic_component(cubic, x, n)*event->cosine
         - cubic_component(cubic, x, n + 1)*event->sine;
-    return fabs(sine) < 5e-16 ? 0 : sine;
+    return fabs(sine) < ROUNDED_SINE ? 0 : sine;
 }
 
 SELDOM static void locate_by_cubic(Lanes *lanes, int lane, WithinStep *within)

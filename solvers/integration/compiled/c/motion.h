@@ -143,6 +143,9 @@ static inline real unwrapped_angle(const State *state, int64_t i)
     return approximate_angle(state, (int)i) + 2*PI*state->turns[i];
 }
 
+/* Of the sine of an angle's difference from an event, what rounding leaves at the event itself. */
+static const double ROUNDED_SINE = 5e-16;
+
 /* The value of an event, of an angle by its approximation: its difference from the event, but near
    that the sine of the difference. */
 static inline real value_of(const Event *event, const State *state, const real *params, real angle)
@@ -159,9 +162,8 @@ static inline real value_of(const Event *event, const State *state, const real *
     }
     const real s = state->z[SINE[i]], c = state->z[SINE[i] + 1];
     const real rough = angle - event->value;
-    /* at the event itself rounding leaves a few parts in 1e16, which count as 0 */
     const real sine = s*event->cosine - c*event->sine;
-    const real exact = select(less_than(lane_fabs(sine), splat(5e-16)), splat(0.0), sine);
+    const real exact = select(less_than(lane_fabs(sine), splat(ROUNDED_SINE)), splat(0.0), sine);
     return select(less_than(lane_fabs(rough), splat(1.0)), exact, rough);
 }
 
