@@ -22,6 +22,7 @@ from sharing import Shared
 
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
+from solvers.integration import predictability
 from solvers.scenes.reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep
@@ -110,6 +111,19 @@ def optimised() -> Iterator[None]:
     """Compile as users do."""
     with cheap_compiler.as_users():
         yield
+
+
+@pytest.fixture
+def predictable_times() -> None:
+    """Compute the times up to which motions are predictable in the short part, too."""
+
+
+@pytest.fixture(autouse=True)
+def few_predictable_times(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the short part, compute them only where they are tested: each needs another library."""
+    is_needed = request.config.getoption("long") or "predictable_times" in request.fixturenames
+    if not is_needed:
+        monkeypatch.setattr(predictability, "_has_perturbations", lambda _module: False)
 
 
 @pytest.fixture(scope="session", autouse=True)

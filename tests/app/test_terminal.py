@@ -36,6 +36,7 @@ def shell(command: str, **environment: str) -> tuple[int, str]:
     return run.returncode, run.stdout.decode("utf-8", "backslashreplace")
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("command", ["--help", "--version", "run --help", "systems"])
 def test_an_unread_pipe_is_no_error(command: str) -> None:
     assert shell(f"holonomic {command} | true") == (0, "")
@@ -51,6 +52,7 @@ def test_the_module_derive_is_a_command_like_the_others(arguments: str) -> None:
     assert message.endswith("No space left on device: 'standard output'\n")
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("command", ["--help", "--version", "systems chain_2"])
 def test_output_that_cannot_be_written_is_reported(command: str, unbuffered: str) -> None:

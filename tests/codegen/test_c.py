@@ -86,6 +86,7 @@ def in_python(function: Callable[..., object], y: list[float], params: list[floa
     return function(*(values[name] for name in inspect.signature(function).parameters))
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize("standard", ["-std=c99", "-std=c17"])
 def test_c_functions_give_the_bits_of_the_python_functions(
     derivation: Derivation, module: ModuleType, standard: str, tmp_path: Path

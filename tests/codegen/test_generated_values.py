@@ -305,6 +305,7 @@ def test_both_forms_give_the_report_s_motion() -> None:
     assert np.abs(coarse - expected).max() > 1e-10
 
 
+@pytest.mark.long("more cases of the same kind", keep=14)
 @pytest.mark.parametrize(
     "name",
     [

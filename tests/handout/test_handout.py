@@ -141,6 +141,7 @@ def test_a_page_is_one_file_of_balanced_elements(documents, name: str) -> None:
     assert not {"src", "href"} & {key for key, _ in tags.attributes}
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_notebook_is_valid(documents, name: str) -> None:
     nbformat.validate(nbformat.reads(notebook(documents(name)), as_version=4))
@@ -241,6 +242,7 @@ def modes(one: Document) -> tuple[tuple[str, ...], ...]:
 # exercises
 
 
+@pytest.mark.long("more cases of the same kind", keep=12)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_blank_exercises_show_no_derived_formula(documents, name: str) -> None:
     exercises, key = with_exercises(documents(name), "blank", 0)

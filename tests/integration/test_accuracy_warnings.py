@@ -23,6 +23,8 @@ from solvers.integration.predictability import PredictabilityWarning, ignore_pre
 from solvers.integration.prepare import prepare
 from solvers.integration.solution import Status
 
+pytestmark = pytest.mark.usefixtures("predictable_times")
+
 REPORT = (pi / 2, pi, 0.0, 0.0)
 COUPLED = (-0.9, 1.0, 0.3, -0.53)
 #: Motions of conservative systems, which are not chaotic.

@@ -26,7 +26,10 @@ rm {folder}/running-$$
 exec '{cc}' "$@"
 """
 
-pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+pytestmark = [
+    pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler"),
+    pytest.mark.usefixtures("predictable_times"),
+]
 
 
 def run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:

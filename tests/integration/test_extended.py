@@ -113,6 +113,7 @@ def test_every_precision_has_its_digits_in_chaos() -> None:
     assert after(50, "quadruple", 1e-30) < 1e-12
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.usefixtures("optimised")  # the smaller error is nearly that of roundings
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_errors_are_proportional_to_tolerances(precision: str) -> None:

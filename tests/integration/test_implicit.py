@@ -127,6 +127,7 @@ def test_orders_are_observed(name: str, steps: int) -> None:
     assert np.log2(errors[0] / errors[1]) == pytest.approx(load(name).order, abs=1.0)
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("name", CONTROLLED)
 def test_errors_are_proportional_to_the_tolerance(name: str) -> None:
     exact = integrate(dp, (0, 5), START, dp.DEFAULTS, rtol=1e-13, atol=1e-15).y[:, -1]
@@ -249,6 +250,7 @@ HARD = [
 ]
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @ignore_predictability()
 @pytest.mark.parametrize(("name", "h", "start"), HARD)
 def test_fixed_steps_do_not_stop_where_a_solution_exists(

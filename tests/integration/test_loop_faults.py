@@ -226,6 +226,7 @@ def test_of_events_at_the_same_time_the_first_in_the_list_counts(backend: str) -
         assert [len(times) for times in solution.t_events] == expected
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(
     ("method", "rtol"),
     [("bs32", 1e-6), ("dp54", 1e-6), ("tsit54", 1e-6), ("dop853", 1e-1), ("verner98", 1e-1)],

@@ -37,6 +37,7 @@ FORMS = ["rational", "lagrangian", "hamiltonian"]
 REPORT = (pi / 2, pi, 0.0, 0.0)
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("method", PARALLEL)
 def test_python_and_c_take_the_same_steps(method: str, form: str) -> None:

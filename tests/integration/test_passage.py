@@ -119,6 +119,7 @@ def test_ensembles_and_prepared_runs_agree_with_one_motion(squares: GeneratedMod
         assert prepared((0, 2), starts[:, k])[0] == pytest.approx(expected[-1], abs=1e-7)
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("method", ["verner98", "gauss8", "radau5"])
 def test_a_parallelogram_remains_one(method: str) -> None:
     start = consistent_start(four_bar, {"phi": 1.0, "phi_dot": 8.0}, EQUAL,

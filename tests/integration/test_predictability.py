@@ -19,6 +19,8 @@ from solvers.integration.predictability import PredictabilityWarning, ignore_pre
 from solvers.integration.solution import Status
 from solvers.references.taylor import taylor
 
+pytestmark = pytest.mark.usefixtures("predictable_times")
+
 REPORT = (pi / 2, pi, 0.0, 0.0)
 
 TIMES = np.linspace(0, 60, 601)
@@ -111,6 +113,7 @@ def test_the_predictable_time_does_not_depend_on_the_duration_of_the_run(toleran
     assert limits[0] == pytest.approx(observed, rel=0.3)
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize(
     "options",
     [

@@ -30,6 +30,7 @@ def perturbed(
     return np.array(columns).T
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("friction", [4.0, 2.0])
 def test_a_turn_on_a_slope(friction: float, backend: str) -> None:

@@ -62,6 +62,7 @@ def driven(t: float) -> tuple[float, float]:
 DRIVEN = {"P": 1.0, "F": 0.8}
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize(
     ("method", "backend"),
     [*product(("verner853", "radau"), BACKENDS), ("DOP853", None), ("gauss8", None)],

@@ -102,6 +102,7 @@ def test_methods_keep_their_order(
     assert np.log2(first / second) > order - 0.3
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(("case", "start", "exact", "n"), CASES)
 def test_high_orders_reach_rounding_errors(case, start, exact, n, backend) -> None:

@@ -85,6 +85,7 @@ def test_integrability_is_decided(
     assert not result.note
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize(
     ("constraints", "integrals"),
     [

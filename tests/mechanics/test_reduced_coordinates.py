@@ -202,6 +202,7 @@ def test_reduced_motions_are_those_of_all_coordinates(make: Callable[[], System]
     assert max(found.values()) < 1e-12, found
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("mistake", ["sign", "branch", "work", "forces"])
 def test_mistakes_change_motions(mistake: str, monkeypatch: pytest.MonkeyPatch) -> None:
     make = {"branch": closed_crank, "forces": driven}.get(mistake, double_pendulum)

@@ -70,6 +70,7 @@ def check(
             assert_exact(form.rhs(0.0, form.from_ordinary(0.0, np.array(still)))[-n:], rates)
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("amplitude", AMPLITUDES)
 @pytest.mark.parametrize("k", [1.0, 1e8])
 @pytest.mark.parametrize("name", SPRINGS)

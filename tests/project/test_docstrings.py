@@ -117,7 +117,7 @@ def examples() -> list[doctest.DocTest]:
     return found
 
 
-@pytest.mark.long("more cases of the same kind", keep=36)
+@pytest.mark.long("more cases of the same kind", keep=24)
 @pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
 def test_examples_run(
     example: doctest.DocTest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -71,6 +71,7 @@ def test_energy_is_kept_to_the_last_bits() -> None:
     assert np.abs(energy - energy[0]).max() < 1e-13
 
 
+@pytest.mark.long("more cases of the same kind", keep=7)
 @pytest.mark.parametrize("start", [
     (2.0, 0.0), (1.0, 3.0), (1.0, -3.0), (0.3, 7.0), (0.3, -7.0), (7.0, 1.0), (-4.0, 0.5),
     (9.0, -8.0), (3.0, 0.0), (0.0, 0.0), (1e-9, 0.0), (pi - 1e-5, 0.0), (1e-7 - pi, 0.0),

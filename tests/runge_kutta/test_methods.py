@@ -86,6 +86,7 @@ def test_coefficients_that_can_be_exact_are(name: str) -> None:
     assert kinds <= ({Decimal} if has_decimals else {Fraction, Surd})
 
 
+@pytest.mark.long("more cases of the same kind", keep=12)
 @pytest.mark.parametrize("name", names())
 def test_a_mistake_in_any_coefficient_loses_the_order(name: str) -> None:
     method = load(name)

@@ -251,6 +251,7 @@ def test_of_the_smallest_motions_only_rounding_remains() -> None:
     assert largest_error(stretched, NormalModes.of(stretched)) < estimate < 1e-13
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("params", "y0", "duration"), [
     ((1, 2, 9.81), (2.0, 0.0), 60),
     ((1, 2, 9.81), (0.0, 10.0), 60),  # over and over
@@ -535,6 +536,7 @@ def test_a_step_fixes_the_steps_of_methods_that_could_control_them() -> None:
     assert np.diff(times) == pytest.approx(0.05)
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("periods", "requested"), [
     # a spring that bounces for whole periods, as many as there are samples, one less, or half as
     # many; and one whose oscillation excites the angle, which alone is requested

@@ -179,6 +179,7 @@ def test_the_table_is_the_motion_with_units(tmp_path: Path) -> None:
     assert run_scene(replace(scene, outputs=("theta1",))).energy is None
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("name", ["report", "tremor", "single", "weightless", "rest"])
 def test_a_motion_starts_exactly_at_the_initial_state(name: str) -> None:
     scene = find(name, load_module)

@@ -225,6 +225,7 @@ def test_another_system_has_other_critical_steps(monkeypatch: pytest.MonkeyPatch
     assert other.measured == pytest.approx(sqrt(3) / 100, rel=1e-3)
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("method", ["gauss1", "rk4", "dop853", "verner98"])
 def test_rounding_at_a_stretched_equilibrium_is_no_growth(method: str) -> None:
     # small motion of a spring of 1.1 m: its states are rounded to 1e-16 m, not to 1e-16 of 1e-7 m

@@ -136,6 +136,7 @@ WHEELS = {
 }
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("kind", WHEELS)
 def test_the_point_of_contact_does_not_slip(kind: str) -> None:
     # oracle: differences of the position of the material point that touches the plane

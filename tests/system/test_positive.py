@@ -73,6 +73,7 @@ def test_a_motion_does_not_start_outside_the_domain_of_a_coordinate(length: floa
             run()
 
 
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize(
     "options",
     [

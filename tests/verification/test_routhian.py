@@ -152,6 +152,7 @@ def test_published_routhians_are_verified(name: str, tmp_path: Path) -> None:
     assert verdict.verdict == "verified"
 
 
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize(
     ("text", "verdict", "note"),
     [
