@@ -41,48 +41,6 @@ State y in functions of the rational form:
     theta2_dot [rad/s]
     theta3_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    x [m]
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    sin_theta3 [1]
-    cos_theta3 [1]
-    x_dot [m/s]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    theta3_dot [rad/s]
-    delta_x [m]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta3 [rad]
-    delta_x_dot [m/s]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-    delta_theta3_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    x [m]
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    sin_theta3 [1]
-    cos_theta3 [1]
-    x_dot [m/s]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    theta3_dot [rad/s]
-    delta_x [m]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta3 [rad]
-    delta_x_dot [m/s]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-    delta_theta3_dot [rad/s]
-
 Parameters params:
     m0 [kg] > 0, default 1.0: mass
     m1 [kg] > 0, default 1.0: mass
@@ -97,7 +55,8 @@ Masses and their positions:
     m0 at (x, 0)
     m1 at (l1*sin(theta1) + x, -l1*cos(theta1))
     m2 at (l1*sin(theta1) + l2*sin(theta2) + x, -l1*cos(theta1) - l2*cos(theta2))
-    m3 at (l1*sin(theta1) + l2*sin(theta2) + l3*sin(theta3) + x, -l1*cos(theta1) - l2*cos(theta2) - l3*cos(theta3))
+    m3 at (l1*sin(theta1) + l2*sin(theta2) + l3*sin(theta3) + x, -l1*cos(theta1)
+        - l2*cos(theta2) - l3*cos(theta3))
 
 Lagrangian:
     L = g*l1*(m1 + m2 + m3)*cos(theta1) + g*l2*(m2 + m3)*cos(theta2)
@@ -142,105 +101,44 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "20f98e0c4c85a947"
+DIGEST = "3d940e9640c1b4d9"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
-    "x",
-    "theta1",
-    "theta2",
-    "theta3",
-    "x_dot",
-    "theta1_dot",
-    "theta2_dot",
-    "theta3_dot",
+    "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
 )
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": (
-        "x",
-        "theta1",
-        "theta2",
-        "theta3",
-        "x_dot",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
+        "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
     ),
     "hamiltonian": (
-        "x",
-        "theta1",
-        "theta2",
-        "theta3",
-        "p_x",
-        "p_theta1",
-        "p_theta2",
-        "p_theta3",
+        "x", "theta1", "theta2", "theta3", "p_x", "p_theta1", "p_theta2", "p_theta3",
     ),
     "rational": (
-        "x",
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "sin_theta3",
-        "cos_theta3",
-        "x_dot",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
+        "x", "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
+        "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
     ),
     "variational": (
-        "x",
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "sin_theta3",
-        "cos_theta3",
-        "x_dot",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
-        "delta_x",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta3",
-        "delta_x_dot",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "x", "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
+        "x_dot", "theta1_dot", "theta2_dot", "theta3_dot", "delta_x", "delta_theta1",
+        "delta_theta2", "delta_theta3", "delta_x_dot", "delta_theta1_dot", "delta_theta2_dot",
         "delta_theta3_dot",
     ),
     "sensitivity": (
-        "x",
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "sin_theta3",
-        "cos_theta3",
-        "x_dot",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
-        "delta_x",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta3",
-        "delta_x_dot",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "x", "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
+        "x_dot", "theta1_dot", "theta2_dot", "theta3_dot", "delta_x", "delta_theta1",
+        "delta_theta2", "delta_theta3", "delta_x_dot", "delta_theta1_dot", "delta_theta2_dot",
         "delta_theta3_dot",
     ),
 }
@@ -256,74 +154,28 @@ LINKS = (
 )
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "points",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions", "points",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (131, 13),
-    "jacobian": (396, 14),
-    "parameter_jacobian": (418, 15),
-    "energy": (66, 15),
-    "mass_matrix": (27, 12),
-    "positions": (20, 0),
-    "points": (36, 4),
-    "hamiltonian_state": (53, 7),
-    "rhs_hamiltonian": (138, 14),
-    "jacobian_hamiltonian": (453, 14),
-    "energy_hamiltonian": (111, 11),
-    "lagrangian_state": (98, 9),
-    "rational_state": (6, 0),
-    "rhs_rational": (134, 13),
-    "rhs_variational": (280, 13),
-    "rhs_sensitivity": (438, 38),
-    "equilibrium": (0, 0),
+    "rhs": (131, 13), "jacobian": (396, 14), "parameter_jacobian": (418, 15),
+    "energy": (66, 15), "mass_matrix": (27, 12), "positions": (20, 0), "points": (36, 4),
+    "hamiltonian_state": (53, 7), "rhs_hamiltonian": (138, 14),
+    "jacobian_hamiltonian": (453, 14), "energy_hamiltonian": (111, 11),
+    "lagrangian_state": (98, 9), "rational_state": (6, 0), "rhs_rational": (134, 13),
+    "rhs_variational": (280, 13), "rhs_sensitivity": (438, 38), "equilibrium": (0, 0),
     "linear": (15, 15),
 }
 UNITS = {
-    "m0": "kg",
-    "m1": "kg",
-    "m2": "kg",
-    "m3": "kg",
-    "l1": "m",
-    "l2": "m",
-    "l3": "m",
-    "g": "m/s^2",
-    "x": "m",
-    "x_dot": "m/s",
-    "p_x": "kg m/s",
-    "delta_x": "m",
-    "delta_x_dot": "m/s",
-    "theta1": "rad",
-    "theta1_dot": "rad/s",
-    "p_theta1": "J s",
-    "delta_theta1": "rad",
-    "delta_theta1_dot": "rad/s",
-    "sin_theta1": "1",
-    "cos_theta1": "1",
-    "theta2": "rad",
-    "theta2_dot": "rad/s",
-    "p_theta2": "J s",
-    "delta_theta2": "rad",
-    "delta_theta2_dot": "rad/s",
-    "sin_theta2": "1",
-    "cos_theta2": "1",
-    "theta3": "rad",
-    "theta3_dot": "rad/s",
-    "p_theta3": "J s",
-    "delta_theta3": "rad",
-    "delta_theta3_dot": "rad/s",
-    "sin_theta3": "1",
+    "m0": "kg", "m1": "kg", "m2": "kg", "m3": "kg", "l1": "m", "l2": "m", "l3": "m",
+    "g": "m/s^2", "x": "m", "x_dot": "m/s", "p_x": "kg m/s", "delta_x": "m",
+    "delta_x_dot": "m/s", "theta1": "rad", "theta1_dot": "rad/s", "p_theta1": "J s",
+    "delta_theta1": "rad", "delta_theta1_dot": "rad/s", "sin_theta1": "1",
+    "cos_theta1": "1", "theta2": "rad", "theta2_dot": "rad/s", "p_theta2": "J s",
+    "delta_theta2": "rad", "delta_theta2_dot": "rad/s", "sin_theta2": "1",
+    "cos_theta2": "1", "theta3": "rad", "theta3_dot": "rad/s", "p_theta3": "J s",
+    "delta_theta3": "rad", "delta_theta3_dot": "rad/s", "sin_theta3": "1",
     "cos_theta3": "1",
 }
 
@@ -367,7 +219,8 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y: velocities, then accelerations from M qddot = f.
     """
     # inputs
-    _, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m1 + m2
@@ -431,77 +284,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = theta1_dot*theta1_dot
-    sin_theta2 = sin(theta2)
-    x1 = theta2_dot*theta2_dot
-    x2 = c4*x1
-    sin_theta3 = sin(theta3)
-    x3 = c5*(theta3_dot*theta3_dot)
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    x4 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    cos_theta2 = cos(theta2)
-    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
-    x7 = m3*cos_theta3
-    x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    x9 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x10 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x11 = m3*x10
-    x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11
-    x13 = c3*cos_theta2 - x10*x7
-    x14 = 1.0/(m2 + m3*x5*x5)
-    x15 = x13*x14
-    x16 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x17 = c3*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x18 = x17 - x16*x11
-    x19 = x14*x18
-    x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19
-    x21 = c1*cos_theta1 - x16*x7 - x18*x15
-    x22 = 1.0/(c0 + m3*x4*x4 - x18*x19)
-    x23 = x21*x22
-    x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23
-    x25 = (x8 - x12*x15 + x20*x23)/x24
-    x26 = x22*(x20 + x21*x25)
-    x27 = x14*(x12 + x18*x26 - x13*x25)
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        x_dot,
-        theta1_dot,
-        theta2_dot,
-        theta3_dot,
-        x25,
-        -c10*x26,
-        c11*x27,
-        c12*(x6 + x16*x26 - cos_theta3*x25 - x10*x27),
-    )
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -523,7 +305,8 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         Entry [i][j] is the derivative of rhs[i] with respect to y[j].
     """
     # inputs
-    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m1 + m2
@@ -674,576 +457,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (8, 8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = m2 + m3
-    c3 = c2*l2
-    c4 = m3*l3
-    c5 = c1*g
-    c6 = c2*l1
-    c7 = c2*g
-    c8 = c1*l1
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = m3*l2
-    c13 = 1.0/l3
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    x0 = l1*theta1_dot
-    x1 = theta1_dot*x0
-    sin_theta1 = sin(theta1)
-    cos_theta3 = cos(theta3)
-    sin_theta3 = sin(theta3)
-    x2 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x3 = m3*x2
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x4 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x5 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x6 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x7 = m3*x6
-    x8 = c2*x4 - x5*x7
-    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x10 = m3*x9
-    x11 = 1.0/(m2 + x9*x10)
-    x12 = x11*x8
-    x13 = 1.0/(c0 + x2*x3 - x8*x12)
-    x14 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x15 = theta2_dot*theta2_dot
-    x16 = c3*x15
-    x17 = theta3_dot*theta3_dot
-    x18 = c4*x17
-    x19 = l2*x15
-    x20 = x2*x1 + x9*x19 - g*sin_theta3
-    x21 = m3*x5
-    x22 = theta1_dot*theta1_dot
-    x23 = c6*x22
-    x24 = x14*x23 - x9*x18 - c7*sin_theta2 - x20*x7
-    x25 = x14*x16 + x2*x18 + c5*sin_theta1 + x20*x21 + x24*x12
-    x26 = m3*cos_theta3
-    x27 = c2*cos_theta2 - cos_theta3*x7
-    x28 = x27*x11
-    x29 = c1*cos_theta1 - x5*x26 - x8*x28
-    x30 = c8*sin_theta1*x22 + sin_theta2*x16 + sin_theta3*x18
-    x31 = x29*x13
-    x32 = c9 + m3*sin_theta3*sin_theta3 - x27*x28 - x29*x31
-    x33 = (x30 - x20*x26 - x24*x28 + x25*x31)/x32
-    x34 = x13*(x25 + x29*x33)
-    x35 = x5*x1
-    x36 = x2*x34
-    x37 = x35 - x36
-    x38 = c2*(x4*x1 - x14*x34) - x37*x7
-    x39 = c1*(cos_theta1*x1 - sin_theta1*x34) - x37*x26 - x38*x28
-    x40 = c1*sin_theta1
-    x41 = x11*(x24 + x8*x34 - x27*x33)
-    x42 = c2*x14
-    x43 = x20 + x5*x34 - cos_theta3*x33 - x6*x41
-    x44 = x33*x40 + x41*x42 + x43*x3 - (x4*x16 + x5*x18 + c5*cos_theta1)
-    x45 = x44 - x37*x21 - x38*x12
-    x46 = (x39 - x45*x31)/x32
-    x47 = x6*x19
-    x48 = x9*x41
-    x49 = x47 + x48
-    x50 = c2*sin_theta2
-    x51 = x34*x42 + x33*x50 + x43*x10 - (x4*x23 + x6*x18 + c7*cos_theta2)
-    x52 = x51 - x49*x7
-    x53 = c2*(cos_theta2*x19 + sin_theta2*x41) - x49*x26 - x52*x28
-    x54 = c2*(x4*x19 - x14*x41) - x49*x21 - x52*x12
-    x55 = (x53 - x54*x31)/x32
-    x56 = l3*x17
-    x57 = x36 + sin_theta3*x33 - x48 - (x35 + x47 + g*cos_theta3)
-    x58 = x6*x56 - x9*x43 - x6*x57
-    x59 = cos_theta3*x56 + sin_theta3*x43 - cos_theta3*x57 - x58*x28
-    x60 = x5*x56 - x2*x43 - x5*x57 - x58*x12
-    x61 = m3*(x59 - x60*x31)/x32
-    x62 = x42 - x2*x7
-    x63 = x2*x21 + x62*x12
-    x64 = (x40 - x2*x26 - x62*x28 + x63*x31)*x0/x32
-    x65 = x9*x28
-    x66 = x9*x12
-    x67 = x42 + x9*x21 - x66*x7
-    x68 = l2*theta2_dot
-    x69 = (x50 - x9*x26 + x65*x7 + x67*x31)*x68/x32
-    x70 = x2 - x66
-    x71 = c4*theta3_dot
-    x72 = (sin_theta3 + x65 + x70*x31)*x71/x32
-    x73 = x13*(x45 - x29*x46)
-    x74 = x13*(x54 - x29*x55)
-    x75 = x13*(m3*x60 - x29*x61)
-    x76 = x13*(x63*x0 + x29*x64)
-    x77 = x13*(x67*x68 + x29*x69)
-    x78 = x13*(x70*x71 + x29*x72)
-    x79 = x11*(x27*x46 + x8*x73 - x38)
-    x80 = x11*(x27*x55 + x8*x74 - x52)
-    x81 = x11*(x27*x61 + x8*x75 - m3*x58)
-    x82 = x11*(x62*x0 + x8*x76 - x27*x64)
-    x83 = x11*(c12*x6*x9*theta2_dot + x27*x69 - x8*x77)
-    x84 = x11*(x9*x71 + x27*x72 - x8*x78)
-    x85 = 2.0*c13*(x2*x0 + x5*x76 - cos_theta3*x64 - x6*x82)
-    x86 = 2.0*c13*(x9*x68 + x5*x77 + x6*x83 - cos_theta3*x69)
-    # outputs
-    return _stacked(
-        (8, 8),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        x46,
-        x55,
-        x61,
-        0.0,
-        2.0*x64,
-        2.0*x69,
-        2.0*x72,
-        0.0,
-        c10*x73,
-        c10*x74,
-        c10*x75,
-        0.0,
-        -2.0*c10*x76,
-        -2.0*c10*x77,
-        -2.0*c10*x78,
-        0.0,
-        -c11*x79,
-        -c11*x80,
-        -c11*x81,
-        0.0,
-        2.0*c11*x82,
-        -2.0*c11*x83,
-        -2.0*c11*x84,
-        0.0,
-        c13*(x37 + x6*x79 - cos_theta3*x46 - x5*x73),
-        c13*(x49 + x6*x80 - cos_theta3*x55 - x5*x74),
-        c13*(x57 + x6*x81 - cos_theta3*x61 - x5*x75),
-        0.0,
-        x85,
-        x86,
-        2.0*c13*(x5*x78 + x6*x84 - cos_theta3*x72),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    418 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        x in m; theta1, theta2, theta3 in rad; x_dot in m/s; theta1_dot, theta2_dot,
-        theta3_dot in rad/s.
-    params : iterable of 8 floats
-        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = c1*c10
-    c12 = 1.0/l2
-    c13 = c3*c12
-    c14 = 1.0/l3
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = theta1_dot*theta1_dot
-    x1 = sin_theta1*x0
-    sin_theta2 = sin(theta2)
-    x2 = theta2_dot*theta2_dot
-    x3 = sin_theta2*x2
-    sin_theta3 = sin(theta3)
-    x4 = theta3_dot*theta3_dot
-    x5 = sin_theta3*x4
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    x6 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x7 = x6*x0
-    cos_theta2 = cos(theta2)
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = x8*x2
-    x10 = l1*x7 + l2*x9 - g*sin_theta3
-    x11 = m3*cos_theta3
-    x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x13 = x12*x0
-    x14 = x8*x4
-    x15 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x16 = m3*x15
-    x17 = c6*x13 - c5*x14 - c7*sin_theta2 - x10*x16
-    x18 = c3*cos_theta2 - x15*x11
-    x19 = 1.0/(m2 + m3*x8*x8)
-    x20 = x18*x19
-    x21 = x12*x2
-    x22 = x6*x4
-    x23 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x24 = m3*x23
-    x25 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x26 = c3*x25 - x23*x16
-    x27 = x19*x26
-    x28 = c4*x21 + c5*x22 + c8*sin_theta1 + x10*x24 + x17*x27
-    x29 = c1*cos_theta1 - x23*x11 - x26*x20
-    x30 = 1.0/(c0 + m3*x6*x6 - x26*x27)
-    x31 = x29*x30
-    x32 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x17*x20 + x28*x31
-    x33 = c9 + m3*sin_theta3*sin_theta3 - x18*x20 - x29*x31
-    x34 = x32/x33
-    x35 = x34/x33
-    x36 = l1*x1
-    x37 = x30*(x28 + x29*x34)
-    x38 = x34 - cos_theta1*x37
-    x39 = g*sin_theta1
-    x40 = x37 - cos_theta1*x34
-    x41 = x39 - x40
-    x42 = (x36 - x38 + x41*x31)/x33
-    x43 = x19*(x17 + x26*x37 - x18*x34)
-    x44 = cos_theta2*x43 + x38
-    x45 = x36 + l2*x3
-    x46 = l1*x13
-    x47 = g*sin_theta2
-    x48 = x25*x37 - (x43 + cos_theta2*x34)
-    x49 = -(x46 - x47 + x48)
-    x50 = l2*x21
-    x51 = x25*x43 - x40
-    x52 = x39 + x50 + x51 - x49*x27
-    x53 = (x44 - x45 - x49*x20 - x52*x31)/x33
-    x54 = x10 + x23*x37 - cos_theta3*x34 - x15*x43
-    x55 = x47 - (x46 - l3*x14) + x15*x54 - x48
-    x56 = x39 + (x50 + l3*x22) + x23*x54 + x51 - x55*x27
-    x57 = cos_theta3*x54 + x44 - (x45 + l3*x5) - x55*x20 - x56*x31
-    x58 = x57/x33
-    x59 = c10*x37
-    x60 = x7 + x23*x59
-    x61 = c3*(x13 + x25*x59) - x60*x16
-    x62 = c11*x37 - x60*x24 - x61*x27
-    x63 = c1*(x1 + cos_theta1*x59) - x60*x11 - x61*x20 - x62*x31
-    x64 = x63/x33
-    x65 = c12*x43
-    x66 = x9 - x15*x65
-    x67 = c13*x43 + x66*x16
-    x68 = c3*(x21 + x25*x65) + x66*x24 - x67*x27
-    x69 = c3*(x3 - cos_theta2*x65) - x66*x11 + x67*x20 + x68*x31
-    x70 = x69/x33
-    x71 = c14*x54
-    x72 = cos_theta3*x71
-    x73 = x15*x71
-    x74 = x73 - (x73 + x14)
-    x75 = x23*x71
-    x76 = x75 - (x75 + x22) - x74*x27
-    x77 = m3*(x72 - (x72 - x5) - x74*x20 - x76*x31)/x33
-    x78 = c3*sin_theta2 - sin_theta3*x16
-    x79 = c1*sin_theta1 - sin_theta3*x24 - x78*x27
-    x80 = (sin_theta3*x11 + x78*x20 + x79*x31)/x33
-    x81 = x35*x31
-    x82 = x30*(x41 + x29*x42)
-    x83 = x30*(x52 - x29*x53)
-    x84 = x30*(x56 - x29*x58)
-    x85 = x30*(x62 - x29*x64)
-    x86 = x30*(x68 + x29*x70)
-    x87 = x30*(m3*x76 - x29*x77)
-    x88 = x30*(x79 + x29*x80)
-    x89 = x19*(x18*x35 - x26*x81)
-    x90 = x19*(x18*x42 - x26*x82)
-    x91 = x19*(x18*x53 + x26*x83 - x49)
-    x92 = x19*(x18*x58 + x26*x84 - x55)
-    x93 = x19*(x18*x64 + x26*x85 - x61)
-    x94 = x19*(x67 + x18*x70 - x26*x86)
-    x95 = x19*(x18*x77 + x26*x87 - m3*x74)
-    x96 = x19*(x78 + x18*x80 - x26*x88)
-    x97 = c14*(sin_theta3 + cos_theta3*x80 - x23*x88 - x15*x96)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-x35, x42, -x53, -x58, x64, x70, x77, x80),
-        (
-            c10*x81,
-            -c10*x82,
-            -c10*x83,
-            -c10*x84,
-            c10*x85,
-            -c10*x86,
-            c10*x87,
-            -c10*x88,
-        ),
-        (
-            c12*x89,
-            -c12*x90,
-            c12*x91,
-            c12*x92,
-            -c12*x93,
-            -c12*x94,
-            -c12*x95,
-            -c12*x96,
-        ),
-        (
-            -c14*(x23*x81 + x15*x89 - cos_theta3*x35),
-            c14*(x23*x82 + x15*x90 - cos_theta3*x42),
-            c14*(cos_theta3*x53 + x23*x83 - x15*x91),
-            c14*(cos_theta3*x58 + x23*x84 - x15*x92),
-            c14*(x60 + x15*x93 - cos_theta3*x64 - x23*x85),
-            c14*(x66 + x23*x86 + x15*x94 - cos_theta3*x70),
-            -c14*(x71 + cos_theta3*x77 + x23*x87 - x15*x95),
-            -x97,
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (8, 8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, _, theta1_dot, theta2_dot, theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = c1*c10
-    c12 = 1.0/l2
-    c13 = c3*c12
-    c14 = 1.0/l3
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = theta1_dot*theta1_dot
-    x1 = sin_theta1*x0
-    sin_theta2 = sin(theta2)
-    x2 = theta2_dot*theta2_dot
-    x3 = sin_theta2*x2
-    sin_theta3 = sin(theta3)
-    x4 = theta3_dot*theta3_dot
-    x5 = sin_theta3*x4
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    x6 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x7 = x6*x0
-    cos_theta2 = cos(theta2)
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = x8*x2
-    x10 = l1*x7 + l2*x9 - g*sin_theta3
-    x11 = m3*cos_theta3
-    x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
-    x13 = x12*x0
-    x14 = x8*x4
-    x15 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x16 = m3*x15
-    x17 = c6*x13 - c5*x14 - c7*sin_theta2 - x10*x16
-    x18 = c3*cos_theta2 - x15*x11
-    x19 = 1.0/(m2 + m3*x8*x8)
-    x20 = x18*x19
-    x21 = x12*x2
-    x22 = x6*x4
-    x23 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x24 = m3*x23
-    x25 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x26 = c3*x25 - x23*x16
-    x27 = x19*x26
-    x28 = c4*x21 + c5*x22 + c8*sin_theta1 + x10*x24 + x17*x27
-    x29 = c1*cos_theta1 - x23*x11 - x26*x20
-    x30 = 1.0/(c0 + m3*x6*x6 - x26*x27)
-    x31 = x29*x30
-    x32 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x17*x20 + x28*x31
-    x33 = c9 + m3*sin_theta3*sin_theta3 - x18*x20 - x29*x31
-    x34 = x32/x33
-    x35 = x34/x33
-    x36 = l1*x1
-    x37 = x30*(x28 + x29*x34)
-    x38 = x34 - cos_theta1*x37
-    x39 = g*sin_theta1
-    x40 = x37 - cos_theta1*x34
-    x41 = x39 - x40
-    x42 = (x36 - x38 + x41*x31)/x33
-    x43 = x19*(x17 + x26*x37 - x18*x34)
-    x44 = cos_theta2*x43 + x38
-    x45 = x36 + l2*x3
-    x46 = l1*x13
-    x47 = g*sin_theta2
-    x48 = x25*x37 - (x43 + cos_theta2*x34)
-    x49 = -(x46 - x47 + x48)
-    x50 = l2*x21
-    x51 = x25*x43 - x40
-    x52 = x39 + x50 + x51 - x49*x27
-    x53 = (x44 - x45 - x49*x20 - x52*x31)/x33
-    x54 = x10 + x23*x37 - cos_theta3*x34 - x15*x43
-    x55 = x47 - (x46 - l3*x14) + x15*x54 - x48
-    x56 = x39 + (x50 + l3*x22) + x23*x54 + x51 - x55*x27
-    x57 = cos_theta3*x54 + x44 - (x45 + l3*x5) - x55*x20 - x56*x31
-    x58 = x57/x33
-    x59 = c10*x37
-    x60 = x7 + x23*x59
-    x61 = c3*(x13 + x25*x59) - x60*x16
-    x62 = c11*x37 - x60*x24 - x61*x27
-    x63 = c1*(x1 + cos_theta1*x59) - x60*x11 - x61*x20 - x62*x31
-    x64 = x63/x33
-    x65 = c12*x43
-    x66 = x9 - x15*x65
-    x67 = c13*x43 + x66*x16
-    x68 = c3*(x21 + x25*x65) + x66*x24 - x67*x27
-    x69 = c3*(x3 - cos_theta2*x65) - x66*x11 + x67*x20 + x68*x31
-    x70 = x69/x33
-    x71 = c14*x54
-    x72 = cos_theta3*x71
-    x73 = x15*x71
-    x74 = x73 - (x73 + x14)
-    x75 = x23*x71
-    x76 = x75 - (x75 + x22) - x74*x27
-    x77 = m3*(x72 - (x72 - x5) - x74*x20 - x76*x31)/x33
-    x78 = c3*sin_theta2 - sin_theta3*x16
-    x79 = c1*sin_theta1 - sin_theta3*x24 - x78*x27
-    x80 = (sin_theta3*x11 + x78*x20 + x79*x31)/x33
-    x81 = x35*x31
-    x82 = x30*(x41 + x29*x42)
-    x83 = x30*(x52 - x29*x53)
-    x84 = x30*(x56 - x29*x58)
-    x85 = x30*(x62 - x29*x64)
-    x86 = x30*(x68 + x29*x70)
-    x87 = x30*(m3*x76 - x29*x77)
-    x88 = x30*(x79 + x29*x80)
-    x89 = x19*(x18*x35 - x26*x81)
-    x90 = x19*(x18*x42 - x26*x82)
-    x91 = x19*(x18*x53 + x26*x83 - x49)
-    x92 = x19*(x18*x58 + x26*x84 - x55)
-    x93 = x19*(x18*x64 + x26*x85 - x61)
-    x94 = x19*(x67 + x18*x70 - x26*x86)
-    x95 = x19*(x18*x77 + x26*x87 - m3*x74)
-    x96 = x19*(x78 + x18*x80 - x26*x88)
-    x97 = c14*(sin_theta3 + cos_theta3*x80 - x23*x88 - x15*x96)
-    # outputs
-    return _stacked(
-        (8, 8),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x35,
-        x42,
-        -x53,
-        -x58,
-        x64,
-        x70,
-        x77,
-        x80,
-        c10*x81,
-        -c10*x82,
-        -c10*x83,
-        -c10*x84,
-        c10*x85,
-        -c10*x86,
-        c10*x87,
-        -c10*x88,
-        c12*x89,
-        -c12*x90,
-        c12*x91,
-        c12*x92,
-        -c12*x93,
-        -c12*x94,
-        -c12*x95,
-        -c12*x96,
-        -c14*(x23*x81 + x15*x89 - cos_theta3*x35),
-        c14*(x23*x82 + x15*x90 - cos_theta3*x42),
-        c14*(cos_theta3*x53 + x23*x83 - x15*x91),
-        c14*(cos_theta3*x58 + x23*x84 - x15*x92),
-        c14*(x60 + x15*x93 - cos_theta3*x64 - x23*x85),
-        c14*(x66 + x23*x86 + x15*x94 - cos_theta3*x70),
-        -c14*(x71 + cos_theta3*x77 + x23*x87 - x15*x95),
-        -x97,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -1265,50 +478,9 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
         Energy in J.
     """
     # inputs
-    _, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = m1 + c0
-    c2 = l1*c1
-    c3 = l2*c0
-    c4 = m3*l3
-    c5 = l1*c3
-    c6 = l1*c4
-    c7 = l2*c4
-    c8 = m0 + c1
-    c9 = l3*c4
-    c10 = l1*c2
-    c11 = l2*c3
-    c12 = g*c2
-    c13 = g*c3
-    c14 = g*c4
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    cos_theta3 = cos(theta3)
-    x0 = (
-        c8*x_dot*x_dot + c9*theta3_dot*theta3_dot + c10*theta1_dot*theta1_dot
-        + c11*theta2_dot*theta2_dot
-    )
-    x1 = (
-        c2*x_dot*theta1_dot*cos_theta1 + c3*x_dot*theta2_dot*cos_theta2
-        + c4*x_dot*theta3_dot*cos_theta3 + c5*theta1_dot*theta2_dot*cos(theta1 - theta2)
-        + c6*theta3_dot*theta1_dot*cos(theta1 - theta3)
-        + c7*theta3_dot*theta2_dot*cos(theta2 - theta3) + 0.5*x0 - c12*cos_theta1
-        - c13*cos_theta2 - c14*cos_theta3
-    )
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     _, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
+    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m2 + m3
     c1 = m1 + c0
@@ -1392,52 +564,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos
-
-    # inputs
-    _, theta1, theta2, theta3, _, _, _, _ = y
-    m0, m1, m2, m3, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = m1 + c0
-    c2 = l1*c1
-    c3 = l2*c0
-    c4 = m3*l3
-    c5 = l1*c3
-    c6 = l1*c4
-    c7 = l2*c4
-    # intermediate terms
-    x0 = c2*cos(theta1)
-    x1 = c3*cos(theta2)
-    x2 = c4*cos(theta3)
-    x3 = c5*cos(theta1 - theta2)
-    x4 = c6*cos(theta1 - theta3)
-    x5 = c7*cos(theta2 - theta3)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        m0 + c1,
-        x0,
-        x1,
-        x2,
-        x0,
-        l1*c2,
-        x3,
-        x4,
-        x1,
-        x3,
-        l2*c3,
-        x5,
-        x2,
-        x4,
-        x5,
-        l3*c4,
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -1472,33 +598,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
         (x0, -x1),
         (x2, -x3),
         (x2 + l3*sin(theta3), -(x3 + l3*cos(theta3))),
-    )
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (4, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, theta1, theta2, theta3, _, _, _, _ = y
-    _, _, _, _, l1, l2, l3, _ = params
-    # intermediate terms
-    x0 = x + l1*sin(theta1)
-    x1 = l1*cos(theta1)
-    x2 = x0 + l2*sin(theta2)
-    x3 = x1 + l2*cos(theta2)
-    # outputs
-    return _stacked(
-        (4, 2),
-        y[0],
-        x,
-        0.0,
-        x0,
-        -x1,
-        x2,
-        -x3,
-        x2 + l3*sin(theta3),
-        -(x3 + l3*cos(theta3)),
     )
 
 
@@ -1560,66 +659,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (16, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, theta1, theta2, theta3, _, _, _, _ = y
-    _, _, _, _, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = -0.125*l1
-    c1 = 0.125*l1
-    c2 = -0.1875*l1
-    c3 = -0.25*l1
-    # intermediate terms
-    x0 = x - 0.25*l1
-    x1 = 0.25*l1 + x
-    x2 = x - 0.125*l1
-    x3 = 0.125*l1 + x
-    x4 = x + l1*sin(theta1)
-    x5 = l1*cos(theta1)
-    x6 = x4 + l2*sin(theta2)
-    x7 = x5 + l2*cos(theta2)
-    # outputs
-    return _stacked(
-        (16, 2),
-        y[0],
-        x0,
-        c0,
-        x1,
-        c0,
-        x1,
-        c1,
-        x0,
-        c1,
-        x2,
-        c2,
-        x - 0.0625*l1,
-        c2,
-        x2,
-        c0,
-        x3,
-        c2,
-        0.1875*l1 + x,
-        c2,
-        x3,
-        c0,
-        0.0,
-        c3,
-        1.0,
-        c3,
-        x,
-        0.0,
-        x4,
-        -x5,
-        x6,
-        -x7,
-        x6 + l3*sin(theta3),
-        -(x7 + l3*cos(theta3)),
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1641,7 +680,8 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Coordinates, then momenta p = M qdot.
     """
     # inputs
-    x, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    x, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
     m0, m1, m2, m3, l1, l2, l3, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m2 + m3
@@ -1666,49 +706,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x8 = l3*theta3_dot + x_dot*cos_theta3 + l1*theta1_dot*x5 + l2*theta2_dot*x6
     # outputs
     return (
-        x,
-        theta1,
-        theta2,
-        theta3,
-        x3,
-        l1*(x0 + c1*x_dot*cos_theta1 + x4*x1 + x5*x2),
-        l2*x7,
-        c5*x8,
-    )
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (8, ...)."""
-    from numpy import cos
-
-    # inputs
-    x, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = m1 + c0
-    c2 = m0 + c1
-    c3 = l1*c1
-    c4 = l2*c0
-    c5 = m3*l3
-    c6 = l1*c0
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    x0 = c3*theta1_dot
-    cos_theta2 = cos(theta2)
-    x1 = c4*theta2_dot
-    cos_theta3 = cos(theta3)
-    x2 = c5*theta3_dot
-    x3 = c2*x_dot + cos_theta1*x0 + cos_theta2*x1 + cos_theta3*x2
-    x4 = cos(theta1 - theta2)
-    x5 = cos(theta1 - theta3)
-    x6 = cos(theta2 - theta3)
-    x7 = x1 + c0*x_dot*cos_theta2 + c6*theta1_dot*x4 + x6*x2
-    x8 = l3*theta3_dot + x_dot*cos_theta3 + l1*theta1_dot*x5 + l2*theta2_dot*x6
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
         x,
         theta1,
         theta2,
@@ -1741,7 +738,8 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y: velocities from M qdot = p, then -dH/dq.
     """
     # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l3
@@ -1782,7 +780,8 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     x17 = 1.0/(c4 + x15*x16 - x11*x12)
     x18 = x14*x17
     x19 = (
-        (p_x - cos_theta3*x0 - x2*x8 - x13*x18)/(c6 + m3*sin_theta3*sin_theta3 - x4*x8 - x14*x18)
+        (p_x - cos_theta3*x0 - x2*x8 - x13*x18)/(c6 + m3*sin_theta3*sin_theta3 - x4*x8
+        - x14*x18)
     )
     x20 = x17*(x13 - x14*x19)
     x21 = x7*(x4*x19 + x11*x20 - x2)
@@ -1796,465 +795,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     x29 = x5*x27 + c10*sin_theta3 + sin_theta3*x19*x22 - x15*x23
     # outputs
     return (x19, c3*x20, -c1*x21, c0*x22, 0.0, -x26, -x28, -m3*x29)
-
-
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l3
-    c1 = 1.0/l2
-    c2 = m2 + m3
-    c3 = 1.0/l1
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
-    c7 = 1.0/(m3*l3)
-    c8 = c5*l1*g
-    c9 = c2*l2*g
-    c10 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    x0 = c0*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
-    sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = c1*p_theta2 - x1*x0
-    x3 = m3*cos_theta3
-    x4 = c2*cos_theta2 - x1*x3
-    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x6 = m3*x5
-    x7 = 1.0/(m2 + x5*x6)
-    x8 = x4*x7
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x9 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x10 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x11 = x10 - m3*x1*x9
-    x12 = x7*x11
-    x13 = c3*p_theta1 - x9*x0 - x2*x12
-    x14 = c5*cos_theta1 - x9*x3 - x11*x8
-    x15 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x16 = m3*x15
-    x17 = 1.0/(c4 + x15*x16 - x11*x12)
-    x18 = x14*x17
-    x19 = (
-        (p_x - cos_theta3*x0 - x2*x8 - x13*x18)/(c6 + m3*sin_theta3*sin_theta3 - x4*x8 - x14*x18)
-    )
-    x20 = x17*(x13 - x14*x19)
-    x21 = x7*(x4*x19 + x11*x20 - x2)
-    x22 = c7*p_theta3 + x1*x21 - cos_theta3*x19 - x9*x20
-    x23 = x20*x22
-    x24 = c2*x21
-    x25 = x20*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)*x24
-    x26 = c8*sin_theta1 + c5*sin_theta1*x19*x20 + x16*x23 - x25
-    x27 = x21*x22
-    x28 = x25 + c9*sin_theta2 - sin_theta2*x19*x24 - x6*x27
-    x29 = x5*x27 + c10*sin_theta3 + sin_theta3*x19*x22 - x15*x23
-    # outputs
-    return _stacked((8,), y[0], x19, c3*x20, -c1*x21, c0*x22, 0.0, -x26, -x28, -m3*x29)
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    453 operations, 14 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        x in m; theta1, theta2, theta3 in rad; p_x in kg m/s; p_theta1, p_theta2, p_theta3
-        in J s.
-    params : iterable of 8 floats
-        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
-    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m2 + m3
-    c2 = 1.0/l1
-    c3 = 1.0/l3
-    c4 = 1.0/l2
-    c5 = m3 + c0
-    c6 = m0 + c0
-    c7 = 1.0/(m3*l3)
-    c8 = c5*l1*g
-    c9 = c1*l2*g
-    c10 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    sin_theta1 = sin(theta1)
-    sin_theta3 = sin(theta3)
-    cos_theta1 = cos(theta1)
-    x0 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x1 = m3*x0
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x4 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x5 = x2 - m3*x3*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = 1.0/(m2 + x6*x7)
-    x9 = x8*x5
-    x10 = 1.0/(c0 + x0*x1 - x5*x9)
-    x11 = c3*p_theta3
-    x12 = c4*p_theta2 - x3*x11
-    x13 = c2*p_theta1 - x4*x11 - x12*x9
-    x14 = c5*cos_theta1
-    x15 = m3*cos_theta3
-    x16 = c1*cos_theta2
-    x17 = x16 - x3*x15
-    x18 = x14 - x4*x15 - x17*x9
-    x19 = x17*x8
-    x20 = x18*x10
-    x21 = c6 + m3*sin_theta3*sin_theta3 - x17*x19 - x18*x20
-    x22 = (p_x - cos_theta3*x11 - x12*x19 - x13*x20)/x21
-    x23 = x10*(x13 - x18*x22)
-    x24 = c5*sin_theta1
-    x25 = c1*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
-    x26 = x25 - x3*x1
-    x27 = x22*x24
-    x28 = x8*(x17*x22 + x5*x23 - x12)
-    x29 = x3*x28
-    x30 = cos_theta3*x22
-    x31 = x4*x23
-    x32 = c7*p_theta3 + x29 - x30 - x31
-    x33 = x32*x1
-    x34 = x25*x28
-    x35 = x23*x26
-    x36 = x27 + x33 - x34 - x31*x1 - x35*x9
-    x37 = (x23*(x24 - cos_theta3*x1 - x26*x19) - x36*x20)/x21
-    x38 = c1*sin_theta2
-    x39 = x22*x38
-    x40 = x32*x7
-    x41 = x23*x25
-    x42 = x39 + x40 - x41 + x29*x7
-    x43 = x28*(x25 + x4*x7) - x42*x9
-    x44 = (x28*(x38 - cos_theta3*x7) + x42*x19 + x43*x20)/x21
-    x45 = sin_theta3*x32
-    x46 = x6*x28
-    x47 = sin_theta3*x22
-    x48 = x0*x23
-    x49 = x46 + x47 - x48
-    x50 = x6*x32
-    x51 = x50 + x3*x49
-    x52 = x0*x32
-    x53 = x52 + x4*x49 - x51*x9
-    x54 = m3*(x45 - cos_theta3*x49 + x51*x19 + x53*x20)/x21
-    x55 = 1.0/x21
-    x56 = c2*x20/x21
-    x57 = c4*x8*(x17 - x5*x20)/x21
-    x58 = x4 - x3*x9
-    x59 = c3*(cos_theta3 - x3*x19 - x58*x20)/x21
-    x60 = x10*(x36 - x18*x37)
-    x61 = c2*x60
-    x62 = x10*(x43 + x18*x44)
-    x63 = c2*x62
-    x64 = x10*(m3*x53 + x18*x54)
-    x65 = c2*x64
-    x66 = x55*x20
-    x67 = x10*(c2 + x18*x56)
-    x68 = x10*(c4*x9 - x18*x57)
-    x69 = x10*(c3*x58 - x18*x59)
-    x70 = x8*(x17*x37 + x5*x60 - x35)
-    x71 = c4*x70
-    x72 = x8*(x42 + x17*x44 - x5*x62)
-    x73 = c4*x72
-    x74 = x8*(m3*x51 + x17*x54 - x5*x64)
-    x75 = c4*x74
-    x76 = x8*(x17*x55 - x5*x66)
-    x77 = x8*(x17*x56 - x5*x67)
-    x78 = x8*(c4 + x17*x57 + x5*x68)
-    x79 = x8*(x17*x59 + x5*x69 - c3*x3)
-    x80 = x48 + x3*x70 - cos_theta3*x37 - x4*x60
-    x81 = c3*x80
-    x82 = x46 + x4*x62 + x3*x72 - cos_theta3*x44
-    x83 = c3*x82
-    x84 = x49 + x4*x64 + x3*x74 - cos_theta3*x54
-    x85 = c3*x84
-    x86 = m3*x32
-    x87 = x31*x86
-    x88 = x23*x24
-    x89 = x23*x1
-    x90 = x2*x23*x28
-    x91 = x41*x70 + (x90 + x34*x60)
-    x92 = c8*cos_theta1 + x14*x22*x23 + x87 + x37*x88 + x27*x60 + x33*x60 + x80*x89 - x91
-    x93 = x41*x72 + (x90 - x34*x62)
-    x94 = x34*x64 - x41*x74
-    x95 = x87 + x27*x64 + x33*x64 - x54*x88 - x84*x89 - x94
-    x96 = x28*x38
-    x97 = x28*x7
-    x98 = x29*x86
-    x99 = c9*cos_theta2 + x44*x96 + x39*x72 + x40*x72 + x82*x97 - x16*x22*x28 - x98 - x93
-    x100 = x54*x96 + x39*x74 + x40*x74 + x84*x97 + x94 - x98
-    x101 = x31*x32
-    x102 = x50*x70 + x46*x80 + x37*x45 + x47*x80 - x101 - x52*x60 - x48*x80
-    x103 = x29*x32
-    x104 = x52*x62 + x50*x72 + x46*x82 + x44*x45 + x47*x82 - x48*x82 - x103
-    x105 = (
-        x101 + c10*cos_theta3 + x52*x64 + x50*x74 + x46*x84 + x30*x32 + x45*x54 + x47*x84
-        - x103 - x48*x84
-    )
-    # outputs
-    return (
-        (0.0, x37, -x44, x54, x55, -x56, -x57, -x59),
-        (0.0, x61, x63, -x65, -c2*x66, c2*x67, -c2*x68, -c2*x69),
-        (0.0, -x71, x73, -x75, -c4*x76, c4*x77, c4*x78, c4*x79),
-        (
-            0.0,
-            x81,
-            -x83,
-            x85,
-            c3*(x4*x66 + x3*x76 - cos_theta3*x55),
-            -c3*(x4*x67 + x3*x77 - cos_theta3*x56),
-            c3*(cos_theta3*x57 + x4*x68 - x3*x78),
-            c3*(c7 + cos_theta3*x59 + x4*x69 - x3*x79),
-        ),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            0.0,
-            -x92,
-            -(x27*x62 + x33*x62 + x93 - x44*x88 - x82*x89),
-            x95,
-            -x37,
-            -x61,
-            x71,
-            -x81,
-        ),
-        (
-            0.0,
-            x37*x96 + x39*x70 + x40*x70 + x80*x97 - x91,
-            -x99,
-            x100,
-            x44,
-            -x63,
-            -x73,
-            x83,
-        ),
-        (0.0, -m3*x102, m3*x104, -m3*x105, -x54, x65, x75, -x85),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (8, 8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m2 + m3
-    c2 = 1.0/l1
-    c3 = 1.0/l3
-    c4 = 1.0/l2
-    c5 = m3 + c0
-    c6 = m0 + c0
-    c7 = 1.0/(m3*l3)
-    c8 = c5*l1*g
-    c9 = c1*l2*g
-    c10 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    sin_theta1 = sin(theta1)
-    sin_theta3 = sin(theta3)
-    cos_theta1 = cos(theta1)
-    x0 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x1 = m3*x0
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = c1*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x3 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x4 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x5 = x2 - m3*x3*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = 1.0/(m2 + x6*x7)
-    x9 = x8*x5
-    x10 = 1.0/(c0 + x0*x1 - x5*x9)
-    x11 = c3*p_theta3
-    x12 = c4*p_theta2 - x3*x11
-    x13 = c2*p_theta1 - x4*x11 - x12*x9
-    x14 = c5*cos_theta1
-    x15 = m3*cos_theta3
-    x16 = c1*cos_theta2
-    x17 = x16 - x3*x15
-    x18 = x14 - x4*x15 - x17*x9
-    x19 = x17*x8
-    x20 = x18*x10
-    x21 = c6 + m3*sin_theta3*sin_theta3 - x17*x19 - x18*x20
-    x22 = (p_x - cos_theta3*x11 - x12*x19 - x13*x20)/x21
-    x23 = x10*(x13 - x18*x22)
-    x24 = c5*sin_theta1
-    x25 = c1*(cos_theta2*sin_theta1 - sin_theta2*cos_theta1)
-    x26 = x25 - x3*x1
-    x27 = x22*x24
-    x28 = x8*(x17*x22 + x5*x23 - x12)
-    x29 = x3*x28
-    x30 = cos_theta3*x22
-    x31 = x4*x23
-    x32 = c7*p_theta3 + x29 - x30 - x31
-    x33 = x32*x1
-    x34 = x25*x28
-    x35 = x23*x26
-    x36 = x27 + x33 - x34 - x31*x1 - x35*x9
-    x37 = (x23*(x24 - cos_theta3*x1 - x26*x19) - x36*x20)/x21
-    x38 = c1*sin_theta2
-    x39 = x22*x38
-    x40 = x32*x7
-    x41 = x23*x25
-    x42 = x39 + x40 - x41 + x29*x7
-    x43 = x28*(x25 + x4*x7) - x42*x9
-    x44 = (x28*(x38 - cos_theta3*x7) + x42*x19 + x43*x20)/x21
-    x45 = sin_theta3*x32
-    x46 = x6*x28
-    x47 = sin_theta3*x22
-    x48 = x0*x23
-    x49 = x46 + x47 - x48
-    x50 = x6*x32
-    x51 = x50 + x3*x49
-    x52 = x0*x32
-    x53 = x52 + x4*x49 - x51*x9
-    x54 = m3*(x45 - cos_theta3*x49 + x51*x19 + x53*x20)/x21
-    x55 = 1.0/x21
-    x56 = c2*x20/x21
-    x57 = c4*x8*(x17 - x5*x20)/x21
-    x58 = x4 - x3*x9
-    x59 = c3*(cos_theta3 - x3*x19 - x58*x20)/x21
-    x60 = x10*(x36 - x18*x37)
-    x61 = c2*x60
-    x62 = x10*(x43 + x18*x44)
-    x63 = c2*x62
-    x64 = x10*(m3*x53 + x18*x54)
-    x65 = c2*x64
-    x66 = x55*x20
-    x67 = x10*(c2 + x18*x56)
-    x68 = x10*(c4*x9 - x18*x57)
-    x69 = x10*(c3*x58 - x18*x59)
-    x70 = x8*(x17*x37 + x5*x60 - x35)
-    x71 = c4*x70
-    x72 = x8*(x42 + x17*x44 - x5*x62)
-    x73 = c4*x72
-    x74 = x8*(m3*x51 + x17*x54 - x5*x64)
-    x75 = c4*x74
-    x76 = x8*(x17*x55 - x5*x66)
-    x77 = x8*(x17*x56 - x5*x67)
-    x78 = x8*(c4 + x17*x57 + x5*x68)
-    x79 = x8*(x17*x59 + x5*x69 - c3*x3)
-    x80 = x48 + x3*x70 - cos_theta3*x37 - x4*x60
-    x81 = c3*x80
-    x82 = x46 + x4*x62 + x3*x72 - cos_theta3*x44
-    x83 = c3*x82
-    x84 = x49 + x4*x64 + x3*x74 - cos_theta3*x54
-    x85 = c3*x84
-    x86 = m3*x32
-    x87 = x31*x86
-    x88 = x23*x24
-    x89 = x23*x1
-    x90 = x2*x23*x28
-    x91 = x41*x70 + (x90 + x34*x60)
-    x92 = c8*cos_theta1 + x14*x22*x23 + x87 + x37*x88 + x27*x60 + x33*x60 + x80*x89 - x91
-    x93 = x41*x72 + (x90 - x34*x62)
-    x94 = x34*x64 - x41*x74
-    x95 = x87 + x27*x64 + x33*x64 - x54*x88 - x84*x89 - x94
-    x96 = x28*x38
-    x97 = x28*x7
-    x98 = x29*x86
-    x99 = c9*cos_theta2 + x44*x96 + x39*x72 + x40*x72 + x82*x97 - x16*x22*x28 - x98 - x93
-    x100 = x54*x96 + x39*x74 + x40*x74 + x84*x97 + x94 - x98
-    x101 = x31*x32
-    x102 = x50*x70 + x46*x80 + x37*x45 + x47*x80 - x101 - x52*x60 - x48*x80
-    x103 = x29*x32
-    x104 = x52*x62 + x50*x72 + x46*x82 + x44*x45 + x47*x82 - x48*x82 - x103
-    x105 = (
-        x101 + c10*cos_theta3 + x52*x64 + x50*x74 + x46*x84 + x30*x32 + x45*x54 + x47*x84
-        - x103 - x48*x84
-    )
-    # outputs
-    return _stacked(
-        (8, 8),
-        y[0],
-        0.0,
-        x37,
-        -x44,
-        x54,
-        x55,
-        -x56,
-        -x57,
-        -x59,
-        0.0,
-        x61,
-        x63,
-        -x65,
-        -c2*x66,
-        c2*x67,
-        -c2*x68,
-        -c2*x69,
-        0.0,
-        -x71,
-        x73,
-        -x75,
-        -c4*x76,
-        c4*x77,
-        c4*x78,
-        c4*x79,
-        0.0,
-        x81,
-        -x83,
-        x85,
-        c3*(x4*x66 + x3*x76 - cos_theta3*x55),
-        -c3*(x4*x67 + x3*x77 - cos_theta3*x56),
-        c3*(cos_theta3*x57 + x4*x68 - x3*x78),
-        c3*(c7 + cos_theta3*x59 + x4*x69 - x3*x79),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x92,
-        -(x27*x62 + x33*x62 + x93 - x44*x88 - x82*x89),
-        x95,
-        -x37,
-        -x61,
-        x71,
-        -x81,
-        0.0,
-        x37*x96 + x39*x70 + x40*x70 + x80*x97 - x91,
-        -x99,
-        x100,
-        x44,
-        -x63,
-        -x73,
-        x83,
-        0.0,
-        -m3*x102,
-        m3*x104,
-        -m3*x105,
-        -x54,
-        x65,
-        x75,
-        -x85,
-    )
 
 
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
@@ -2278,7 +818,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
         Energy in J.
     """
     # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l3
@@ -2319,63 +860,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     x17 = 1.0/(c4 + m3*x16*x16 - x12*x13)
     x18 = x15*x17
     x19 = (
-        (p_x - cos_theta3*x0 - x3*x8 - x14*x18)/(c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x15*x18)
-    )
-    x20 = x17*(x14 - x15*x19)
-    x21 = x7*(x5*x19 + x12*x20 - x3)
-    x22 = (c8*p_theta3 + x2*x21 - cos_theta3*x19 - x10*x20)*x0
-    x23 = g*(c9*cos_theta1 + c10*cos_theta2 + c7*cos_theta3)
-    # outputs
-    return 0.5*(p_x*x19 + x9*x20 + x22 - x1*x21) - x23
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l3
-    c1 = 1.0/l2
-    c2 = m2 + m3
-    c3 = 1.0/l1
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
-    c7 = m3*l3
-    c8 = 1.0/c7
-    c9 = c5*l1
-    c10 = c2*l2
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    x0 = c0*p_theta3
-    x1 = c1*p_theta2
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
-    sin_theta2 = sin(theta2)
-    x2 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x3 = x1 - x2*x0
-    x4 = m3*cos_theta3
-    x5 = c2*cos_theta2 - x2*x4
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = 1.0/(m2 + m3*x6*x6)
-    x8 = x5*x7
-    x9 = c3*p_theta1
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x10 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x11 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x12 = x11 - m3*x2*x10
-    x13 = x7*x12
-    x14 = x9 - x10*x0 - x3*x13
-    x15 = c5*cos_theta1 - x10*x4 - x12*x8
-    x16 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x17 = 1.0/(c4 + m3*x16*x16 - x12*x13)
-    x18 = x15*x17
-    x19 = (
-        (p_x - cos_theta3*x0 - x3*x8 - x14*x18)/(c6 + m3*sin_theta3*sin_theta3 - x5*x8 - x15*x18)
+        (p_x - cos_theta3*x0 - x3*x8 - x14*x18)/(c6 + m3*sin_theta3*sin_theta3 - x5*x8
+        - x15*x18)
     )
     x20 = x17*(x14 - x15*x19)
     x21 = x7*(x5*x19 + x12*x20 - x3)
@@ -2406,7 +892,8 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Coordinates, then velocities from M qdot = p.
     """
     # inputs
-    x, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    x, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
     m0, m1, m2, m3, l1, l2, l3, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l3
@@ -2442,63 +929,14 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x15 = 1.0/(c4 + m3*x14*x14 - x10*x11)
     x16 = x13*x15
     x17 = (
-        (p_x - cos_theta3*x0 - x2*x7 - x12*x16)/(c6 + m3*sin_theta3*sin_theta3 - x4*x7 - x13*x16)
+        (p_x - cos_theta3*x0 - x2*x7 - x12*x16)/(c6 + m3*sin_theta3*sin_theta3 - x4*x7
+        - x13*x16)
     )
     x18 = x15*(x12 - x13*x17)
     x19 = x6*(x4*x17 + x10*x18 - x2)
     x20 = c0*(c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)
     # outputs
     return (x, theta1, theta2, theta3, x17, c3*x18, -c1*x19, x20)
-
-
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, theta1, theta2, theta3, p_x, p_theta1, p_theta2, p_theta3 = y
-    m0, m1, m2, m3, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l3
-    c1 = 1.0/l2
-    c2 = m2 + m3
-    c3 = 1.0/l1
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = m0 + c4
-    c7 = 1.0/(m3*l3)
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    x0 = c0*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta3 = sin(theta3)
-    sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x2 = c1*p_theta2 - x1*x0
-    x3 = m3*cos_theta3
-    x4 = c2*cos_theta2 - x1*x3
-    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x6 = 1.0/(m2 + m3*x5*x5)
-    x7 = x4*x6
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x8 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x9 = c2*(cos_theta2*cos_theta1 + sin_theta2*sin_theta1)
-    x10 = x9 - m3*x1*x8
-    x11 = x6*x10
-    x12 = c3*p_theta1 - x8*x0 - x2*x11
-    x13 = c5*cos_theta1 - x8*x3 - x10*x7
-    x14 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
-    x15 = 1.0/(c4 + m3*x14*x14 - x10*x11)
-    x16 = x13*x15
-    x17 = (
-        (p_x - cos_theta3*x0 - x2*x7 - x12*x16)/(c6 + m3*sin_theta3*sin_theta3 - x4*x7 - x13*x16)
-    )
-    x18 = x15*(x12 - x13*x17)
-    x19 = x6*(x4*x17 + x10*x18 - x2)
-    x20 = c0*(c7*p_theta3 + x1*x19 - cos_theta3*x17 - x8*x18)
-    # outputs
-    return _stacked((8,), y[0], x, theta1, theta2, theta3, x17, c3*x18, -c1*x19, x20)
 
 
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -2522,33 +960,10 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Sine and cosine of every angle, other coordinates, velocities.
     """
     # inputs
-    x, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    # outputs
-    return (
-        x,
-        sin(theta1),
-        cos(theta1),
-        sin(theta2),
-        cos(theta2),
-        sin(theta3),
-        cos(theta3),
-        x_dot,
-        theta1_dot,
-        theta2_dot,
-        theta3_dot,
-    )
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (11, ...)."""
-    from numpy import cos, sin
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     x, theta1, theta2, theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
     # outputs
-    return _stacked(
-        (11,),
-        y[0],
+    return (
         x,
         sin(theta1),
         cos(theta1),
@@ -2584,7 +999,11 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    (
+        _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot,
+        theta1_dot, theta2_dot, theta3_dot
+    ) = y
     m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m1 + m2
@@ -2645,810 +1064,70 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (11, ...)."""
-    # inputs
-    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    # intermediate terms
-    x0 = theta1_dot*theta1_dot
-    x1 = theta2_dot*theta2_dot
-    x2 = c4*x1
-    x3 = c5*(theta3_dot*theta3_dot)
-    x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x5 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x6 = l1*x4*x0 + l2*x5*x1 - g*sin_theta3
-    x7 = m3*cos_theta3
-    x8 = c2*sin_theta1*x0 + sin_theta2*x2 + sin_theta3*x3 - x6*x7
-    x9 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x10 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x11 = m3*x10
-    x12 = c6*x9*x0 - x5*x3 - c7*sin_theta2 - x6*x11
-    x13 = c3*cos_theta2 - x10*x7
-    x14 = 1.0/(m2 + m3*x5*x5)
-    x15 = x13*x14
-    x16 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x17 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x18 = x17 - x16*x11
-    x19 = x14*x18
-    x20 = x9*x2 + x4*x3 + c8*sin_theta1 + m3*x16*x6 + x12*x19
-    x21 = c1*cos_theta1 - x16*x7 - x18*x15
-    x22 = 1.0/(c0 + m3*x4*x4 - x18*x19)
-    x23 = x21*x22
-    x24 = c9 + m3*sin_theta3*sin_theta3 - x13*x15 - x21*x23
-    x25 = (x8 - x12*x15 + x20*x23)/x24
-    x26 = x22*(x20 + x21*x25)
-    x27 = x14*(x12 + x18*x26 - x13*x25)
-    # outputs
-    return _stacked(
-        (11,),
-        y[0],
-        x_dot,
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        x25,
-        -c10*x26,
-        c11*x27,
-        c12*(x6 + x16*x26 - cos_theta3*x25 - x10*x27),
-    )
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    280 operations, 13 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 19 floats
-        x in m; sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
-        x_dot in m/s; theta1_dot, theta2_dot, theta3_dot in rad/s; delta_x in m;
-        delta_theta1, delta_theta2, delta_theta3 in rad; delta_x_dot in m/s;
-        delta_theta1_dot, delta_theta2_dot, delta_theta3_dot in rad/s.
-    params : iterable of 8 floats
-        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    # intermediate terms
-    x0 = theta1_dot*theta1_dot
-    x1 = c2*sin_theta1
-    x2 = theta2_dot*theta2_dot
-    x3 = c4*x2
-    x4 = theta3_dot*theta3_dot
-    x5 = c5*x4
-    x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x7 = l1*x0
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x2
-    x10 = x6*x7 + x8*x9 - g*sin_theta3
-    x11 = m3*cos_theta3
-    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x13 = c6*x12
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = m3*x14
-    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
-    x17 = c3*cos_theta2 - x14*x11
-    x18 = m3*x8
-    x19 = 1.0/(m2 + x8*x18)
-    x20 = x17*x19
-    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
-    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x23 = m3*x22
-    x24 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x25 = c3*x24 - x22*x15
-    x26 = x19*x25
-    x27 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x23 + x16*x26
-    x28 = c1*cos_theta1 - x22*x11 - x25*x20
-    x29 = m3*x6
-    x30 = 1.0/(c0 + x6*x29 - x25*x26)
-    x31 = x28*x30
-    x32 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x28*x31
-    x33 = (x21 + x27*x31)/x32
-    x34 = x30*(x27 + x28*x33)
-    x35 = x19*(x16 + x25*x34 - x17*x33)
-    x36 = x10 + x22*x34 - cos_theta3*x33 - x14*x35
-    x37 = c3*delta_theta2
-    x38 = l3*x4
-    x39 = m3*delta_theta3
-    x40 = theta1_dot*delta_theta1_dot
-    x41 = theta2_dot*delta_theta2_dot
-    x42 = c4*x41
-    x43 = delta_theta3_dot*(c5*theta3_dot)
-    x44 = (
-        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x34)
-        + (cos_theta2*x9 + sin_theta2*x35)*x37 + (cos_theta3*x38 + sin_theta3*x36)*x39
-        + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
-    )
-    x45 = x22*x7
-    x46 = x6*x34
-    x47 = x14*x9
-    x48 = x8*x35
-    x49 = x46 + sin_theta3*x33 - x48 - (x45 + x47 + g*cos_theta3)
-    x50 = (
-        delta_theta1*(x45 - x46) + delta_theta2*(x47 + x48) + delta_theta3*x49
-        + 2.0*(l1*x6*x40 + l2*x8*x41)
-    )
-    x51 = c3*x12
-    x52 = x34*x51 + c3*sin_theta2*x33 + x36*x18 - (c6*x24*x0 + x14*x5 + c7*cos_theta2)
-    x53 = (
-        c3*delta_theta1*(x24*x7 - x12*x34) + delta_theta2*x52 + (x14*x38 - x8*x36)*x39
-        + 2.0*(x40*x13 - x8*x43)
-    )
-    x54 = x53 - x50*x15
-    x55 = c1*sin_theta1*x33 + x35*x51 + x36*x29 - (x24*x3 + x22*x5 + c8*cos_theta1)
-    x56 = (
-        delta_theta1*x55 + (x24*x9 - x12*x35)*x37 + (x22*x38 - x6*x36)*x39
-        + 2.0*(-(x12*x42 + x6*x43))
-    )
-    x57 = x56 - x50*x23 - x54*x26
-    x58 = (x44 - x50*x11 - x54*x20 - x57*x31)/x32
-    x59 = x30*(x57 - x28*x58)
-    x60 = x19*(x17*x58 + x25*x59 - x54)
-    # outputs
-    return (
-        x_dot,
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        x33,
-        -c10*x34,
-        c11*x35,
-        c12*x36,
-        delta_x_dot,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        x58,
-        c10*x59,
-        -c11*x60,
-        c12*(x50 + x14*x60 - cos_theta3*x58 - x22*x59),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (19, ...)."""
-    # inputs
-    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    # intermediate terms
-    x0 = theta1_dot*theta1_dot
-    x1 = c2*sin_theta1
-    x2 = theta2_dot*theta2_dot
-    x3 = c4*x2
-    x4 = theta3_dot*theta3_dot
-    x5 = c5*x4
-    x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x7 = l1*x0
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x2
-    x10 = x6*x7 + x8*x9 - g*sin_theta3
-    x11 = m3*cos_theta3
-    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x13 = c6*x12
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = m3*x14
-    x16 = x0*x13 - x8*x5 - c7*sin_theta2 - x10*x15
-    x17 = c3*cos_theta2 - x14*x11
-    x18 = m3*x8
-    x19 = 1.0/(m2 + x8*x18)
-    x20 = x17*x19
-    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
-    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x23 = m3*x22
-    x24 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x25 = c3*x24 - x22*x15
-    x26 = x19*x25
-    x27 = x12*x3 + x6*x5 + c8*sin_theta1 + x10*x23 + x16*x26
-    x28 = c1*cos_theta1 - x22*x11 - x25*x20
-    x29 = m3*x6
-    x30 = 1.0/(c0 + x6*x29 - x25*x26)
-    x31 = x28*x30
-    x32 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x28*x31
-    x33 = (x21 + x27*x31)/x32
-    x34 = x30*(x27 + x28*x33)
-    x35 = x19*(x16 + x25*x34 - x17*x33)
-    x36 = x10 + x22*x34 - cos_theta3*x33 - x14*x35
-    x37 = c3*delta_theta2
-    x38 = l3*x4
-    x39 = m3*delta_theta3
-    x40 = theta1_dot*delta_theta1_dot
-    x41 = theta2_dot*delta_theta2_dot
-    x42 = c4*x41
-    x43 = delta_theta3_dot*(c5*theta3_dot)
-    x44 = (
-        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x34)
-        + (cos_theta2*x9 + sin_theta2*x35)*x37 + (cos_theta3*x38 + sin_theta3*x36)*x39
-        + 2.0*(x40*x1 + sin_theta2*x42 + sin_theta3*x43)
-    )
-    x45 = x22*x7
-    x46 = x6*x34
-    x47 = x14*x9
-    x48 = x8*x35
-    x49 = x46 + sin_theta3*x33 - x48 - (x45 + x47 + g*cos_theta3)
-    x50 = (
-        delta_theta1*(x45 - x46) + delta_theta2*(x47 + x48) + delta_theta3*x49
-        + 2.0*(l1*x6*x40 + l2*x8*x41)
-    )
-    x51 = c3*x12
-    x52 = x34*x51 + c3*sin_theta2*x33 + x36*x18 - (c6*x24*x0 + x14*x5 + c7*cos_theta2)
-    x53 = (
-        c3*delta_theta1*(x24*x7 - x12*x34) + delta_theta2*x52 + (x14*x38 - x8*x36)*x39
-        + 2.0*(x40*x13 - x8*x43)
-    )
-    x54 = x53 - x50*x15
-    x55 = c1*sin_theta1*x33 + x35*x51 + x36*x29 - (x24*x3 + x22*x5 + c8*cos_theta1)
-    x56 = (
-        delta_theta1*x55 + (x24*x9 - x12*x35)*x37 + (x22*x38 - x6*x36)*x39
-        + 2.0*(-(x12*x42 + x6*x43))
-    )
-    x57 = x56 - x50*x23 - x54*x26
-    x58 = (x44 - x50*x11 - x54*x20 - x57*x31)/x32
-    x59 = x30*(x57 - x28*x58)
-    x60 = x19*(x17*x58 + x25*x59 - x54)
-    # outputs
-    return _stacked(
-        (19,),
-        y[0],
-        x_dot,
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        x33,
-        -c10*x34,
-        c11*x35,
-        c12*x36,
-        delta_x_dot,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        x58,
-        c10*x59,
-        -c11*x60,
-        c12*(x50 + x14*x60 - cos_theta3*x58 - x22*x59),
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    438 operations, 38 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 19 floats
-        x in m; sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
-        x_dot in m/s; theta1_dot, theta2_dot, theta3_dot in rad/s; delta_x in m;
-        delta_theta1, delta_theta2, delta_theta3 in rad; delta_x_dot in m/s;
-        delta_theta1_dot, delta_theta2_dot, delta_theta3_dot in rad/s.
-    params : iterable of 16 floats
-        delta_m0, delta_m1, delta_m2, delta_m3 in kg; delta_l1, delta_l2, delta_l3 in m;
-        delta_g in m/s^2; m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m0, delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    c13 = c1*delta_l1
-    c14 = c3*delta_l2
-    c15 = m3*delta_l3
-    c16 = m3*c12
-    c17 = l3*delta_l1
-    c18 = l3*delta_l2
-    c19 = l1*l3
-    c20 = l2*l3
-    c21 = l3*delta_g
-    c22 = l2*delta_m2
-    c23 = l2*delta_m3
-    c24 = m3*l2
-    c25 = delta_l3*c24
-    c26 = c4*delta_g
-    c27 = l3*c24
-    c28 = l1*c4
-    c29 = c4*delta_l1
-    c30 = l1*delta_m1
-    c31 = l1*delta_m2
-    c32 = l1*delta_m3
-    c33 = c6*delta_l2
-    c34 = m3*l1
-    c35 = delta_l3*c34
-    c36 = c2*delta_g
-    c37 = l3*c34
-    # intermediate terms
-    x0 = theta1_dot*theta1_dot
-    x1 = c2*sin_theta1
-    x2 = theta2_dot*theta2_dot
-    x3 = c4*x2
-    x4 = theta3_dot*theta3_dot
-    x5 = c5*x4
-    x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x7 = l1*x0
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x2
-    x10 = x6*x7 + x8*x9 - g*sin_theta3
-    x11 = m3*cos_theta3
-    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x13 = x12*x0
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = m3*x14
-    x16 = c6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
-    x17 = c3*cos_theta2 - x14*x11
-    x18 = m3*x8
-    x19 = 1.0/(m2 + x8*x18)
-    x20 = x17*x19
-    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
-    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x24 = c3*x23 - x22*x15
-    x25 = x19*x24
-    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + m3*x22*x10 + x16*x25
-    x27 = c1*cos_theta1 - x22*x11 - x24*x20
-    x28 = m3*x6
-    x29 = 1.0/(c0 + x6*x28 - x24*x25)
-    x30 = x27*x29
-    x31 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x27*x30
-    x32 = (x21 + x26*x30)/x31
-    x33 = x29*(x26 + x27*x32)
-    x34 = c10*x33
-    x35 = x19*(x16 + x24*x33 - x17*x32)
-    x36 = c11*x35
-    x37 = x10 + x22*x33 - cos_theta3*x32 - x14*x35
-    x38 = c12*x37
-    x39 = l3*x4
-    x40 = m3*delta_theta3*(cos_theta3*x39 + sin_theta3*x37)
-    x41 = sin_theta1*x7
-    x42 = x32 - cos_theta1*x33
-    x43 = theta1_dot*delta_theta1_dot
-    x44 = theta2_dot*delta_theta2_dot
-    x45 = theta3_dot*delta_theta3_dot
-    x46 = cos_theta2*x35 + x42
-    x47 = x41 + sin_theta2*x9
-    x48 = delta_m3*(cos_theta3*x37 + x46 - (x47 + sin_theta3*x39))
-    x49 = (
-        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x33)
-        + c3*delta_theta2*(cos_theta2*x9 + sin_theta2*x35) + x40 + delta_m1*(x41 - x42)
-        + c13*(sin_theta1*x0 + cos_theta1*x34) + c14*(sin_theta2*x2 - cos_theta2*x36)
-        + c15*(sin_theta3*x4 - cos_theta3*x38)
-        + 2.0*(x43*x1 + c4*sin_theta2*x44 + c5*sin_theta3*x45) - delta_m0*x32
-        - delta_m2*(x46 - x47) - x48
-    )
-    x50 = x22*x7
-    x51 = x6*x33
-    x52 = x14*x9
-    x53 = x8*x35
-    x54 = x51 + sin_theta3*x32 - x53 - (x50 + x52 + g*cos_theta3)
-    x55 = (
-        l3*delta_theta1*(x50 - x51) + l3*delta_theta2*(x52 + x53) + l3*delta_theta3*x54
-        + c17*(x6*x0 + x22*x34) + c18*(x8*x2 - x14*x36) + 2.0*(c19*x6*x43 + c20*x8*x44)
-        - delta_l3*x37 - c21*sin_theta3
-    )
-    x56 = c16*x55
-    x57 = x12*x7
-    x58 = g*sin_theta2
-    x59 = x23*x33 - (x35 + cos_theta2*x32)
-    x60 = c28*x12
-    x61 = c3*x12
-    x62 = x33*x61 + c3*sin_theta2*x32 + x37*x18 - (c6*x23*x0 + x14*x5 + c7*cos_theta2)
-    x63 = (
-        c22*(-(x57 - x58 + x59)) + c23*(x58 - (x57 - x8*x39) + x14*x37 - x59) + c14*x35
-        + c25*(x8*x4 + x14*x38) + c26*sin_theta2 + 2.0*(c27*x8*x45 - x43*x60)
-        - c4*delta_theta1*(x23*x7 - x12*x33) - l2*delta_theta2*x62
-        - c24*delta_theta3*(x14*x39 - x8*x37) - c29*(x13 + x23*x34)
-    )
-    x64 = c11*x63 + x14*x56
-    x65 = g*sin_theta1
-    x66 = x33 - cos_theta1*x32
-    x67 = x12*x9
-    x68 = x23*x35 - x66
-    x69 = c1*sin_theta1*x32 + x35*x61 + x37*x28 - (x23*x3 + x22*x5 + c8*cos_theta1)
-    x70 = (
-        c30*(x65 - x66) + c31*(x65 + x67 + x68) + c32*(x65 + (x67 + x6*x39) + x22*x37 + x68)
-        + c33*(x12*x2 + x23*x36) + c35*(x6*x4 + x22*x38) + c36*sin_theta1
-        + 2.0*(x44*x60 + c37*x6*x45) - l1*delta_theta1*x69
-        - c6*delta_theta2*(x23*x9 - x12*x35) - c34*delta_theta3*(x22*x39 - x6*x37) - c13*x33
-    )
-    x71 = c10*x70 + x22*x56 - x64*x25
-    x72 = (x49 - cos_theta3*x56 + x64*x20 + x71*x30)/x31
-    x73 = x29*(x71 + x27*x72)
-    x74 = x19*(x64 + x17*x72 - x24*x73)
-    x75 = c12*(c12*x55 + x22*x73 + x14*x74 - cos_theta3*x72)
-    # outputs
-    return (
-        x_dot,
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        x32,
-        -x34,
-        x36,
-        x38,
-        delta_x_dot,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        x72,
-        -c10*x73,
-        -c11*x74,
-        x75,
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (19, ...)."""
-    # inputs
-    _, sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, x_dot, theta1_dot, theta2_dot, theta3_dot, _, delta_theta1, delta_theta2, delta_theta3, delta_x_dot, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y
-    delta_m0, delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m1 + m2
-    c1 = m3 + c0
-    c2 = c1*l1
-    c3 = m2 + m3
-    c4 = c3*l2
-    c5 = m3*l3
-    c6 = c3*l1
-    c7 = c3*g
-    c8 = c1*g
-    c9 = m0 + c0
-    c10 = 1.0/l1
-    c11 = 1.0/l2
-    c12 = 1.0/l3
-    c13 = c1*delta_l1
-    c14 = c3*delta_l2
-    c15 = m3*delta_l3
-    c16 = m3*c12
-    c17 = l3*delta_l1
-    c18 = l3*delta_l2
-    c19 = l1*l3
-    c20 = l2*l3
-    c21 = l3*delta_g
-    c22 = l2*delta_m2
-    c23 = l2*delta_m3
-    c24 = m3*l2
-    c25 = delta_l3*c24
-    c26 = c4*delta_g
-    c27 = l3*c24
-    c28 = l1*c4
-    c29 = c4*delta_l1
-    c30 = l1*delta_m1
-    c31 = l1*delta_m2
-    c32 = l1*delta_m3
-    c33 = c6*delta_l2
-    c34 = m3*l1
-    c35 = delta_l3*c34
-    c36 = c2*delta_g
-    c37 = l3*c34
-    # intermediate terms
-    x0 = theta1_dot*theta1_dot
-    x1 = c2*sin_theta1
-    x2 = theta2_dot*theta2_dot
-    x3 = c4*x2
-    x4 = theta3_dot*theta3_dot
-    x5 = c5*x4
-    x6 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x7 = l1*x0
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x2
-    x10 = x6*x7 + x8*x9 - g*sin_theta3
-    x11 = m3*cos_theta3
-    x12 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x13 = x12*x0
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = m3*x14
-    x16 = c6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
-    x17 = c3*cos_theta2 - x14*x11
-    x18 = m3*x8
-    x19 = 1.0/(m2 + x8*x18)
-    x20 = x17*x19
-    x21 = x0*x1 + sin_theta2*x3 + sin_theta3*x5 - x10*x11 - x16*x20
-    x22 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x23 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x24 = c3*x23 - x22*x15
-    x25 = x19*x24
-    x26 = x12*x3 + x6*x5 + c8*sin_theta1 + m3*x22*x10 + x16*x25
-    x27 = c1*cos_theta1 - x22*x11 - x24*x20
-    x28 = m3*x6
-    x29 = 1.0/(c0 + x6*x28 - x24*x25)
-    x30 = x27*x29
-    x31 = c9 + m3*sin_theta3*sin_theta3 - x17*x20 - x27*x30
-    x32 = (x21 + x26*x30)/x31
-    x33 = x29*(x26 + x27*x32)
-    x34 = c10*x33
-    x35 = x19*(x16 + x24*x33 - x17*x32)
-    x36 = c11*x35
-    x37 = x10 + x22*x33 - cos_theta3*x32 - x14*x35
-    x38 = c12*x37
-    x39 = l3*x4
-    x40 = m3*delta_theta3*(cos_theta3*x39 + sin_theta3*x37)
-    x41 = sin_theta1*x7
-    x42 = x32 - cos_theta1*x33
-    x43 = theta1_dot*delta_theta1_dot
-    x44 = theta2_dot*delta_theta2_dot
-    x45 = theta3_dot*delta_theta3_dot
-    x46 = cos_theta2*x35 + x42
-    x47 = x41 + sin_theta2*x9
-    x48 = delta_m3*(cos_theta3*x37 + x46 - (x47 + sin_theta3*x39))
-    x49 = (
-        c1*delta_theta1*(cos_theta1*x7 - sin_theta1*x33)
-        + c3*delta_theta2*(cos_theta2*x9 + sin_theta2*x35) + x40 + delta_m1*(x41 - x42)
-        + c13*(sin_theta1*x0 + cos_theta1*x34) + c14*(sin_theta2*x2 - cos_theta2*x36)
-        + c15*(sin_theta3*x4 - cos_theta3*x38)
-        + 2.0*(x43*x1 + c4*sin_theta2*x44 + c5*sin_theta3*x45) - delta_m0*x32
-        - delta_m2*(x46 - x47) - x48
-    )
-    x50 = x22*x7
-    x51 = x6*x33
-    x52 = x14*x9
-    x53 = x8*x35
-    x54 = x51 + sin_theta3*x32 - x53 - (x50 + x52 + g*cos_theta3)
-    x55 = (
-        l3*delta_theta1*(x50 - x51) + l3*delta_theta2*(x52 + x53) + l3*delta_theta3*x54
-        + c17*(x6*x0 + x22*x34) + c18*(x8*x2 - x14*x36) + 2.0*(c19*x6*x43 + c20*x8*x44)
-        - delta_l3*x37 - c21*sin_theta3
-    )
-    x56 = c16*x55
-    x57 = x12*x7
-    x58 = g*sin_theta2
-    x59 = x23*x33 - (x35 + cos_theta2*x32)
-    x60 = c28*x12
-    x61 = c3*x12
-    x62 = x33*x61 + c3*sin_theta2*x32 + x37*x18 - (c6*x23*x0 + x14*x5 + c7*cos_theta2)
-    x63 = (
-        c22*(-(x57 - x58 + x59)) + c23*(x58 - (x57 - x8*x39) + x14*x37 - x59) + c14*x35
-        + c25*(x8*x4 + x14*x38) + c26*sin_theta2 + 2.0*(c27*x8*x45 - x43*x60)
-        - c4*delta_theta1*(x23*x7 - x12*x33) - l2*delta_theta2*x62
-        - c24*delta_theta3*(x14*x39 - x8*x37) - c29*(x13 + x23*x34)
-    )
-    x64 = c11*x63 + x14*x56
-    x65 = g*sin_theta1
-    x66 = x33 - cos_theta1*x32
-    x67 = x12*x9
-    x68 = x23*x35 - x66
-    x69 = c1*sin_theta1*x32 + x35*x61 + x37*x28 - (x23*x3 + x22*x5 + c8*cos_theta1)
-    x70 = (
-        c30*(x65 - x66) + c31*(x65 + x67 + x68) + c32*(x65 + (x67 + x6*x39) + x22*x37 + x68)
-        + c33*(x12*x2 + x23*x36) + c35*(x6*x4 + x22*x38) + c36*sin_theta1
-        + 2.0*(x44*x60 + c37*x6*x45) - l1*delta_theta1*x69
-        - c6*delta_theta2*(x23*x9 - x12*x35) - c34*delta_theta3*(x22*x39 - x6*x37) - c13*x33
-    )
-    x71 = c10*x70 + x22*x56 - x64*x25
-    x72 = (x49 - cos_theta3*x56 + x64*x20 + x71*x30)/x31
-    x73 = x29*(x71 + x27*x72)
-    x74 = x19*(x64 + x17*x72 - x24*x73)
-    x75 = c12*(c12*x55 + x22*x73 + x14*x74 - cos_theta3*x72)
-    # outputs
-    return _stacked(
-        (19,),
-        y[0],
-        x_dot,
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        x32,
-        -x34,
-        x36,
-        x38,
-        delta_x_dot,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        x72,
-        -c10*x73,
-        -c11*x74,
-        x75,
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 8 floats
-        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0, 0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0, 0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (4, ...)."""
-    # inputs
-    # outputs
-    return _stacked((4,), params[0], 0.0, 0.0, 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0, 0, 0).
-
-    15 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 8 floats
-        m0, m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m0, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = m1 + c0
-    c2 = l1*c1
-    c3 = l2*c0
-    c4 = m3*l3
-    c5 = l1*c3
-    c6 = l1*c4
-    c7 = l2*c4
-    # outputs
-    return (
-        (
-            (m0 + c1, c2, c3, c4),
-            (c2, l1*c2, c5, c6),
-            (c3, c5, l2*c3, c7),
-            (c4, c6, c7, l3*c4),
-        ),
-        (
-            (0.0, 0.0, 0.0, 0.0),
-            (0.0, c2*g, 0.0, 0.0),
-            (0.0, 0.0, c3*g, 0.0),
-            (0.0, 0.0, 0.0, c4*g),
-        ),
-    )
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 4, 4, ...)."""
-    # inputs
-    m0, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = m1 + c0
-    c2 = l1*c1
-    c3 = l2*c0
-    c4 = m3*l3
-    c5 = l1*c3
-    c6 = l1*c4
-    c7 = l2*c4
-    # outputs
-    return _stacked(
-        (2, 4, 4),
-        params[0],
-        m0 + c1,
-        c2,
-        c3,
-        c4,
-        c2,
-        l1*c2,
-        c5,
-        c6,
-        c3,
-        c5,
-        l2*c3,
-        c7,
-        c4,
-        c6,
-        c7,
-        l3*c4,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c2*g,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c3*g,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c4*g,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -34,40 +34,6 @@ State y in functions of the rational form:
     theta2_dot [rad/s]
     theta3_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    sin_theta3 [1]
-    cos_theta3 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    theta3_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta3 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-    delta_theta3_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    sin_theta3 [1]
-    cos_theta3 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    theta3_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta3 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-    delta_theta3_dot [rad/s]
-
 Parameters params:
     m1 [kg] > 0, default 1.0: mass of a bob
     m2 [kg] > 0, default 1.0: mass of a bob
@@ -80,7 +46,8 @@ Parameters params:
 Masses and their positions:
     m1 at (l1*sin(theta1), -l1*cos(theta1))
     m2 at (l1*sin(theta1) + l2*sin(theta2), -l1*cos(theta1) - l2*cos(theta2))
-    m3 at (l1*sin(theta1) + l2*sin(theta2) + l3*sin(theta3), -l1*cos(theta1) - l2*cos(theta2) - l3*cos(theta3))
+    m3 at (l1*sin(theta1) + l2*sin(theta2) + l3*sin(theta3), -l1*cos(theta1)
+        - l2*cos(theta2) - l3*cos(theta3))
 
 Lagrangian:
     L = g*l1*(m1 + m2 + m3)*cos(theta1) + g*l2*(m2 + m3)*cos(theta2)
@@ -117,76 +84,37 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "db3c09ed0c4d0cea"
+DIGEST = "67816b85cd9dc2a5"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": (
-        "theta1",
-        "theta2",
-        "theta3",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
-    ),
+    "lagrangian": ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot"),
     "hamiltonian": ("theta1", "theta2", "theta3", "p_theta1", "p_theta2", "p_theta3"),
     "rational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "sin_theta3",
-        "cos_theta3",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
+        "theta1_dot", "theta2_dot", "theta3_dot",
     ),
     "variational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "sin_theta3",
-        "cos_theta3",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta3",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
-        "delta_theta3_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
+        "theta1_dot", "theta2_dot", "theta3_dot", "delta_theta1", "delta_theta2",
+        "delta_theta3", "delta_theta1_dot", "delta_theta2_dot", "delta_theta3_dot",
     ),
     "sensitivity": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "sin_theta3",
-        "cos_theta3",
-        "theta1_dot",
-        "theta2_dot",
-        "theta3_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta3",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
-        "delta_theta3_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
+        "theta1_dot", "theta2_dot", "theta3_dot", "delta_theta1", "delta_theta2",
+        "delta_theta3", "delta_theta1_dot", "delta_theta2_dot", "delta_theta3_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "m3", "l1", "l2", "l3", "g")
@@ -194,67 +122,27 @@ DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "m3", "l1", "l2", "l3")
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (91, 11),
-    "jacobian": (254, 12),
-    "parameter_jacobian": (244, 13),
-    "energy": (50, 14),
-    "mass_matrix": (20, 11),
-    "positions": (19, 0),
-    "hamiltonian_state": (34, 6),
-    "rhs_hamiltonian": (94, 13),
-    "jacobian_hamiltonian": (271, 13),
-    "energy_hamiltonian": (76, 10),
-    "lagrangian_state": (51, 7),
-    "rational_state": (6, 0),
-    "rhs_rational": (94, 11),
-    "rhs_variational": (197, 11),
-    "rhs_sensitivity": (308, 36),
-    "equilibrium": (0, 0),
+    "rhs": (91, 11), "jacobian": (254, 12), "parameter_jacobian": (244, 13),
+    "energy": (50, 14), "mass_matrix": (20, 11), "positions": (19, 0),
+    "hamiltonian_state": (34, 6), "rhs_hamiltonian": (94, 13),
+    "jacobian_hamiltonian": (271, 13), "energy_hamiltonian": (76, 10),
+    "lagrangian_state": (51, 7), "rational_state": (6, 0), "rhs_rational": (94, 11),
+    "rhs_variational": (197, 11), "rhs_sensitivity": (308, 36), "equilibrium": (0, 0),
     "linear": (14, 14),
 }
 UNITS = {
-    "m1": "kg",
-    "m2": "kg",
-    "m3": "kg",
-    "l1": "m",
-    "l2": "m",
-    "l3": "m",
-    "g": "m/s^2",
-    "theta1": "rad",
-    "theta1_dot": "rad/s",
-    "p_theta1": "J s",
-    "delta_theta1": "rad",
-    "delta_theta1_dot": "rad/s",
-    "sin_theta1": "1",
-    "cos_theta1": "1",
-    "theta2": "rad",
-    "theta2_dot": "rad/s",
-    "p_theta2": "J s",
-    "delta_theta2": "rad",
-    "delta_theta2_dot": "rad/s",
-    "sin_theta2": "1",
-    "cos_theta2": "1",
-    "theta3": "rad",
-    "theta3_dot": "rad/s",
-    "p_theta3": "J s",
-    "delta_theta3": "rad",
-    "delta_theta3_dot": "rad/s",
-    "sin_theta3": "1",
-    "cos_theta3": "1",
+    "m1": "kg", "m2": "kg", "m3": "kg", "l1": "m", "l2": "m", "l3": "m", "g": "m/s^2",
+    "theta1": "rad", "theta1_dot": "rad/s", "p_theta1": "J s", "delta_theta1": "rad",
+    "delta_theta1_dot": "rad/s", "sin_theta1": "1", "cos_theta1": "1", "theta2": "rad",
+    "theta2_dot": "rad/s", "p_theta2": "J s", "delta_theta2": "rad",
+    "delta_theta2_dot": "rad/s", "sin_theta2": "1", "cos_theta2": "1", "theta3": "rad",
+    "theta3_dot": "rad/s", "p_theta3": "J s", "delta_theta3": "rad",
+    "delta_theta3_dot": "rad/s", "sin_theta3": "1", "cos_theta3": "1",
 }
 
 
@@ -296,7 +184,8 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y: velocities, then accelerations from M qddot = f.
     """
     # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
     m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
@@ -345,62 +234,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = (m3 + c4)*g
-    c6 = l1*c1
-    c7 = c1*g
-    c8 = 1.0/l2
-    c9 = 1.0/l3
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    cos_theta2 = cos(theta2)
-    cos_theta1 = cos(theta1)
-    sin_theta2 = sin(theta2)
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    cos_theta3 = cos(theta3)
-    sin_theta3 = sin(theta3)
-    x2 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x3 = c3*(theta3_dot*theta3_dot)
-    x4 = theta1_dot*theta1_dot
-    x5 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
-    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x8 = m3*x7
-    x9 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6
-    x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x12 = x11 - x9*x8
-    x13 = 1.0/(m2 + m3*x5*x5)
-    x14 = x12*x13
-    x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14
-    x16 = x15/(c4 + m3*x2*x2 - x12*x14)
-    x17 = x13*(x10 + x12*x16)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        theta1_dot,
-        theta2_dot,
-        theta3_dot,
-        -c0*x16,
-        c8*x17,
-        c9*(x6 + x7*x16 - x9*x17),
-    )
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -421,7 +254,8 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         Entry [i][j] is the derivative of rhs[i] with respect to y[j].
     """
     # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
     m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
@@ -518,404 +352,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = l1*c1
-    c3 = m3*l3
-    c4 = c1*g
-    c5 = c1*l2
-    c6 = m1 + m2
-    c7 = (m3 + c6)*g
-    c8 = 1.0/l2
-    c9 = m3*l2
-    c10 = 1.0/l3
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    sin_theta2 = sin(theta2)
-    sin_theta3 = sin(theta3)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x1 = m3*x0
-    x2 = 1.0/(m2 + x0*x1)
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    x3 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x4 = c2*(theta1_dot*theta1_dot)
-    x5 = theta3_dot*theta3_dot
-    x6 = c3*x5
-    x7 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x8 = l1*theta1_dot
-    x9 = theta1_dot*x8
-    x10 = theta2_dot*theta2_dot
-    x11 = l2*x10
-    x12 = x7*x9 + x0*x11 - g*sin_theta3
-    x13 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x14 = m3*x13
-    x15 = x3*x4 - x0*x6 - c4*sin_theta2 - x12*x14
-    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x17 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x18 = m3*x17
-    x19 = c1*x16 - x13*x18
-    x20 = c5*x10
-    x21 = x19*x2
-    x22 = x3*x20 + x7*x6 + c7*sin_theta1 + x12*x18 + x15*x21
-    x23 = m3*x7
-    x24 = c6 + x7*x23 - x19*x21
-    x25 = x22/x24
-    x26 = x2*(x15 + x19*x25)
-    x27 = c1*x3
-    x28 = x12 + x17*x25 - x13*x26
-    x29 = x26*x27 + x28*x23 - (x16*x20 + x17*x6 + c7*cos_theta1)
-    x30 = x17*x9
-    x31 = x7*x25
-    x32 = x30 - x31
-    x33 = c1*(x16*x9 - x3*x25) - x32*x14
-    x34 = (x29 - x32*x18 - x33*x21)/x24
-    x35 = x13*x11
-    x36 = x0*x26
-    x37 = x35 + x36
-    x38 = x25*x27 + x28*x1 - (x16*x4 + x13*x6 + c4*cos_theta2)
-    x39 = x38 - x37*x14
-    x40 = (c1*(x16*x11 - x3*x26) - x37*x18 - x39*x21)/x24
-    x41 = l3*x5
-    x42 = x36 + (x30 + x35 + g*cos_theta3) - x31
-    x43 = x13*x41 - x0*x28 + x13*x42
-    x44 = m3*(x17*x41 - x7*x28 + x17*x42 - x43*x21)/x24
-    x45 = x27 - x7*x14
-    x46 = (x7*x18 + x45*x21)*x8/x24
-    x47 = x0*x21
-    x48 = l2*theta2_dot*(x27 + x0*x18 - x47*x14)/x24
-    x49 = c3*theta3_dot
-    x50 = (x7 - x47)*x49/x24
-    x51 = x2*(x33 - x19*x34)
-    x52 = x2*(x39 - x19*x40)
-    x53 = x2*(m3*x43 - x19*x44)
-    x54 = x2*(x45*x8 + x19*x46)
-    x55 = x0*theta2_dot
-    x56 = x2*(c9*x13*x55 - x19*x48)
-    x57 = x2*(x0*x49 - x19*x50)
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        c0*x34,
-        c0*x40,
-        c0*x44,
-        -2.0*c0*x46,
-        -2.0*c0*x48,
-        -2.0*c0*x50,
-        c8*x51,
-        c8*x52,
-        c8*x53,
-        2.0*c8*x54,
-        -2.0*c8*x56,
-        -2.0*c8*x57,
-        -c10*(x17*x34 + x13*x51 - x32),
-        -c10*(x17*x40 + x13*x52 - x37),
-        -c10*(x42 + x17*x44 + x13*x53),
-        2.0*c10*(x7*x8 + x17*x46 - x13*x54),
-        2.0*c10*(l2*x55 + x17*x48 + x13*x56),
-        2.0*c10*(x17*x50 + x13*x57),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    244 operations, 13 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        theta1, theta2, theta3 in rad; theta1_dot, theta2_dot, theta3_dot in rad/s.
-    params : iterable of 7 floats
-        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = g*c5
-    c7 = l1*c1
-    c8 = c1*g
-    c9 = c5*c0
-    c10 = 1.0/l2
-    c11 = c1*c10
-    c12 = 1.0/l3
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = g*sin_theta1
-    cos_theta2 = cos(theta2)
-    cos_theta1 = cos(theta1)
-    sin_theta2 = sin(theta2)
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = theta2_dot*theta2_dot
-    x3 = x1*x2
-    cos_theta3 = cos(theta3)
-    sin_theta3 = sin(theta3)
-    x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x5 = theta3_dot*theta3_dot
-    x6 = x4*x5
-    x7 = theta1_dot*theta1_dot
-    x8 = x4*x7
-    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x10 = x9*x2
-    x11 = l1*x8 + l2*x10 - g*sin_theta3
-    x12 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x13 = m3*x12
-    x14 = x1*x7
-    x15 = x9*x5
-    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x17 = m3*x16
-    x18 = c7*x14 - c3*x15 - c8*sin_theta2 - x11*x17
-    x19 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x20 = c1*x19 - x16*x13
-    x21 = 1.0/(m2 + m3*x9*x9)
-    x22 = x20*x21
-    x23 = c2*x3 + c3*x6 + c6*sin_theta1 + x11*x13 + x18*x22
-    x24 = c4 + m3*x4*x4 - x20*x22
-    x25 = x23/x24
-    x26 = (x0 - x25)/x24
-    x27 = l2*x3
-    x28 = x21*(x18 + x20*x25)
-    x29 = x19*x28
-    x30 = x25 - x29
-    x31 = l1*x14
-    x32 = g*sin_theta2
-    x33 = x19*x25
-    x34 = x28 - x33
-    x35 = x31 - x32 - x34
-    x36 = (x0 + x27 - x30 + x35*x22)/x24
-    x37 = x12*x25
-    x38 = x16*x28
-    x39 = x11 + x37 - x38
-    x40 = x32 - (x31 - l3*x15) + x16*x39 + x34
-    x41 = (x0 + (x27 + l3*x6) + x12*x39 - x30 - x40*x22)/x24
-    x42 = x8 + c0*x37
-    x43 = c1*(x14 + c0*x33) - x42*x17
-    x44 = (c9*x25 - x42*x13 - x43*x22)/x24
-    x45 = x10 - c10*x38
-    x46 = c11*x28 + x45*x17
-    x47 = (c1*(x3 + c10*x29) + x45*x13 - x46*x22)/x24
-    x48 = c12*x39
-    x49 = x12*x48
-    x50 = x16*x48
-    x51 = x50 - (x50 + x15)
-    x52 = m3*(x49 - (x49 + x6) - x51*x22)/x24
-    x53 = c1*sin_theta2 - sin_theta3*x17
-    x54 = (c5*sin_theta1 - sin_theta3*x13 - x53*x22)/x24
-    x55 = x26*x22
-    x56 = x21*(x35 + x20*x36)
-    x57 = x21*(x40 - x20*x41)
-    x58 = x21*(x43 - x20*x44)
-    x59 = x21*(x46 - x20*x47)
-    x60 = x21*(m3*x51 - x20*x52)
-    x61 = x21*(x53 - x20*x54)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-c0*x26, -c0*x36, -c0*x41, c0*x44, -c0*x47, c0*x52, -c0*x54),
-        (
-            c10*x55,
-            c10*x56,
-            -c10*x57,
-            c10*x58,
-            -c10*x59,
-            c10*x60,
-            -c10*x61,
-        ),
-        (
-            c12*(x12*x26 - x16*x55),
-            c12*(x12*x36 - x16*x56),
-            c12*(x12*x41 + x16*x57),
-            -c12*(x12*x44 + x16*x58 - x42),
-            c12*(x45 + x12*x47 + x16*x59),
-            -c12*(x48 + x12*x52 + x16*x60),
-            c12*(x12*x54 + x16*x61 - sin_theta3),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (6, 7, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = g*c5
-    c7 = l1*c1
-    c8 = c1*g
-    c9 = c5*c0
-    c10 = 1.0/l2
-    c11 = c1*c10
-    c12 = 1.0/l3
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = g*sin_theta1
-    cos_theta2 = cos(theta2)
-    cos_theta1 = cos(theta1)
-    sin_theta2 = sin(theta2)
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = theta2_dot*theta2_dot
-    x3 = x1*x2
-    cos_theta3 = cos(theta3)
-    sin_theta3 = sin(theta3)
-    x4 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x5 = theta3_dot*theta3_dot
-    x6 = x4*x5
-    x7 = theta1_dot*theta1_dot
-    x8 = x4*x7
-    x9 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x10 = x9*x2
-    x11 = l1*x8 + l2*x10 - g*sin_theta3
-    x12 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x13 = m3*x12
-    x14 = x1*x7
-    x15 = x9*x5
-    x16 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x17 = m3*x16
-    x18 = c7*x14 - c3*x15 - c8*sin_theta2 - x11*x17
-    x19 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x20 = c1*x19 - x16*x13
-    x21 = 1.0/(m2 + m3*x9*x9)
-    x22 = x20*x21
-    x23 = c2*x3 + c3*x6 + c6*sin_theta1 + x11*x13 + x18*x22
-    x24 = c4 + m3*x4*x4 - x20*x22
-    x25 = x23/x24
-    x26 = (x0 - x25)/x24
-    x27 = l2*x3
-    x28 = x21*(x18 + x20*x25)
-    x29 = x19*x28
-    x30 = x25 - x29
-    x31 = l1*x14
-    x32 = g*sin_theta2
-    x33 = x19*x25
-    x34 = x28 - x33
-    x35 = x31 - x32 - x34
-    x36 = (x0 + x27 - x30 + x35*x22)/x24
-    x37 = x12*x25
-    x38 = x16*x28
-    x39 = x11 + x37 - x38
-    x40 = x32 - (x31 - l3*x15) + x16*x39 + x34
-    x41 = (x0 + (x27 + l3*x6) + x12*x39 - x30 - x40*x22)/x24
-    x42 = x8 + c0*x37
-    x43 = c1*(x14 + c0*x33) - x42*x17
-    x44 = (c9*x25 - x42*x13 - x43*x22)/x24
-    x45 = x10 - c10*x38
-    x46 = c11*x28 + x45*x17
-    x47 = (c1*(x3 + c10*x29) + x45*x13 - x46*x22)/x24
-    x48 = c12*x39
-    x49 = x12*x48
-    x50 = x16*x48
-    x51 = x50 - (x50 + x15)
-    x52 = m3*(x49 - (x49 + x6) - x51*x22)/x24
-    x53 = c1*sin_theta2 - sin_theta3*x17
-    x54 = (c5*sin_theta1 - sin_theta3*x13 - x53*x22)/x24
-    x55 = x26*x22
-    x56 = x21*(x35 + x20*x36)
-    x57 = x21*(x40 - x20*x41)
-    x58 = x21*(x43 - x20*x44)
-    x59 = x21*(x46 - x20*x47)
-    x60 = x21*(m3*x51 - x20*x52)
-    x61 = x21*(x53 - x20*x54)
-    # outputs
-    return _stacked(
-        (6, 7),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -c0*x26,
-        -c0*x36,
-        -c0*x41,
-        c0*x44,
-        -c0*x47,
-        c0*x52,
-        -c0*x54,
-        c10*x55,
-        c10*x56,
-        -c10*x57,
-        c10*x58,
-        -c10*x59,
-        c10*x60,
-        -c10*x61,
-        c12*(x12*x26 - x16*x55),
-        c12*(x12*x36 - x16*x56),
-        c12*(x12*x41 + x16*x57),
-        -c12*(x12*x44 + x16*x58 - x42),
-        c12*(x45 + x12*x47 + x16*x59),
-        -c12*(x48 + x12*x52 + x16*x60),
-        c12*(x12*x54 + x16*x61 - sin_theta3),
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -936,41 +372,9 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
         Energy in J.
     """
     # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m3 + m2
-    c1 = l2*c0
-    c2 = l1*c1
-    c3 = m3*l3
-    c4 = l1*c3
-    c5 = l2*c3
-    c6 = l3*c3
-    c7 = l1*(m1 + c0)
-    c8 = l1*c7
-    c9 = l2*c1
-    c10 = g*c7
-    c11 = g*c1
-    c12 = g*c3
-    # intermediate terms
-    x0 = c6*theta3_dot*theta3_dot + c8*theta1_dot*theta1_dot + c9*theta2_dot*theta2_dot
-    x1 = (
-        c2*theta1_dot*theta2_dot*cos(theta1 - theta2)
-        + c4*theta3_dot*theta1_dot*cos(theta1 - theta3)
-        + c5*theta3_dot*theta2_dot*cos(theta2 - theta3) + 0.5*x0 - c10*cos(theta1)
-        - c11*cos(theta2) - c12*cos(theta3)
-    )
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
-    m1, m2, m3, l1, l2, l3, g = params
+    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m3 + m2
     c1 = l2*c0
@@ -1034,40 +438,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((l1*l1*(m1 + c0), x0, x1), (x0, l2*c1, x2), (x1, x2, l3*c3))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, theta3, _, _, _ = y
-    m1, m2, m3, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = l2*c0
-    c2 = l1*c1
-    c3 = m3*l3
-    c4 = l1*c3
-    c5 = l2*c3
-    # intermediate terms
-    x0 = c2*cos(theta1 - theta2)
-    x1 = c4*cos(theta1 - theta3)
-    x2 = c5*cos(theta2 - theta3)
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        l1*l1*(m1 + c0),
-        x0,
-        x1,
-        x0,
-        l2*c1,
-        x2,
-        x1,
-        x2,
-        l3*c3,
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -1103,31 +473,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (3, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, _, _, _ = y
-    _, _, _, l1, l2, l3, _ = params
-    # intermediate terms
-    x0 = l1*sin(theta1)
-    x1 = l1*cos(theta1)
-    x2 = x0 + l2*sin(theta2)
-    x3 = x1 + l2*cos(theta2)
-    # outputs
-    return _stacked(
-        (3, 2),
-        y[0],
-        x0,
-        -x1,
-        x2,
-        -x3,
-        x2 + l3*sin(theta3),
-        -(x3 + l3*cos(theta3)),
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1148,7 +493,8 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Coordinates, then momenta p = M qdot.
     """
     # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
     m1, m2, m3, l1, l2, l3, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m2 + m3
@@ -1165,39 +511,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x5 = l3*theta3_dot + l1*theta1_dot*x2 + l2*theta2_dot*x4
     # outputs
     return (
-        theta1,
-        theta2,
-        theta3,
-        l1*(c1*theta1_dot + x0*x1 + x2*x3),
-        l2*(x1 + c4*theta1_dot*x0 + x4*x3),
-        c3*x5,
-    )
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
-    m1, m2, m3, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = l1*(m1 + c0)
-    c2 = l2*c0
-    c3 = m3*l3
-    c4 = l1*c0
-    # intermediate terms
-    x0 = cos(theta1 - theta2)
-    x1 = c2*theta2_dot
-    x2 = cos(theta1 - theta3)
-    x3 = c3*theta3_dot
-    x4 = cos(theta2 - theta3)
-    x5 = l3*theta3_dot + l1*theta1_dot*x2 + l2*theta2_dot*x4
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
         theta1,
         theta2,
         theta3,
@@ -1227,7 +540,8 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y: velocities from M qdot = p, then -dH/dq.
     """
     # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
     m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
@@ -1272,342 +586,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
         -(c6*sin_theta1 + x15 - x11*x16),
         x15 + x7*x17 - c7*sin_theta2,
         -m3*(x10*x16 + x6*x17 + c8*sin_theta3),
-    )
-
-
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = 1.0/l2
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = 1.0/(m3*l3)
-    c6 = l1*(m3 + c4)*g
-    c7 = c3*l2*g
-    c8 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    sin_theta3 = sin(theta3)
-    x0 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x1 = c1*p_theta3
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x2 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x3 = c2*p_theta2 - x2*x1
-    x4 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x5 = x4 - m3*x0*x2
-    x6 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x7 = m3*x6
-    x8 = 1.0/(m2 + x6*x7)
-    x9 = x5*x8
-    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x11 = m3*x10
-    x12 = (c0*p_theta1 - x0*x1 - x3*x9)/(c4 + x10*x11 - x5*x9)
-    x13 = x8*(x3 - x5*x12)
-    x14 = x0*x12 + x2*x13 - c5*p_theta3
-    x15 = c3*x12*x13*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
-    x16 = x12*x14
-    x17 = x13*x14
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        c0*x12,
-        c2*x13,
-        -c1*x14,
-        -(c6*sin_theta1 + x15 - x11*x16),
-        x15 + x7*x17 - c7*sin_theta2,
-        -m3*(x10*x16 + x6*x17 + c8*sin_theta3),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    271 operations, 13 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        theta1, theta2, theta3 in rad; p_theta1, p_theta2, p_theta3 in J s.
-    params : iterable of 7 floats
-        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = 1.0/l3
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = 1.0/(m3*l3)
-    c6 = l1*(m3 + c4)*g
-    c7 = c3*l2*g
-    c8 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    sin_theta2 = sin(theta2)
-    sin_theta3 = sin(theta3)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x1 = m3*x0
-    x2 = 1.0/(m2 + x0*x1)
-    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x4 = c2*x3
-    x5 = c1*p_theta2 - p_theta3*x4
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x8 = x6 - m3*x7*x3
-    x9 = x8*x2
-    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x11 = m3*x10
-    x12 = c4 + x10*x11 - x8*x9
-    x13 = (c0*p_theta1 - c2*x7*p_theta3 - x5*x9)/x12
-    x14 = x2*(x5 - x8*x13)
-    x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
-    x16 = x14*x15
-    x17 = x7*x13
-    x18 = x3*x14
-    x19 = x17 + x18 - c5*p_theta3
-    x20 = x19*x11
-    x21 = x13*(x15 - x3*x11)
-    x22 = (x16 - x20 - x17*x11 - x21*x9)/x12
-    x23 = c0*x22
-    x24 = x13*x15
-    x25 = x19*x1
-    x26 = x24 + x25 + x18*x1
-    x27 = (x14*(x15 + x7*x1) - x26*x9)/x12
-    x28 = c0*x27
-    x29 = x10*x19
-    x30 = x10*x13
-    x31 = x0*x14
-    x32 = x30 + x31
-    x33 = x0*x19
-    x34 = x33 + x3*x32
-    x35 = m3*(x29 + x7*x32 - x34*x9)/x12
-    x36 = c0*x35
-    x37 = c0/x12
-    x38 = c1*x9/x12
-    x39 = c2*(x7 - x3*x9)/x12
-    x40 = x2*(x21 - x8*x22)
-    x41 = c1*x40
-    x42 = x2*(x26 - x8*x27)
-    x43 = c1*x42
-    x44 = x2*(m3*x34 - x8*x35)
-    x45 = c1*x44
-    x46 = x37*x9
-    x47 = x2*(c1 + x8*x38)
-    x48 = x2*(x4 - x8*x39)
-    x49 = x7*x22 + x3*x40 - x30
-    x50 = c2*x49
-    x51 = x31 + x7*x27 + x3*x42
-    x52 = c2*x51
-    x53 = x32 + x7*x35 + x3*x44
-    x54 = c2*x53
-    x55 = x6*x13*x14
-    x56 = x24*x40 + (x55 + x16*x22)
-    x57 = m3*x19
-    x58 = x17*x57
-    x59 = x13*x11
-    x60 = x24*x42 + (x55 + x16*x27)
-    x61 = x16*x35 + x24*x44
-    x62 = x14*x1
-    x63 = x18*x57
-    x64 = x17*x19
-    x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49)
-    x66 = x18*x19
-    x67 = c8*cos_theta3 + x29*x35 + x30*x53 + x33*x44 + x31*x53 - x64 - x66
-    # outputs
-    return (
-        (x23, -x28, x36, c0*x37, -c0*x38, -c0*x39),
-        (x41, -x43, x45, -c1*x46, c1*x47, -c1*x48),
-        (
-            -x50,
-            x52,
-            -x54,
-            -c2*(x7*x37 - x3*x46),
-            c2*(x7*x38 - x3*x47),
-            c2*(c5 + x7*x39 + x3*x48),
-        ),
-        (
-            -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59),
-            x60 - x20*x27 - x51*x59,
-            -(x58 + x61 - x20*x35 - x53*x59),
-            -x23,
-            -x41,
-            x50,
-        ),
-        (
-            x25*x40 + x49*x62 + x56,
-            -(c7*cos_theta2 + x25*x42 + x51*x62 + x60 - x63),
-            x25*x44 + x53*x62 + x61 - x63,
-            x28,
-            x43,
-            -x52,
-        ),
-        (
-            x65,
-            m3*(x27*x29 + x30*x51 + x33*x42 + x31*x51 - x66),
-            -m3*x67,
-            -x36,
-            -x45,
-            x54,
-        ),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = 1.0/l3
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = 1.0/(m3*l3)
-    c6 = l1*(m3 + c4)*g
-    c7 = c3*l2*g
-    c8 = l3*g
-    # intermediate terms
-    cos_theta3 = cos(theta3)
-    sin_theta2 = sin(theta2)
-    sin_theta3 = sin(theta3)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x1 = m3*x0
-    x2 = 1.0/(m2 + x0*x1)
-    x3 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x4 = c2*x3
-    x5 = c1*p_theta2 - p_theta3*x4
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x7 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x8 = x6 - m3*x7*x3
-    x9 = x8*x2
-    x10 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x11 = m3*x10
-    x12 = c4 + x10*x11 - x8*x9
-    x13 = (c0*p_theta1 - c2*x7*p_theta3 - x5*x9)/x12
-    x14 = x2*(x5 - x8*x13)
-    x15 = c3*(sin_theta1*cos_theta2 - cos_theta1*sin_theta2)
-    x16 = x14*x15
-    x17 = x7*x13
-    x18 = x3*x14
-    x19 = x17 + x18 - c5*p_theta3
-    x20 = x19*x11
-    x21 = x13*(x15 - x3*x11)
-    x22 = (x16 - x20 - x17*x11 - x21*x9)/x12
-    x23 = c0*x22
-    x24 = x13*x15
-    x25 = x19*x1
-    x26 = x24 + x25 + x18*x1
-    x27 = (x14*(x15 + x7*x1) - x26*x9)/x12
-    x28 = c0*x27
-    x29 = x10*x19
-    x30 = x10*x13
-    x31 = x0*x14
-    x32 = x30 + x31
-    x33 = x0*x19
-    x34 = x33 + x3*x32
-    x35 = m3*(x29 + x7*x32 - x34*x9)/x12
-    x36 = c0*x35
-    x37 = c0/x12
-    x38 = c1*x9/x12
-    x39 = c2*(x7 - x3*x9)/x12
-    x40 = x2*(x21 - x8*x22)
-    x41 = c1*x40
-    x42 = x2*(x26 - x8*x27)
-    x43 = c1*x42
-    x44 = x2*(m3*x34 - x8*x35)
-    x45 = c1*x44
-    x46 = x37*x9
-    x47 = x2*(c1 + x8*x38)
-    x48 = x2*(x4 - x8*x39)
-    x49 = x7*x22 + x3*x40 - x30
-    x50 = c2*x49
-    x51 = x31 + x7*x27 + x3*x42
-    x52 = c2*x51
-    x53 = x32 + x7*x35 + x3*x44
-    x54 = c2*x53
-    x55 = x6*x13*x14
-    x56 = x24*x40 + (x55 + x16*x22)
-    x57 = m3*x19
-    x58 = x17*x57
-    x59 = x13*x11
-    x60 = x24*x42 + (x55 + x16*x27)
-    x61 = x16*x35 + x24*x44
-    x62 = x14*x1
-    x63 = x18*x57
-    x64 = x17*x19
-    x65 = -m3*(x64 + x22*x29 + x30*x49 + x33*x40 + x31*x49)
-    x66 = x18*x19
-    x67 = c8*cos_theta3 + x29*x35 + x30*x53 + x33*x44 + x31*x53 - x64 - x66
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        x23,
-        -x28,
-        x36,
-        c0*x37,
-        -c0*x38,
-        -c0*x39,
-        x41,
-        -x43,
-        x45,
-        -c1*x46,
-        c1*x47,
-        -c1*x48,
-        -x50,
-        x52,
-        -x54,
-        -c2*(x7*x37 - x3*x46),
-        c2*(x7*x38 - x3*x47),
-        c2*(c5 + x7*x39 + x3*x48),
-        -(c6*cos_theta1 + x56 - x58 - x20*x22 - x49*x59),
-        x60 - x20*x27 - x51*x59,
-        -(x58 + x61 - x20*x35 - x53*x59),
-        -x23,
-        -x41,
-        x50,
-        x25*x40 + x49*x62 + x56,
-        -(c7*cos_theta2 + x25*x42 + x51*x62 + x60 - x63),
-        x25*x44 + x53*x62 + x61 - x63,
-        x28,
-        x43,
-        -x52,
-        x65,
-        m3*(x27*x29 + x30*x51 + x33*x42 + x31*x51 - x66),
-        -m3*x67,
-        -x36,
-        -x45,
-        x54,
     )
 
 
@@ -1631,52 +609,9 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
         Energy in J.
     """
     # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = 1.0/l2
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = m3*l3
-    c6 = 1.0/c5
-    c7 = l1*(m3 + c4)
-    c8 = c3*l2
-    # intermediate terms
-    x0 = c0*p_theta1
-    cos_theta3 = cos(theta3)
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    sin_theta3 = sin(theta3)
-    x1 = cos_theta3*cos_theta1 + sin_theta1*sin_theta3
-    x2 = c1*p_theta3
-    x3 = c2*p_theta2
-    cos_theta2 = cos(theta2)
-    sin_theta2 = sin(theta2)
-    x4 = cos_theta3*cos_theta2 + sin_theta3*sin_theta2
-    x5 = x3 - x4*x2
-    x6 = c3*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x7 = x6 - m3*x1*x4
-    x8 = cos_theta3*sin_theta2 - sin_theta3*cos_theta2
-    x9 = 1.0/(m2 + m3*x8*x8)
-    x10 = x7*x9
-    x11 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x12 = (x0 - x1*x2 - x5*x10)/(c4 + m3*x11*x11 - x7*x10)
-    x13 = x9*(x5 - x7*x12)
-    x14 = x0*x12 + x3*x13 - (x1*x12 + x4*x13 - c6*p_theta3)*x2
-    x15 = g*(c7*cos_theta1 + c8*cos_theta2 + c5*cos_theta3)
-    # outputs
-    return 0.5*x14 - x15
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
-    m1, m2, m3, l1, l2, l3, g = params
+    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l3
@@ -1734,7 +669,8 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Coordinates, then velocities from M qdot = p.
     """
     # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
     m1, m2, m3, l1, l2, l3, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
@@ -1768,47 +704,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta3, p_theta1, p_theta2, p_theta3 = y
-    m1, m2, m3, l1, l2, l3, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l3
-    c2 = 1.0/l2
-    c3 = m2 + m3
-    c4 = m1 + m2
-    c5 = 1.0/(m3*l3)
-    # intermediate terms
-    x0 = theta1 - theta3
-    cos_x0 = cos(x0)
-    x1 = c1*p_theta3
-    x2 = theta2 - theta3
-    cos_x2 = cos(x2)
-    x3 = c2*p_theta2 - cos_x2*x1
-    x4 = c3*cos(theta1 - theta2) - m3*cos_x0*cos_x2
-    sin_x2 = sin(x2)
-    x5 = 1.0/(m2 + m3*sin_x2*sin_x2)
-    x6 = x4*x5
-    sin_x0 = sin(x0)
-    x7 = (c0*p_theta1 - cos_x0*x1 - x3*x6)/(c4 + m3*sin_x0*sin_x0 - x4*x6)
-    x8 = x5*(x3 - x4*x7)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        theta1,
-        theta2,
-        theta3,
-        c0*x7,
-        c2*x8,
-        -c1*(cos_x0*x7 + cos_x2*x8 - c5*p_theta3),
-    )
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1829,31 +724,10 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Sine and cosine of every angle, other coordinates, velocities.
     """
     # inputs
-    theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    # outputs
-    return (
-        sin(theta1),
-        cos(theta1),
-        sin(theta2),
-        cos(theta2),
-        sin(theta3),
-        cos(theta3),
-        theta1_dot,
-        theta2_dot,
-        theta3_dot,
-    )
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (9, ...)."""
-    from numpy import cos, sin
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     theta1, theta2, theta3, theta1_dot, theta2_dot, theta3_dot = y
     # outputs
-    return _stacked(
-        (9,),
-        y[0],
+    return (
         sin(theta1),
         cos(theta1),
         sin(theta2),
@@ -1887,7 +761,11 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    (
+        sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot,
+        theta2_dot, theta3_dot
+    ) = y
     m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
@@ -1933,651 +811,69 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (9, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = (m3 + c4)*g
-    c6 = l1*c1
-    c7 = c1*g
-    c8 = 1.0/l2
-    c9 = 1.0/l3
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x3 = c3*(theta3_dot*theta3_dot)
-    x4 = theta1_dot*theta1_dot
-    x5 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x6 = l1*x2*x4 + l2*x5*x1 - g*sin_theta3
-    x7 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x8 = m3*x7
-    x9 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x10 = c6*x0*x4 - x5*x3 - c7*sin_theta2 - m3*x9*x6
-    x11 = c1*(cos_theta1*cos_theta2 + sin_theta1*sin_theta2)
-    x12 = x11 - x9*x8
-    x13 = 1.0/(m2 + m3*x5*x5)
-    x14 = x12*x13
-    x15 = c2*x0*x1 + x2*x3 + c5*sin_theta1 + x6*x8 + x10*x14
-    x16 = x15/(c4 + m3*x2*x2 - x12*x14)
-    x17 = x13*(x10 + x12*x16)
-    # outputs
-    return _stacked(
-        (9,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        -c0*x16,
-        c8*x17,
-        c9*(x6 + x7*x16 - x9*x17),
-    )
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    197 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 15 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
-        theta1_dot, theta2_dot, theta3_dot in rad/s; delta_theta1, delta_theta2,
-        delta_theta3 in rad; delta_theta1_dot, delta_theta2_dot, delta_theta3_dot in rad/s.
-    params : iterable of 7 floats
-        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = (m3 + c4)*g
-    c6 = l1*c1
-    c7 = c1*g
-    c8 = 1.0/l2
-    c9 = 1.0/l3
-    # intermediate terms
-    x0 = theta2_dot*theta2_dot
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = c2*x1
-    x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x4 = theta3_dot*theta3_dot
-    x5 = c3*x4
-    x6 = theta1_dot*theta1_dot
-    x7 = l1*x6
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x0
-    x10 = x3*x7 + x8*x9 - g*sin_theta3
-    x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x12 = m3*x11
-    x13 = c6*x1
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = m3*x14
-    x16 = x6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
-    x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x18 = c1*x17 - x14*x12
-    x19 = m3*x8
-    x20 = 1.0/(m2 + x8*x19)
-    x21 = x18*x20
-    x22 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x21
-    x23 = m3*x3
-    x24 = c4 + x3*x23 - x18*x21
-    x25 = x22/x24
-    x26 = x20*(x16 + x18*x25)
-    x27 = x10 + x11*x25 - x14*x26
-    x28 = c1*x1
-    x29 = x26*x28 + x27*x23 - (c2*x17*x0 + x11*x5 + c5*cos_theta1)
-    x30 = l3*x4
-    x31 = m3*delta_theta3
-    x32 = theta2_dot*delta_theta2_dot
-    x33 = delta_theta3_dot*(c3*theta3_dot)
-    x34 = (
-        delta_theta1*x29 + c1*delta_theta2*(x17*x9 - x1*x26) + (x11*x30 - x3*x27)*x31
-        + 2.0*(-(x32*x2 + x3*x33))
-    )
-    x35 = x11*x7
-    x36 = x3*x25
-    x37 = x14*x9
-    x38 = x8*x26
-    x39 = theta1_dot*delta_theta1_dot
-    x40 = delta_theta3*(x38 + (x35 + x37 + g*cos_theta3) - x36)
-    x41 = (
-        delta_theta1*(x35 - x36) + delta_theta2*(x37 + x38) + 2.0*(l1*x3*x39 + l2*x8*x32)
-        - x40
-    )
-    x42 = x25*x28 + x27*x19 - (c6*x17*x6 + x14*x5 + c7*cos_theta2)
-    x43 = (
-        c1*delta_theta1*(x17*x7 - x1*x25) + delta_theta2*x42 + (x14*x30 - x8*x27)*x31
-        + 2.0*(x39*x13 - x8*x33)
-    )
-    x44 = x43 - x41*x15
-    x45 = (x34 - x41*x12 - x44*x21)/x24
-    x46 = x20*(x44 - x18*x45)
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        -c0*x25,
-        c8*x26,
-        c9*x27,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        c0*x45,
-        c8*x46,
-        -c9*(x11*x45 + x14*x46 - x41),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (15, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = (m3 + c4)*g
-    c6 = l1*c1
-    c7 = c1*g
-    c8 = 1.0/l2
-    c9 = 1.0/l3
-    # intermediate terms
-    x0 = theta2_dot*theta2_dot
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = c2*x1
-    x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x4 = theta3_dot*theta3_dot
-    x5 = c3*x4
-    x6 = theta1_dot*theta1_dot
-    x7 = l1*x6
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x0
-    x10 = x3*x7 + x8*x9 - g*sin_theta3
-    x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x12 = m3*x11
-    x13 = c6*x1
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = m3*x14
-    x16 = x6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
-    x17 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x18 = c1*x17 - x14*x12
-    x19 = m3*x8
-    x20 = 1.0/(m2 + x8*x19)
-    x21 = x18*x20
-    x22 = x0*x2 + x3*x5 + c5*sin_theta1 + x10*x12 + x16*x21
-    x23 = m3*x3
-    x24 = c4 + x3*x23 - x18*x21
-    x25 = x22/x24
-    x26 = x20*(x16 + x18*x25)
-    x27 = x10 + x11*x25 - x14*x26
-    x28 = c1*x1
-    x29 = x26*x28 + x27*x23 - (c2*x17*x0 + x11*x5 + c5*cos_theta1)
-    x30 = l3*x4
-    x31 = m3*delta_theta3
-    x32 = theta2_dot*delta_theta2_dot
-    x33 = delta_theta3_dot*(c3*theta3_dot)
-    x34 = (
-        delta_theta1*x29 + c1*delta_theta2*(x17*x9 - x1*x26) + (x11*x30 - x3*x27)*x31
-        + 2.0*(-(x32*x2 + x3*x33))
-    )
-    x35 = x11*x7
-    x36 = x3*x25
-    x37 = x14*x9
-    x38 = x8*x26
-    x39 = theta1_dot*delta_theta1_dot
-    x40 = delta_theta3*(x38 + (x35 + x37 + g*cos_theta3) - x36)
-    x41 = (
-        delta_theta1*(x35 - x36) + delta_theta2*(x37 + x38) + 2.0*(l1*x3*x39 + l2*x8*x32)
-        - x40
-    )
-    x42 = x25*x28 + x27*x19 - (c6*x17*x6 + x14*x5 + c7*cos_theta2)
-    x43 = (
-        c1*delta_theta1*(x17*x7 - x1*x25) + delta_theta2*x42 + (x14*x30 - x8*x27)*x31
-        + 2.0*(x39*x13 - x8*x33)
-    )
-    x44 = x43 - x41*x15
-    x45 = (x34 - x41*x12 - x44*x21)/x24
-    x46 = x20*(x44 - x18*x45)
-    # outputs
-    return _stacked(
-        (15,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        -c0*x25,
-        c8*x26,
-        c9*x27,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        c0*x45,
-        c8*x46,
-        -c9*(x11*x45 + x14*x46 - x41),
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    308 operations, 36 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 15 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3 in 1;
-        theta1_dot, theta2_dot, theta3_dot in rad/s; delta_theta1, delta_theta2,
-        delta_theta3 in rad; delta_theta1_dot, delta_theta2_dot, delta_theta3_dot in rad/s.
-    params : iterable of 14 floats
-        delta_m1, delta_m2, delta_m3 in kg; delta_l1, delta_l2, delta_l3 in m; delta_g in
-        m/s^2; m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = c5*g
-    c7 = l1*c1
-    c8 = c1*g
-    c9 = 1.0/l2
-    c10 = 1.0/l3
-    c11 = l1*delta_m2
-    c12 = l1*delta_m3
-    c13 = c7*delta_l2
-    c14 = l1*m3
-    c15 = c14*delta_l3
-    c16 = l1*c5*delta_g
-    c17 = l1*c2
-    c18 = l3*c14
-    c19 = l1*delta_m1
-    c20 = c5*delta_l1
-    c21 = m3*c10
-    c22 = l3*delta_l1
-    c23 = l3*delta_l2
-    c24 = l1*l3
-    c25 = l2*l3
-    c26 = l3*delta_g
-    c27 = m3*l2
-    c28 = l2*delta_m2
-    c29 = c2*delta_l1
-    c30 = l3*c27
-    c31 = l2*delta_m3
-    c32 = c1*delta_l2
-    c33 = delta_l3*c27
-    c34 = c2*delta_g
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x4 = theta3_dot*theta3_dot
-    x5 = c3*x4
-    x6 = theta1_dot*theta1_dot
-    x7 = l1*x6
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x1
-    x10 = x3*x7 + x8*x9 - g*sin_theta3
-    x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x12 = m3*x11
-    x13 = x0*x6
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = c7*x13 - x8*x5 - c8*sin_theta2 - m3*x14*x10
-    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x17 = c1*x16 - x14*x12
-    x18 = m3*x8
-    x19 = 1.0/(m2 + x8*x18)
-    x20 = x17*x19
-    x21 = c2*x2 + x3*x5 + c6*sin_theta1 + x10*x12 + x15*x20
-    x22 = m3*x3
-    x23 = c4 + x3*x22 - x17*x20
-    x24 = x21/x23
-    x25 = c0*x24
-    x26 = x19*(x15 + x17*x24)
-    x27 = c9*x26
-    x28 = x10 + x11*x24 - x14*x26
-    x29 = c10*x28
-    x30 = g*sin_theta1
-    x31 = x0*x9
-    x32 = x24 - x16*x26
-    x33 = l3*x4
-    x34 = theta2_dot*delta_theta2_dot
-    x35 = c17*x0
-    x36 = theta3_dot*delta_theta3_dot
-    x37 = c1*x0
-    x38 = x26*x37 + x28*x22 - (c2*x16*x1 + x11*x5 + c6*cos_theta1)
-    x39 = (
-        c11*(x30 + x31 - x32) + c12*(x30 + (x31 + x3*x33) + x11*x28 - x32)
-        + c13*(x2 + x16*x27) + c15*(x3*x4 + x11*x29) + c16*sin_theta1
-        + 2.0*(x34*x35 + c18*x3*x36) - l1*delta_theta1*x38
-        - c7*delta_theta2*(x16*x9 - x0*x26) - c14*delta_theta3*(x11*x33 - x3*x28)
-        - c19*(x24 - x30) - c20*x24
-    )
-    x40 = x11*x7
-    x41 = x3*x24
-    x42 = x14*x9
-    x43 = x8*x26
-    x44 = theta1_dot*delta_theta1_dot
-    x45 = l3*delta_theta3*(x43 + (x40 + x42 + g*cos_theta3) - x41)
-    x46 = (
-        l3*delta_theta1*(x40 - x41) + l3*delta_theta2*(x42 + x43) + c22*(x3*x6 + x11*x25)
-        + c23*(x8*x1 - x14*x27) + 2.0*(c24*x3*x44 + c25*x8*x34) - x45 - delta_l3*x28
-        - c26*sin_theta3
-    )
-    x47 = c21*x46
-    x48 = x24*x37 + x28*x18 - (c7*x16*x6 + x14*x5 + c8*cos_theta2)
-    x49 = x0*x7
-    x50 = g*sin_theta2
-    x51 = x26 - x16*x24
-    x52 = (
-        c2*delta_theta1*(x16*x7 - x0*x24) + l2*delta_theta2*x48
-        + c27*delta_theta3*(x14*x33 - x8*x28) + c28*(x49 - x50 - x51) + c29*(x13 + x16*x25)
-        + 2.0*(x44*x35 - c30*x8*x36) - c31*(x50 - (x49 - x8*x33) + x14*x28 + x51) - c32*x26
-        - c33*(x8*x4 + x14*x29) - c34*sin_theta2
-    )
-    x53 = c9*x52 - x14*x47
-    x54 = (c0*x39 + x11*x47 + x53*x20)/x23
-    x55 = x19*(x53 + x17*x54)
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        -x25,
-        x27,
-        x29,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        -c0*x54,
-        c9*x55,
-        c10*(c10*x46 + x11*x54 - x14*x55),
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (15, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, sin_theta3, cos_theta3, theta1_dot, theta2_dot, theta3_dot, delta_theta1, delta_theta2, delta_theta3, delta_theta1_dot, delta_theta2_dot, delta_theta3_dot = y
-    delta_m1, delta_m2, delta_m3, delta_l1, delta_l2, delta_l3, delta_g, m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2 + m3
-    c2 = c1*l2
-    c3 = m3*l3
-    c4 = m1 + m2
-    c5 = m3 + c4
-    c6 = c5*g
-    c7 = l1*c1
-    c8 = c1*g
-    c9 = 1.0/l2
-    c10 = 1.0/l3
-    c11 = l1*delta_m2
-    c12 = l1*delta_m3
-    c13 = c7*delta_l2
-    c14 = l1*m3
-    c15 = c14*delta_l3
-    c16 = l1*c5*delta_g
-    c17 = l1*c2
-    c18 = l3*c14
-    c19 = l1*delta_m1
-    c20 = c5*delta_l1
-    c21 = m3*c10
-    c22 = l3*delta_l1
-    c23 = l3*delta_l2
-    c24 = l1*l3
-    c25 = l2*l3
-    c26 = l3*delta_g
-    c27 = m3*l2
-    c28 = l2*delta_m2
-    c29 = c2*delta_l1
-    c30 = l3*c27
-    c31 = l2*delta_m3
-    c32 = c1*delta_l2
-    c33 = delta_l3*c27
-    c34 = c2*delta_g
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = sin_theta1*cos_theta3 - cos_theta1*sin_theta3
-    x4 = theta3_dot*theta3_dot
-    x5 = c3*x4
-    x6 = theta1_dot*theta1_dot
-    x7 = l1*x6
-    x8 = sin_theta2*cos_theta3 - cos_theta2*sin_theta3
-    x9 = l2*x1
-    x10 = x3*x7 + x8*x9 - g*sin_theta3
-    x11 = cos_theta1*cos_theta3 + sin_theta1*sin_theta3
-    x12 = m3*x11
-    x13 = x0*x6
-    x14 = cos_theta2*cos_theta3 + sin_theta2*sin_theta3
-    x15 = c7*x13 - x8*x5 - c8*sin_theta2 - m3*x14*x10
-    x16 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x17 = c1*x16 - x14*x12
-    x18 = m3*x8
-    x19 = 1.0/(m2 + x8*x18)
-    x20 = x17*x19
-    x21 = c2*x2 + x3*x5 + c6*sin_theta1 + x10*x12 + x15*x20
-    x22 = m3*x3
-    x23 = c4 + x3*x22 - x17*x20
-    x24 = x21/x23
-    x25 = c0*x24
-    x26 = x19*(x15 + x17*x24)
-    x27 = c9*x26
-    x28 = x10 + x11*x24 - x14*x26
-    x29 = c10*x28
-    x30 = g*sin_theta1
-    x31 = x0*x9
-    x32 = x24 - x16*x26
-    x33 = l3*x4
-    x34 = theta2_dot*delta_theta2_dot
-    x35 = c17*x0
-    x36 = theta3_dot*delta_theta3_dot
-    x37 = c1*x0
-    x38 = x26*x37 + x28*x22 - (c2*x16*x1 + x11*x5 + c6*cos_theta1)
-    x39 = (
-        c11*(x30 + x31 - x32) + c12*(x30 + (x31 + x3*x33) + x11*x28 - x32)
-        + c13*(x2 + x16*x27) + c15*(x3*x4 + x11*x29) + c16*sin_theta1
-        + 2.0*(x34*x35 + c18*x3*x36) - l1*delta_theta1*x38
-        - c7*delta_theta2*(x16*x9 - x0*x26) - c14*delta_theta3*(x11*x33 - x3*x28)
-        - c19*(x24 - x30) - c20*x24
-    )
-    x40 = x11*x7
-    x41 = x3*x24
-    x42 = x14*x9
-    x43 = x8*x26
-    x44 = theta1_dot*delta_theta1_dot
-    x45 = l3*delta_theta3*(x43 + (x40 + x42 + g*cos_theta3) - x41)
-    x46 = (
-        l3*delta_theta1*(x40 - x41) + l3*delta_theta2*(x42 + x43) + c22*(x3*x6 + x11*x25)
-        + c23*(x8*x1 - x14*x27) + 2.0*(c24*x3*x44 + c25*x8*x34) - x45 - delta_l3*x28
-        - c26*sin_theta3
-    )
-    x47 = c21*x46
-    x48 = x24*x37 + x28*x18 - (c7*x16*x6 + x14*x5 + c8*cos_theta2)
-    x49 = x0*x7
-    x50 = g*sin_theta2
-    x51 = x26 - x16*x24
-    x52 = (
-        c2*delta_theta1*(x16*x7 - x0*x24) + l2*delta_theta2*x48
-        + c27*delta_theta3*(x14*x33 - x8*x28) + c28*(x49 - x50 - x51) + c29*(x13 + x16*x25)
-        + 2.0*(x44*x35 - c30*x8*x36) - c31*(x50 - (x49 - x8*x33) + x14*x28 + x51) - c32*x26
-        - c33*(x8*x4 + x14*x29) - c34*sin_theta2
-    )
-    x53 = c9*x52 - x14*x47
-    x54 = (c0*x39 + x11*x47 + x53*x20)/x23
-    x55 = x19*(x53 + x17*x54)
-    # outputs
-    return _stacked(
-        (15,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        theta3_dot*cos_theta3,
-        -theta3_dot*sin_theta3,
-        -x25,
-        x27,
-        x29,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        delta_theta3_dot,
-        -c0*x54,
-        c9*x55,
-        c10*(c10*x46 + x11*x54 - x14*x55),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 7 floats
-        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (3, ...)."""
-    # inputs
-    # outputs
-    return _stacked((3,), params[0], 0.0, 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0, 0).
-
-    14 operations, 14 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 7 floats
-        m1, m2, m3 in kg; l1, l2, l3 in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m1, m2, m3, l1, l2, l3, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = l1*(m1 + c0)
-    c2 = l2*c0
-    c3 = l1*c2
-    c4 = m3*l3
-    c5 = l1*c4
-    c6 = l2*c4
-    # outputs
-    return (
-        ((l1*c1, c3, c5), (c3, l2*c2, c6), (c5, c6, l3*c4)),
-        ((g*c1, 0.0, 0.0), (0.0, g*c2, 0.0), (0.0, 0.0, g*c4)),
-    )
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 3, 3, ...)."""
-    # inputs
-    m1, m2, m3, l1, l2, l3, g = params
-    # terms of the parameters alone
-    c0 = m2 + m3
-    c1 = l1*(m1 + c0)
-    c2 = l2*c0
-    c3 = l1*c2
-    c4 = m3*l3
-    c5 = l1*c4
-    c6 = l2*c4
-    # outputs
-    return _stacked(
-        (2, 3, 3),
-        params[0],
-        l1*c1,
-        c3,
-        c5,
-        c3,
-        l2*c2,
-        c6,
-        c5,
-        c6,
-        l3*c4,
-        g*c1,
-        0.0,
-        0.0,
-        0.0,
-        g*c2,
-        0.0,
-        0.0,
-        0.0,
-        g*c4,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

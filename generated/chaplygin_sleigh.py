@@ -24,36 +24,6 @@ State y in functions of the rational form:
     y_dot [m/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    x [m]
-    y [m]
-    sin_theta [1]
-    cos_theta [1]
-    x_dot [m/s]
-    y_dot [m/s]
-    theta_dot [rad/s]
-    delta_x [m]
-    delta_y [m]
-    delta_theta [rad]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    x [m]
-    y [m]
-    sin_theta [1]
-    cos_theta [1]
-    x_dot [m/s]
-    y_dot [m/s]
-    theta_dot [rad/s]
-    delta_x [m]
-    delta_y [m]
-    delta_theta [rad]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass
     J [kg m^2] > 0, default 0.1: moment of inertia about the centre of mass
@@ -91,19 +61,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "1f348313c9fc5321"
+DIGEST = "8c4f81ac77c2e6c3"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -111,34 +80,12 @@ STATES = {
     "lagrangian": ("x", "y", "theta", "x_dot", "y_dot", "theta_dot"),
     "rational": ("x", "y", "sin_theta", "cos_theta", "x_dot", "y_dot", "theta_dot"),
     "variational": (
-        "x",
-        "y",
-        "sin_theta",
-        "cos_theta",
-        "x_dot",
-        "y_dot",
-        "theta_dot",
-        "delta_x",
-        "delta_y",
-        "delta_theta",
-        "delta_x_dot",
-        "delta_y_dot",
-        "delta_theta_dot",
+        "x", "y", "sin_theta", "cos_theta", "x_dot", "y_dot", "theta_dot", "delta_x", "delta_y",
+        "delta_theta", "delta_x_dot", "delta_y_dot", "delta_theta_dot",
     ),
     "sensitivity": (
-        "x",
-        "y",
-        "sin_theta",
-        "cos_theta",
-        "x_dot",
-        "y_dot",
-        "theta_dot",
-        "delta_x",
-        "delta_y",
-        "delta_theta",
-        "delta_x_dot",
-        "delta_y_dot",
-        "delta_theta_dot",
+        "x", "y", "sin_theta", "cos_theta", "x_dot", "y_dot", "theta_dot", "delta_x", "delta_y",
+        "delta_theta", "delta_x_dot", "delta_y_dot", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "J", "a")
@@ -149,58 +96,23 @@ RESIDUALS = ("skate",)
 LINKS = (("rod", (0, 1)),)
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "constraints",
-    "constraints_jacobian",
-    "multipliers",
-    "correction",
-    "mass_matrix",
-    "positions",
-    "points",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "constraints",
+    "constraints_jacobian", "multipliers", "correction", "mass_matrix", "positions",
+    "points", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (69, 7),
-    "jacobian": (152, 7),
-    "parameter_jacobian": (170, 9),
-    "energy": (21, 3),
-    "constraints": (5, 0),
-    "constraints_jacobian": (7, 0),
-    "multipliers": (55, 7),
-    "correction": (45, 7),
-    "correction_rational": (43, 7),
-    "correction_variational": (57, 7),
-    "correction_sensitivity": (57, 7),
-    "mass_matrix": (8, 3),
-    "positions": (6, 0),
-    "points": (6, 0),
-    "rational_state": (2, 0),
-    "rhs_rational": (70, 7),
-    "rhs_variational": (131, 7),
-    "rhs_sensitivity": (170, 9),
+    "rhs": (69, 7), "jacobian": (151, 7), "parameter_jacobian": (168, 9), "energy": (21, 3),
+    "constraints": (5, 0), "constraints_jacobian": (7, 0), "multipliers": (55, 7),
+    "correction": (45, 7), "correction_rational": (43, 7),
+    "correction_variational": (57, 7), "correction_sensitivity": (57, 7),
+    "mass_matrix": (8, 3), "positions": (6, 0), "points": (6, 0), "rational_state": (2, 0),
+    "rhs_rational": (70, 7), "rhs_variational": (133, 7), "rhs_sensitivity": (171, 9),
 }
 UNITS = {
-    "m": "kg",
-    "J": "kg m^2",
-    "a": "m",
-    "x": "m",
-    "x_dot": "m/s",
-    "delta_x": "m",
-    "delta_x_dot": "m/s",
-    "y": "m",
-    "y_dot": "m/s",
-    "delta_y": "m",
-    "delta_y_dot": "m/s",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
-    "cos_theta": "1",
-    "skate": "N",
+    "m": "kg", "J": "kg m^2", "a": "m", "x": "m", "x_dot": "m/s", "delta_x": "m",
+    "delta_x_dot": "m/s", "y": "m", "y_dot": "m/s", "delta_y": "m", "delta_y_dot": "m/s",
+    "theta": "rad", "theta_dot": "rad/s", "delta_theta": "rad", "delta_theta_dot": "rad/s",
+    "sin_theta": "1", "cos_theta": "1", "skate": "N",
 }
 
 
@@ -245,7 +157,7 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     _, _, theta, x_dot, y_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, J, a = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*a
+    c0 = a*m
     c1 = a*c0
     c2 = 1.0/(J + c1)
     c3 = c1*c2
@@ -254,81 +166,37 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     # intermediate terms
     cos_theta = cos(theta)
     x0 = c5*cos_theta
-    x1 = 1.0/(m*(1.0 - a*cos_theta*x0))
+    x1 = a*cos_theta
+    x2 = 1.0/(m*(1.0 - x0*x1))
     sin_theta = sin(theta)
-    x2 = sin_theta*sin_theta
-    x3 = c0*(theta_dot*theta_dot)
-    x4 = cos_theta*x1
-    x5 = c4*x4
-    x6 = sin_theta*x5
-    x7 = m*(1.0 - c3*x2 - c3*cos_theta*sin_theta*x6)
-    x8 = cos_theta*(1.0 - c4*x1*x2)*x3/x7
-    x9 = sin_theta*(1.0 + cos_theta*x5)/x7
-    x10 = sin_theta*x1*x3 - x6*x8
-    x11 = theta_dot*(y_dot*sin_theta + x_dot*cos_theta) + (sin_theta*x8 - cos_theta*x10)
-    x12 = x4 + x6*x9
-    x13 = x11/(sin_theta*x9 + cos_theta*x12)
-    x14 = c5*sin_theta
+    x3 = sin_theta*sin_theta
+    x4 = theta_dot*theta_dot
+    x5 = cos_theta*x2
+    x6 = c4*x5
+    x7 = sin_theta*x6
+    x8 = 1.0 - c3*x3 - c3*cos_theta*sin_theta*x7
+    x9 = (1.0 - c4*x2*x3)*x4*x1/x8
+    x10 = sin_theta*(1.0 + cos_theta*x6)/(m*x8)
+    x11 = c0*sin_theta*x2*x4 - x7*x9
+    x12 = theta_dot*(y_dot*sin_theta + x_dot*cos_theta) + (sin_theta*x9 - cos_theta*x11)
+    x13 = x5 + x7*x10
+    x14 = x12/(sin_theta*x10 + cos_theta*x13)
+    x15 = c5*sin_theta
     # outputs
     return (
         x_dot,
         y_dot,
         theta_dot,
-        x8 - x9*x13,
-        x10 + x12*x13,
-        x8*x14 - x0*x10 - x13*(x9*x14 + x0*x12),
-    )
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, theta_dot = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = c5*cos_theta
-    x1 = 1.0/(m*(1.0 - a*cos_theta*x0))
-    sin_theta = sin(theta)
-    x2 = sin_theta*sin_theta
-    x3 = c0*(theta_dot*theta_dot)
-    x4 = cos_theta*x1
-    x5 = c4*x4
-    x6 = sin_theta*x5
-    x7 = m*(1.0 - c3*x2 - c3*cos_theta*sin_theta*x6)
-    x8 = cos_theta*(1.0 - c4*x1*x2)*x3/x7
-    x9 = sin_theta*(1.0 + cos_theta*x5)/x7
-    x10 = sin_theta*x1*x3 - x6*x8
-    x11 = theta_dot*(y_dot*sin_theta + x_dot*cos_theta) + (sin_theta*x8 - cos_theta*x10)
-    x12 = x4 + x6*x9
-    x13 = x11/(sin_theta*x9 + cos_theta*x12)
-    x14 = c5*sin_theta
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        x_dot,
-        y_dot,
-        theta_dot,
-        x8 - x9*x13,
-        x10 + x12*x13,
-        x8*x14 - x0*x10 - x13*(x9*x14 + x0*x12),
+        x9 - x10*x14,
+        x11 + x13*x14,
+        x9*x15 - x0*x11 - x14*(x10*x15 + x0*x13),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    152 operations, 7 of them on parameters alone.
+    151 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -356,41 +224,44 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c5 = m*c4
     # intermediate terms
     sin_theta = sin(theta)
-    x0 = c0*theta_dot
-    x1 = theta_dot*x0
+    x0 = sin_theta*theta_dot
+    x1 = c0*theta_dot
     cos_theta = cos(theta)
     x2 = sin_theta*y_dot + cos_theta*x_dot
-    x3 = c3*cos_theta
-    x4 = 1.0/(m*(1.0 - a*cos_theta*x3))
-    x5 = sin_theta*x4
-    x6 = c5*sin_theta
-    x7 = cos_theta*(1.0 - x5*x6)
-    x8 = c4*sin_theta
-    x9 = c5*cos_theta
-    x10 = x5*x9
-    x11 = m*(1.0 - sin_theta*x8 - cos_theta*x10*x8)
-    x12 = x1*x7/x11
-    x13 = x5*x1 - x10*x12
-    x14 = cos_theta*x4
-    x15 = sin_theta*(1.0 + x14*x9)/x11
-    x16 = x14 + x10*x15
-    x17 = sin_theta*x15 + cos_theta*x16
-    x18 = (theta_dot*x2 + (sin_theta*x12 - cos_theta*x13))/x17
-    x19 = c3*sin_theta
-    x20 = x15*x19 + x3*x16
-    x21 = c0*(x12*x19 - x3*x13 - x20*x18)
-    x22 = cos_theta*(x12 - x15*x18) + sin_theta*(x13 + x16*x18)
-    x23 = sin_theta*x1 + cos_theta*x18 - cos_theta*x21 - x22*x6
-    x24 = cos_theta*x1 + sin_theta*x21 - sin_theta*x18 - x22*x9
-    x25 = (x23 + x10*x24)/x11
-    x26 = x22 + theta_dot*(cos_theta*y_dot - sin_theta*x_dot)
-    x27 = x4*x24 + x10*x25
-    x28 = (x26 - (sin_theta*x25 + cos_theta*x27))/x17
-    x29 = cos_theta*theta_dot/x17
-    x30 = sin_theta*theta_dot/x17
-    x31 = x0*x7/x11
-    x32 = x0*x5 - x10*x31
-    x33 = (x2 + 2.0*(sin_theta*x31 - cos_theta*x32))/x17
+    x3 = cos_theta*theta_dot
+    x4 = c3*cos_theta
+    x5 = 1.0/(m*(1.0 - a*cos_theta*x4))
+    x6 = sin_theta*x5
+    x7 = c5*sin_theta
+    x8 = x3*(a*(1.0 - x6*x7))
+    x9 = c4*sin_theta
+    x10 = c5*cos_theta
+    x11 = x6*x10
+    x12 = 1.0 - sin_theta*x9 - cos_theta*x11*x9
+    x13 = theta_dot*x8/x12
+    x14 = x6*x1
+    x15 = theta_dot*x14 - x11*x13
+    x16 = cos_theta*x5
+    x17 = m*x12
+    x18 = sin_theta*(1.0 + x16*x10)/x17
+    x19 = x16 + x11*x18
+    x20 = sin_theta*x18 + cos_theta*x19
+    x21 = (theta_dot*x2 + (sin_theta*x13 - cos_theta*x15))/x20
+    x22 = c3*sin_theta
+    x23 = x18*x22 + x4*x19
+    x24 = c0*(x13*x22 - x4*x15 - x23*x21)
+    x25 = cos_theta*(x13 - x18*x21) + sin_theta*(x15 + x19*x21)
+    x26 = x3*x1 + sin_theta*x24 - sin_theta*x21 - x25*x10
+    x27 = x0*x1 + cos_theta*x21 - cos_theta*x24 - x25*x7 + x11*x26
+    x28 = x27/x17
+    x29 = x25 + theta_dot*(cos_theta*y_dot - sin_theta*x_dot)
+    x30 = x5*x26 + x11*x28
+    x31 = (x29 - (sin_theta*x28 + cos_theta*x30))/x20
+    x32 = x3/x20
+    x33 = x0/x20
+    x34 = x8/x12
+    x35 = x14 - x11*x34
+    x36 = (x2 + 2.0*(sin_theta*x34 - cos_theta*x35))/x20
     # outputs
     return (
         (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
@@ -399,283 +270,20 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (
             0.0,
             0.0,
-            -(x25 + x15*x28),
-            -x15*x29,
-            -x15*x30,
-            2.0*x31 - x15*x33,
+            -(x28 + x18*x31),
+            -x18*x32,
+            -x18*x33,
+            2.0*x34 - x18*x36,
         ),
-        (0.0, 0.0, x27 + x16*x28, x16*x29, x16*x30, 2.0*x32 + x16*x33),
+        (0.0, 0.0, x30 + x19*x31, x19*x32, x19*x33, 2.0*x35 + x19*x36),
         (
             0.0,
             0.0,
-            -(x25*x19 + x3*x27 - c3*x22 + x20*x28),
-            -x20*x29,
-            -x20*x30,
-            2.0*(x31*x19 - x3*x32) - x20*x33,
+            -(x28*x22 + x4*x30 - c3*x25 + x23*x31),
+            -x23*x32,
+            -x23*x33,
+            2.0*(x34*x22 - x4*x35) - x23*x36,
         ),
-    )
-
-
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, theta_dot = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c2*c0
-    c4 = c1*c2
-    c5 = m*c4
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = c0*theta_dot
-    x1 = theta_dot*x0
-    cos_theta = cos(theta)
-    x2 = sin_theta*y_dot + cos_theta*x_dot
-    x3 = c3*cos_theta
-    x4 = 1.0/(m*(1.0 - a*cos_theta*x3))
-    x5 = sin_theta*x4
-    x6 = c5*sin_theta
-    x7 = cos_theta*(1.0 - x5*x6)
-    x8 = c4*sin_theta
-    x9 = c5*cos_theta
-    x10 = x5*x9
-    x11 = m*(1.0 - sin_theta*x8 - cos_theta*x10*x8)
-    x12 = x1*x7/x11
-    x13 = x5*x1 - x10*x12
-    x14 = cos_theta*x4
-    x15 = sin_theta*(1.0 + x14*x9)/x11
-    x16 = x14 + x10*x15
-    x17 = sin_theta*x15 + cos_theta*x16
-    x18 = (theta_dot*x2 + (sin_theta*x12 - cos_theta*x13))/x17
-    x19 = c3*sin_theta
-    x20 = x15*x19 + x3*x16
-    x21 = c0*(x12*x19 - x3*x13 - x20*x18)
-    x22 = cos_theta*(x12 - x15*x18) + sin_theta*(x13 + x16*x18)
-    x23 = sin_theta*x1 + cos_theta*x18 - cos_theta*x21 - x22*x6
-    x24 = cos_theta*x1 + sin_theta*x21 - sin_theta*x18 - x22*x9
-    x25 = (x23 + x10*x24)/x11
-    x26 = x22 + theta_dot*(cos_theta*y_dot - sin_theta*x_dot)
-    x27 = x4*x24 + x10*x25
-    x28 = (x26 - (sin_theta*x25 + cos_theta*x27))/x17
-    x29 = cos_theta*theta_dot/x17
-    x30 = sin_theta*theta_dot/x17
-    x31 = x0*x7/x11
-    x32 = x0*x5 - x10*x31
-    x33 = (x2 + 2.0*(sin_theta*x31 - cos_theta*x32))/x17
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        -(x25 + x15*x28),
-        -x15*x29,
-        -x15*x30,
-        2.0*x31 - x15*x33,
-        0.0,
-        0.0,
-        x27 + x16*x28,
-        x16*x29,
-        x16*x30,
-        2.0*x32 + x16*x33,
-        0.0,
-        0.0,
-        -(x25*x19 + x3*x27 - c3*x22 + x20*x28),
-        -x20*x29,
-        -x20*x30,
-        2.0*(x31*x19 - x3*x32) - x20*x33,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    170 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        x, y in m; theta in rad; x_dot, y_dot in m/s; theta_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; J in kg m^2; a in m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    _, _, theta, x_dot, y_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, J, a = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = 1.0/(J + a*c0)
-    c2 = c1*c0
-    c3 = a*c1
-    c4 = c0*c3
-    c5 = m*c4
-    c6 = m*c1
-    # intermediate terms
-    x0 = theta_dot*theta_dot
-    cos_theta = cos(theta)
-    x1 = a*cos_theta
-    sin_theta = sin(theta)
-    x2 = c2*cos_theta
-    x3 = 1.0/(m*(1.0 - x2*x1))
-    x4 = c5*sin_theta
-    x5 = cos_theta*x0
-    x6 = c4*sin_theta
-    x7 = cos_theta*x3
-    x8 = x7*x4
-    x9 = m*(1.0 - sin_theta*x6 - cos_theta*x8*x6)
-    x10 = c0*(1.0 - sin_theta*x3*x4)*x5/x9
-    x11 = c2*sin_theta
-    x12 = sin_theta*x0
-    x13 = c0*x3*x12 - x8*x10
-    x14 = theta_dot*(sin_theta*y_dot + cos_theta*x_dot) + (sin_theta*x10 - cos_theta*x13)
-    x15 = 1.0 + c5*cos_theta*x7
-    x16 = sin_theta*x15/x9
-    x17 = x7 + x8*x16
-    x18 = sin_theta*x16 + cos_theta*x17
-    x19 = x14/x18
-    x20 = x16*x11 + x2*x17
-    x21 = x10*x11 - x2*x13 - x19*x20
-    x22 = a*x21
-    x23 = x10 - x16*x19
-    x24 = x13 + x17*x19
-    x25 = sin_theta*x23 - cos_theta*x24
-    x26 = x22 - x25
-    x27 = x24 + x21*x1 - a*x12 - c4*cos_theta*x26
-    x28 = (x0*x1 + sin_theta*x22 - x23 - x26*x6 + x8*x27)/x9
-    x29 = x3*x27 + x8*x28
-    x30 = (sin_theta*x28 + cos_theta*x29)/x18
-    x31 = x15*x21*x11/x9
-    x32 = c2*x7*x21 + x8*x31
-    x33 = (sin_theta*x31 + cos_theta*x32)/x18
-    x34 = 2.0*x22 - x25
-    x35 = x12 - cos_theta*x21 + x2*x34
-    x36 = m*(x5 + sin_theta*x21 - x34*x11 - x8*x35)/x9
-    x37 = m*x3*x35 - x8*x36
-    x38 = (sin_theta*x36 - cos_theta*x37)/x18
-    # outputs
-    return (
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (x28 - x16*x30, -(x31 - x16*x33), x36 - x16*x38),
-        (-(x29 - x17*x30), x32 - x17*x33, x37 + x17*x38),
-        (
-            x28*x11 + x2*x29 - c3*x26 - x20*x30,
-            -(c1*x21 + x31*x11 + x2*x32 - x20*x33),
-            -(c6*x34 + x2*x37 - x36*x11 + x20*x38),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (6, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, theta_dot = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = 1.0/(J + a*c0)
-    c2 = c1*c0
-    c3 = a*c1
-    c4 = c0*c3
-    c5 = m*c4
-    c6 = m*c1
-    # intermediate terms
-    x0 = theta_dot*theta_dot
-    cos_theta = cos(theta)
-    x1 = a*cos_theta
-    sin_theta = sin(theta)
-    x2 = c2*cos_theta
-    x3 = 1.0/(m*(1.0 - x2*x1))
-    x4 = c5*sin_theta
-    x5 = cos_theta*x0
-    x6 = c4*sin_theta
-    x7 = cos_theta*x3
-    x8 = x7*x4
-    x9 = m*(1.0 - sin_theta*x6 - cos_theta*x8*x6)
-    x10 = c0*(1.0 - sin_theta*x3*x4)*x5/x9
-    x11 = c2*sin_theta
-    x12 = sin_theta*x0
-    x13 = c0*x3*x12 - x8*x10
-    x14 = theta_dot*(sin_theta*y_dot + cos_theta*x_dot) + (sin_theta*x10 - cos_theta*x13)
-    x15 = 1.0 + c5*cos_theta*x7
-    x16 = sin_theta*x15/x9
-    x17 = x7 + x8*x16
-    x18 = sin_theta*x16 + cos_theta*x17
-    x19 = x14/x18
-    x20 = x16*x11 + x2*x17
-    x21 = x10*x11 - x2*x13 - x19*x20
-    x22 = a*x21
-    x23 = x10 - x16*x19
-    x24 = x13 + x17*x19
-    x25 = sin_theta*x23 - cos_theta*x24
-    x26 = x22 - x25
-    x27 = x24 + x21*x1 - a*x12 - c4*cos_theta*x26
-    x28 = (x0*x1 + sin_theta*x22 - x23 - x26*x6 + x8*x27)/x9
-    x29 = x3*x27 + x8*x28
-    x30 = (sin_theta*x28 + cos_theta*x29)/x18
-    x31 = x15*x21*x11/x9
-    x32 = c2*x7*x21 + x8*x31
-    x33 = (sin_theta*x31 + cos_theta*x32)/x18
-    x34 = 2.0*x22 - x25
-    x35 = x12 - cos_theta*x21 + x2*x34
-    x36 = m*(x5 + sin_theta*x21 - x34*x11 - x8*x35)/x9
-    x37 = m*x3*x35 - x8*x36
-    x38 = (sin_theta*x36 - cos_theta*x37)/x18
-    # outputs
-    return _stacked(
-        (6, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x28 - x16*x30,
-        -(x31 - x16*x33),
-        x36 - x16*x38,
-        -(x29 - x17*x30),
-        x32 - x17*x33,
-        x37 + x17*x38,
-        x28*x11 + x2*x29 - c3*x26 - x20*x30,
-        -(c1*x21 + x31*x11 + x2*x32 - x20*x33),
-        -(c6*x34 + x2*x37 - x36*x11 + x20*x38),
     )
 
 
@@ -712,24 +320,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     return x2
 
 
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, theta_dot = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = J + a*c0
-    # intermediate terms
-    x0 = c0*theta_dot
-    x1 = m*x_dot*x_dot + m*y_dot*y_dot + c1*theta_dot*theta_dot
-    x2 = y_dot*cos(theta)*x0 + 0.5*x1 - x_dot*sin(theta)*x0
-    # outputs
-    return x2
-
-
 def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
     """Residuals of the constraints, which are 0 along a motion.
 
@@ -753,75 +343,6 @@ def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
     _, _, theta, x_dot, y_dot, _ = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (y_dot*cos(theta) - x_dot*sin(theta),)
-
-
-def constraints_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints` over arrays: the result has shape (1, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, _ = y
-    # outputs
-    return _stacked((1,), y[0], y_dot*cos(theta) - x_dot*sin(theta))
-
-
-def constraints_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `constraints` with respect to the state.
-
-    7 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        x, y in m; theta in rad; x_dot, y_dot in m/s; theta_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; J in kg m^2; a in m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of residual i with respect to y[j].
-    """
-    # inputs
-    _, _, theta, x_dot, y_dot, _ = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    # outputs
-    return (
-        (
-            0.0,
-            0.0,
-            -(y_dot*sin_theta + x_dot*cos_theta),
-            -sin_theta,
-            cos_theta,
-            0.0,
-        ),
-    )
-
-
-def constraints_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints_jacobian` over arrays: the result has shape (1, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, _ = y
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    # outputs
-    return _stacked(
-        (1, 6),
-        y[0],
-        0.0,
-        0.0,
-        -(y_dot*sin_theta + x_dot*cos_theta),
-        -sin_theta,
-        cos_theta,
-        0.0,
-    )
 
 
 def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -856,57 +377,23 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     # intermediate terms
     sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = 1.0/(m*(1.0 - a*cos_theta*(c5*cos_theta)))
-    x1 = sin_theta*x0
-    x2 = c0*(theta_dot*theta_dot)
-    x3 = c3*sin_theta
-    x4 = c4*cos_theta
-    x5 = x1*x4
-    x6 = m*(1.0 - sin_theta*x3 - cos_theta*x5*x3)
-    x7 = cos_theta*(1.0 - c4*sin_theta*x1)*x2/x6
-    x8 = (
+    x0 = a*cos_theta
+    x1 = 1.0/(m*(1.0 - c5*cos_theta*x0))
+    x2 = sin_theta*x1
+    x3 = theta_dot*theta_dot
+    x4 = c3*sin_theta
+    x5 = c4*cos_theta
+    x6 = x2*x5
+    x7 = 1.0 - sin_theta*x4 - cos_theta*x6*x4
+    x8 = (1.0 - c4*sin_theta*x2)*x0*x3/x7
+    x9 = (
         theta_dot*(sin_theta*y_dot + cos_theta*x_dot)
-        + (sin_theta*x7 - cos_theta*(x1*x2 - x5*x7))
+        + (sin_theta*x8 - cos_theta*(c0*x2*x3 - x6*x8))
     )
-    x9 = cos_theta*x0
-    x10 = sin_theta*(1.0 + x9*x4)/x6
+    x10 = cos_theta*x1
+    x11 = sin_theta*(1.0 + x10*x5)/(m*x7)
     # outputs
-    return (x8/(sin_theta*x10 + cos_theta*(x9 + x5*x10)),)
-
-
-def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`multipliers` over arrays: the result has shape (1, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, theta_dot = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = 1.0/(m*(1.0 - a*cos_theta*(c5*cos_theta)))
-    x1 = sin_theta*x0
-    x2 = c0*(theta_dot*theta_dot)
-    x3 = c3*sin_theta
-    x4 = c4*cos_theta
-    x5 = x1*x4
-    x6 = m*(1.0 - sin_theta*x3 - cos_theta*x5*x3)
-    x7 = cos_theta*(1.0 - c4*sin_theta*x1)*x2/x6
-    x8 = (
-        theta_dot*(sin_theta*y_dot + cos_theta*x_dot)
-        + (sin_theta*x7 - cos_theta*(x1*x2 - x5*x7))
-    )
-    x9 = cos_theta*x0
-    x10 = sin_theta*(1.0 + x9*x4)/x6
-    # outputs
-    return _stacked((1,), y[0], x8/(sin_theta*x10 + cos_theta*(x9 + x5*x10)))
+    return (x9/(sin_theta*x11 + cos_theta*(x10 + x6*x11)),)
 
 
 def correction(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -954,36 +441,6 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     return (0.0, 0.0, 0.0, x5*x8, -x7*x8, x8*(c5*x6 + x0*x7))
 
 
-def correction_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, x_dot, y_dot, _ = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c5*cos_theta
-    x1 = cos_theta*(1.0/(m*(1.0 - a*cos_theta*x0)))
-    x2 = c4*x1
-    x3 = c3*sin_theta
-    x4 = sin_theta*x2
-    x5 = sin_theta*(1.0 + cos_theta*x2)/(m*(1.0 - sin_theta*x3 - cos_theta*x4*x3))
-    x6 = sin_theta*x5
-    x7 = x1 + x4*x5
-    x8 = (cos_theta*y_dot - sin_theta*x_dot)/(x6 + cos_theta*x7)
-    # outputs
-    return _stacked((6,), y[0], 0.0, 0.0, 0.0, x5*x8, -x7*x8, x8*(c5*x6 + x0*x7))
-
-
 def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """`correction` of the rational state.
 
@@ -1027,242 +484,6 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     return (0.0, 0.0, 0.0, x5*x8, -x7*x8, x8*(c5*x6 + x0*x7))
 
 
-def correction_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, _ = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    x0 = c5*cos_theta
-    x1 = cos_theta*(1.0/(m*(1.0 - a*cos_theta*x0)))
-    x2 = c4*x1
-    x3 = c3*sin_theta
-    x4 = sin_theta*x2
-    x5 = sin_theta*(1.0 + cos_theta*x2)/(m*(1.0 - sin_theta*x3 - cos_theta*x4*x3))
-    x6 = sin_theta*x5
-    x7 = x1 + x4*x5
-    x8 = (cos_theta*y_dot - sin_theta*x_dot)/(x6 + cos_theta*x7)
-    # outputs
-    return _stacked((6,), y[0], 0.0, 0.0, 0.0, x5*x8, -x7*x8, x8*(c5*x6 + x0*x7))
-
-
-def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction` of the motion, and changes that make its perturbation tangent to the constraints.
-
-    57 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 13 floats
-        x, y in m; sin_theta, cos_theta in 1; x_dot, y_dot in m/s; theta_dot in rad/s;
-        delta_x, delta_y in m; delta_theta in rad; delta_x_dot, delta_y_dot in m/s;
-        delta_theta_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; J in kg m^2; a in m.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, _, _, _, delta_theta, delta_x_dot, delta_y_dot, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, J, a = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    x0 = c5*cos_theta
-    x1 = cos_theta*(1.0/(m*(1.0 - a*cos_theta*x0)))
-    x2 = c4*x1
-    x3 = c3*sin_theta
-    x4 = sin_theta*x2
-    x5 = sin_theta*(1.0 + cos_theta*x2)/(m*(1.0 - sin_theta*x3 - cos_theta*x4*x3))
-    x6 = sin_theta*x5
-    x7 = x1 + x4*x5
-    x8 = x6 + cos_theta*x7
-    x9 = (cos_theta*y_dot - sin_theta*x_dot)/x8
-    x10 = c5*x6 + x0*x7
-    x11 = (
-        delta_theta*(sin_theta*y_dot + cos_theta*x_dot) + sin_theta*delta_x_dot
-        - cos_theta*delta_y_dot
-    )
-    x12 = x11/x8
-    # outputs
-    return (
-        (0.0, 0.0, 0.0),
-        (x5*x9, -x7*x9, x9*x10),
-        (0.0, 0.0, 0.0),
-        (-x5*x12, x7*x12, -x10*x12),
-    )
-
-
-def correction_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_variational` over arrays: the result has shape (4, 3, ...)."""
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, _, _, _, delta_theta, delta_x_dot, delta_y_dot, _ = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    x0 = c5*cos_theta
-    x1 = cos_theta*(1.0/(m*(1.0 - a*cos_theta*x0)))
-    x2 = c4*x1
-    x3 = c3*sin_theta
-    x4 = sin_theta*x2
-    x5 = sin_theta*(1.0 + cos_theta*x2)/(m*(1.0 - sin_theta*x3 - cos_theta*x4*x3))
-    x6 = sin_theta*x5
-    x7 = x1 + x4*x5
-    x8 = x6 + cos_theta*x7
-    x9 = (cos_theta*y_dot - sin_theta*x_dot)/x8
-    x10 = c5*x6 + x0*x7
-    x11 = (
-        delta_theta*(sin_theta*y_dot + cos_theta*x_dot) + sin_theta*delta_x_dot
-        - cos_theta*delta_y_dot
-    )
-    x12 = x11/x8
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        x5*x9,
-        -x7*x9,
-        x9*x10,
-        0.0,
-        0.0,
-        0.0,
-        -x5*x12,
-        x7*x12,
-        -x10*x12,
-    )
-
-
-def correction_sensitivity(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction_variational` with perturbed parameters, whose perturbations precede them.
-
-    57 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 13 floats
-        x, y in m; sin_theta, cos_theta in 1; x_dot, y_dot in m/s; theta_dot in rad/s;
-        delta_x, delta_y in m; delta_theta in rad; delta_x_dot, delta_y_dot in m/s;
-        delta_theta_dot in rad/s.
-    params : iterable of 6 floats
-        delta_m in kg; delta_J in kg m^2; delta_a in m; m in kg; J in kg m^2; a in m.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, _, _, _, delta_theta, delta_x_dot, delta_y_dot, _ = y.tolist() if hasattr(y, "tolist") else y
-    _, _, _, m, J, a = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    x0 = c5*cos_theta
-    x1 = cos_theta*(1.0/(m*(1.0 - a*cos_theta*x0)))
-    x2 = c4*x1
-    x3 = c3*sin_theta
-    x4 = sin_theta*x2
-    x5 = sin_theta*(1.0 + cos_theta*x2)/(m*(1.0 - sin_theta*x3 - cos_theta*x4*x3))
-    x6 = sin_theta*x5
-    x7 = x1 + x4*x5
-    x8 = x6 + cos_theta*x7
-    x9 = (cos_theta*y_dot - sin_theta*x_dot)/x8
-    x10 = c5*x6 + x0*x7
-    x11 = (
-        delta_theta*(sin_theta*y_dot + cos_theta*x_dot) + sin_theta*delta_x_dot
-        - cos_theta*delta_y_dot
-    )
-    x12 = x11/x8
-    # outputs
-    return (
-        (0.0, 0.0, 0.0),
-        (x5*x9, -x7*x9, x9*x10),
-        (0.0, 0.0, 0.0),
-        (-x5*x12, x7*x12, -x10*x12),
-    )
-
-
-def correction_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_sensitivity` over arrays: the result has shape (4, 3, ...)."""
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, _, _, _, delta_theta, delta_x_dot, delta_y_dot, _ = y
-    _, _, _, m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    x0 = c5*cos_theta
-    x1 = cos_theta*(1.0/(m*(1.0 - a*cos_theta*x0)))
-    x2 = c4*x1
-    x3 = c3*sin_theta
-    x4 = sin_theta*x2
-    x5 = sin_theta*(1.0 + cos_theta*x2)/(m*(1.0 - sin_theta*x3 - cos_theta*x4*x3))
-    x6 = sin_theta*x5
-    x7 = x1 + x4*x5
-    x8 = x6 + cos_theta*x7
-    x9 = (cos_theta*y_dot - sin_theta*x_dot)/x8
-    x10 = c5*x6 + x0*x7
-    x11 = (
-        delta_theta*(sin_theta*y_dot + cos_theta*x_dot) + sin_theta*delta_x_dot
-        - cos_theta*delta_y_dot
-    )
-    x12 = x11/x8
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        x5*x9,
-        -x7*x9,
-        x9*x10,
-        0.0,
-        0.0,
-        0.0,
-        -x5*x12,
-        x7*x12,
-        -x10*x12,
-    )
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -1294,22 +515,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((m, 0.0, x0), (0.0, m, x1), (x0, x1, J + a*c0))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, _, _, _ = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    # intermediate terms
-    x0 = -c0*sin(theta)
-    x1 = c0*cos(theta)
-    # outputs
-    return _stacked((3, 3), y[0], m, 0.0, x0, 0.0, m, x1, x0, x1, J + a*c0)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -1334,17 +539,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     _, _, a = params.tolist() if hasattr(params, "tolist") else params
     # outputs
     return ((x + a*cos(theta), y_ + a*sin(theta)),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, y_, theta, _, _, _ = y
-    _, _, a = params
-    # outputs
-    return _stacked((1, 2), y[0], x + a*cos(theta), y_ + a*sin(theta))
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -1373,17 +567,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((x, y_), (x + a*cos(theta), y_ + a*sin(theta)))
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, y_, theta, _, _, _ = y
-    _, _, a = params
-    # outputs
-    return _stacked((2, 2), y[0], x, y_, x + a*cos(theta), y_ + a*sin(theta))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1409,16 +592,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x, y_, sin(theta), cos(theta), x_dot, y_dot, theta_dot)
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (7, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, y_, theta, x_dot, y_dot, theta_dot = y
-    # outputs
-    return _stacked((7,), y[0], x, y_, sin(theta), cos(theta), x_dot, y_dot, theta_dot)
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1439,50 +612,11 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, J, a = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c1*c2
-    c4 = m*c3
-    c5 = c2*c0
-    # intermediate terms
-    x0 = c5*cos_theta
-    x1 = 1.0/(m*(1.0 - a*cos_theta*x0))
-    x2 = sin_theta*sin_theta
-    x3 = c0*(theta_dot*theta_dot)
-    x4 = cos_theta*x1
-    x5 = c4*x4
-    x6 = sin_theta*x5
-    x7 = m*(1.0 - c3*x2 - c3*cos_theta*sin_theta*x6)
-    x8 = cos_theta*(1.0 - c4*x1*x2)*x3/x7
-    x9 = sin_theta*(1.0 + cos_theta*x5)/x7
-    x10 = sin_theta*x1*x3 - x6*x8
-    x11 = theta_dot*(y_dot*sin_theta + x_dot*cos_theta) + (sin_theta*x8 - cos_theta*x10)
-    x12 = x4 + x6*x9
-    x13 = x11/(sin_theta*x9 + cos_theta*x12)
-    x14 = c5*sin_theta
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        x8 - x9*x13,
-        x10 + x12*x13,
-        x8*x14 - x0*x10 - x13*(x9*x14 + x0*x12),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (7, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     _, _, sin_theta, cos_theta, x_dot, y_dot, theta_dot = y
-    m, J, a = params
+    m, J, a = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*a
+    c0 = a*m
     c1 = a*c0
     c2 = 1.0/(J + c1)
     c3 = c1*c2
@@ -1490,375 +624,97 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     c5 = c2*c0
     # intermediate terms
     x0 = c5*cos_theta
-    x1 = 1.0/(m*(1.0 - a*cos_theta*x0))
-    x2 = sin_theta*sin_theta
-    x3 = c0*(theta_dot*theta_dot)
-    x4 = cos_theta*x1
-    x5 = c4*x4
-    x6 = sin_theta*x5
-    x7 = m*(1.0 - c3*x2 - c3*cos_theta*sin_theta*x6)
-    x8 = cos_theta*(1.0 - c4*x1*x2)*x3/x7
-    x9 = sin_theta*(1.0 + cos_theta*x5)/x7
-    x10 = sin_theta*x1*x3 - x6*x8
-    x11 = theta_dot*(y_dot*sin_theta + x_dot*cos_theta) + (sin_theta*x8 - cos_theta*x10)
-    x12 = x4 + x6*x9
-    x13 = x11/(sin_theta*x9 + cos_theta*x12)
-    x14 = c5*sin_theta
+    x1 = a*cos_theta
+    x2 = 1.0/(m*(1.0 - x0*x1))
+    x3 = sin_theta*sin_theta
+    x4 = theta_dot*theta_dot
+    x5 = cos_theta*x2
+    x6 = c4*x5
+    x7 = sin_theta*x6
+    x8 = 1.0 - c3*x3 - c3*cos_theta*sin_theta*x7
+    x9 = (1.0 - c4*x2*x3)*x4*x1/x8
+    x10 = sin_theta*(1.0 + cos_theta*x6)/(m*x8)
+    x11 = c0*sin_theta*x2*x4 - x7*x9
+    x12 = theta_dot*(y_dot*sin_theta + x_dot*cos_theta) + (sin_theta*x9 - cos_theta*x11)
+    x13 = x5 + x7*x10
+    x14 = x12/(sin_theta*x10 + cos_theta*x13)
+    x15 = c5*sin_theta
     # outputs
-    return _stacked(
-        (7,),
-        y[0],
+    return (
         x_dot,
         y_dot,
         theta_dot*cos_theta,
         -theta_dot*sin_theta,
-        x8 - x9*x13,
-        x10 + x12*x13,
-        x8*x14 - x0*x10 - x13*(x9*x14 + x0*x12),
+        x9 - x10*x14,
+        x11 + x13*x14,
+        x9*x15 - x0*x11 - x14*(x10*x15 + x0*x13),
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    131 operations, 7 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 13 floats
-        x, y in m; sin_theta, cos_theta in 1; x_dot, y_dot in m/s; theta_dot in rad/s;
-        delta_x, delta_y in m; delta_theta in rad; delta_x_dot, delta_y_dot in m/s;
-        delta_theta_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; J in kg m^2; a in m.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, theta_dot, _, _, delta_theta, delta_x_dot, delta_y_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, J, a = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c2*c0
-    c4 = c1*c2
-    c5 = m*c4
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = theta_dot*sin_theta
-    x2 = c3*cos_theta
-    x3 = 1.0/(m*(1.0 - a*cos_theta*x2))
-    x4 = c5*sin_theta
-    x5 = c0*theta_dot
-    x6 = x0*x5
-    x7 = c4*sin_theta
-    x8 = cos_theta*x3
-    x9 = x8*x4
-    x10 = m*(1.0 - sin_theta*x7 - cos_theta*x9*x7)
-    x11 = (1.0 - sin_theta*x3*x4)*x6/x10
-    x12 = c5*cos_theta
-    x13 = sin_theta*(1.0 + x8*x12)/x10
-    x14 = y_dot*sin_theta + x_dot*cos_theta
-    x15 = x1*x5
-    x16 = x3*x15 - x9*x11
-    x17 = x8 + x9*x13
-    x18 = sin_theta*x13 + cos_theta*x17
-    x19 = (theta_dot*x14 + (sin_theta*x11 - cos_theta*x16))/x18
-    x20 = x11 - x13*x19
-    x21 = x16 + x17*x19
-    x22 = c3*sin_theta
-    x23 = x13*x22 + x2*x17
-    x24 = x11*x22 - x2*x16 - x19*x23
-    x25 = c0*x24
-    x26 = delta_theta*(x15 + cos_theta*x19 - cos_theta*x25)
-    x27 = delta_theta_dot*x5
-    x28 = cos_theta*x20 + sin_theta*x21
-    x29 = delta_theta*x28
-    x30 = delta_theta*(x6 + sin_theta*x25 - sin_theta*x19) + 2.0*sin_theta*x27
-    x31 = x30 - x29*x12
-    x32 = (x26 - 2.0*cos_theta*x27 - x4*x29 + x9*x31)/x10
-    x33 = x28 + theta_dot*(y_dot*cos_theta - x_dot*sin_theta)
-    x34 = delta_theta*x33 + x0*delta_x_dot + x1*delta_y_dot + x14*delta_theta_dot
-    x35 = x3*x31 + x9*x32
-    x36 = (x34 - (sin_theta*x32 + cos_theta*x35))/x18
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x20,
-        x21,
-        x24,
-        delta_x_dot,
-        delta_y_dot,
-        delta_theta_dot,
-        -(x32 + x13*x36),
-        x35 + x17*x36,
-        -(x32*x22 + x2*x35 - c3*x29 + x23*x36),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (13, ...)."""
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, theta_dot, _, _, delta_theta, delta_x_dot, delta_y_dot, delta_theta_dot = y
-    m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c2*c0
-    c4 = c1*c2
-    c5 = m*c4
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = theta_dot*sin_theta
-    x2 = c3*cos_theta
-    x3 = 1.0/(m*(1.0 - a*cos_theta*x2))
-    x4 = c5*sin_theta
-    x5 = c0*theta_dot
-    x6 = x0*x5
-    x7 = c4*sin_theta
-    x8 = cos_theta*x3
-    x9 = x8*x4
-    x10 = m*(1.0 - sin_theta*x7 - cos_theta*x9*x7)
-    x11 = (1.0 - sin_theta*x3*x4)*x6/x10
-    x12 = c5*cos_theta
-    x13 = sin_theta*(1.0 + x8*x12)/x10
-    x14 = y_dot*sin_theta + x_dot*cos_theta
-    x15 = x1*x5
-    x16 = x3*x15 - x9*x11
-    x17 = x8 + x9*x13
-    x18 = sin_theta*x13 + cos_theta*x17
-    x19 = (theta_dot*x14 + (sin_theta*x11 - cos_theta*x16))/x18
-    x20 = x11 - x13*x19
-    x21 = x16 + x17*x19
-    x22 = c3*sin_theta
-    x23 = x13*x22 + x2*x17
-    x24 = x11*x22 - x2*x16 - x19*x23
-    x25 = c0*x24
-    x26 = delta_theta*(x15 + cos_theta*x19 - cos_theta*x25)
-    x27 = delta_theta_dot*x5
-    x28 = cos_theta*x20 + sin_theta*x21
-    x29 = delta_theta*x28
-    x30 = delta_theta*(x6 + sin_theta*x25 - sin_theta*x19) + 2.0*sin_theta*x27
-    x31 = x30 - x29*x12
-    x32 = (x26 - 2.0*cos_theta*x27 - x4*x29 + x9*x31)/x10
-    x33 = x28 + theta_dot*(y_dot*cos_theta - x_dot*sin_theta)
-    x34 = delta_theta*x33 + x0*delta_x_dot + x1*delta_y_dot + x14*delta_theta_dot
-    x35 = x3*x31 + x9*x32
-    x36 = (x34 - (sin_theta*x32 + cos_theta*x35))/x18
-    # outputs
-    return _stacked(
-        (13,),
-        y[0],
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x20,
-        x21,
-        x24,
-        delta_x_dot,
-        delta_y_dot,
-        delta_theta_dot,
-        -(x32 + x13*x36),
-        x35 + x17*x36,
-        -(x32*x22 + x2*x35 - c3*x29 + x23*x36),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+constraints_many = _over_arrays(constraints)
+multipliers_many = _over_arrays(multipliers)
+correction_many = _over_arrays(correction)
+correction_rational_many = _over_arrays(correction_rational)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    170 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 13 floats
-        x, y in m; sin_theta, cos_theta in 1; x_dot, y_dot in m/s; theta_dot in rad/s;
-        delta_x, delta_y in m; delta_theta in rad; delta_x_dot, delta_y_dot in m/s;
-        delta_theta_dot in rad/s.
-    params : iterable of 6 floats
-        delta_m in kg; delta_J in kg m^2; delta_a in m; m in kg; J in kg m^2; a in m.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, theta_dot, _, _, delta_theta, delta_x_dot, delta_y_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_J, delta_a, m, J, a = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c2*c0
-    c4 = c1*c2
-    c5 = m*c4
-    c6 = m*delta_a
-    c7 = a*delta_m
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = theta_dot*sin_theta
-    x2 = c3*cos_theta
-    x3 = a*cos_theta
-    x4 = 1.0/(m*(1.0 - x2*x3))
-    x5 = c5*sin_theta
-    x6 = theta_dot*theta_dot
-    x7 = c0*cos_theta
-    x8 = x6*x7
-    x9 = c4*sin_theta
-    x10 = cos_theta*x4
-    x11 = x10*x5
-    x12 = m*(1.0 - sin_theta*x9 - cos_theta*x11*x9)
-    x13 = (1.0 - sin_theta*x4*x5)*x8/x12
-    x14 = sin_theta*(1.0 + c5*cos_theta*x10)/x12
-    x15 = y_dot*sin_theta + x_dot*cos_theta
-    x16 = c0*sin_theta
-    x17 = x6*x16
-    x18 = x4*x17 - x11*x13
-    x19 = x10 + x11*x14
-    x20 = sin_theta*x14 + cos_theta*x19
-    x21 = (theta_dot*x15 + (sin_theta*x13 - cos_theta*x18))/x20
-    x22 = x13 - x14*x21
-    x23 = x18 + x19*x21
-    x24 = c3*sin_theta
-    x25 = x14*x24 + x2*x19
-    x26 = x13*x24 - x2*x18 - x21*x25
-    x27 = theta_dot*delta_theta_dot
-    x28 = a*sin_theta
-    x29 = (
-        2.0*x7*x27 + delta_m*(x6*x3 + x26*x28 - x22) + c6*(cos_theta*x6 + sin_theta*x26)
-        - delta_theta*(x17 + cos_theta*x21 - x26*x7)
-    )
-    x30 = a*x26
-    x31 = sin_theta*x22 - cos_theta*x23
-    x32 = cos_theta*x22 + sin_theta*x23
-    x33 = c7*(x30 - x31) + delta_J*x26 + c6*(2.0*x30 - x31) - c0*delta_theta*x32
-    x34 = (
-        delta_theta*(x8 + x26*x16 - sin_theta*x21) + 2.0*x16*x27
-        + c6*(sin_theta*x6 - cos_theta*x26) - delta_m*(x23 + x26*x3 - x6*x28)
-    )
-    x35 = x34 + x2*x33
-    x36 = (x29 - x33*x24 - x11*x35)/x12
-    x37 = x32 + theta_dot*(y_dot*cos_theta - x_dot*sin_theta)
-    x38 = delta_theta*x37 + x0*delta_x_dot + x1*delta_y_dot + x15*delta_theta_dot
-    x39 = x4*x35 - x11*x36
-    x40 = (x38 + (sin_theta*x36 - cos_theta*x39))/x20
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x22,
-        x23,
-        x26,
-        delta_x_dot,
-        delta_y_dot,
-        delta_theta_dot,
-        x36 - x14*x40,
-        x39 + x19*x40,
-        -(c2*x33 + x2*x39 - x36*x24 + x25*x40),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (13, ...)."""
-    # inputs
-    _, _, sin_theta, cos_theta, x_dot, y_dot, theta_dot, _, _, delta_theta, delta_x_dot, delta_y_dot, delta_theta_dot = y
-    delta_m, delta_J, delta_a, m, J, a = params
-    # terms of the parameters alone
-    c0 = m*a
-    c1 = a*c0
-    c2 = 1.0/(J + c1)
-    c3 = c2*c0
-    c4 = c1*c2
-    c5 = m*c4
-    c6 = m*delta_a
-    c7 = a*delta_m
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = theta_dot*sin_theta
-    x2 = c3*cos_theta
-    x3 = a*cos_theta
-    x4 = 1.0/(m*(1.0 - x2*x3))
-    x5 = c5*sin_theta
-    x6 = theta_dot*theta_dot
-    x7 = c0*cos_theta
-    x8 = x6*x7
-    x9 = c4*sin_theta
-    x10 = cos_theta*x4
-    x11 = x10*x5
-    x12 = m*(1.0 - sin_theta*x9 - cos_theta*x11*x9)
-    x13 = (1.0 - sin_theta*x4*x5)*x8/x12
-    x14 = sin_theta*(1.0 + c5*cos_theta*x10)/x12
-    x15 = y_dot*sin_theta + x_dot*cos_theta
-    x16 = c0*sin_theta
-    x17 = x6*x16
-    x18 = x4*x17 - x11*x13
-    x19 = x10 + x11*x14
-    x20 = sin_theta*x14 + cos_theta*x19
-    x21 = (theta_dot*x15 + (sin_theta*x13 - cos_theta*x18))/x20
-    x22 = x13 - x14*x21
-    x23 = x18 + x19*x21
-    x24 = c3*sin_theta
-    x25 = x14*x24 + x2*x19
-    x26 = x13*x24 - x2*x18 - x21*x25
-    x27 = theta_dot*delta_theta_dot
-    x28 = a*sin_theta
-    x29 = (
-        2.0*x7*x27 + delta_m*(x6*x3 + x26*x28 - x22) + c6*(cos_theta*x6 + sin_theta*x26)
-        - delta_theta*(x17 + cos_theta*x21 - x26*x7)
-    )
-    x30 = a*x26
-    x31 = sin_theta*x22 - cos_theta*x23
-    x32 = cos_theta*x22 + sin_theta*x23
-    x33 = c7*(x30 - x31) + delta_J*x26 + c6*(2.0*x30 - x31) - c0*delta_theta*x32
-    x34 = (
-        delta_theta*(x8 + x26*x16 - sin_theta*x21) + 2.0*x16*x27
-        + c6*(sin_theta*x6 - cos_theta*x26) - delta_m*(x23 + x26*x3 - x6*x28)
-    )
-    x35 = x34 + x2*x33
-    x36 = (x29 - x33*x24 - x11*x35)/x12
-    x37 = x32 + theta_dot*(y_dot*cos_theta - x_dot*sin_theta)
-    x38 = delta_theta*x37 + x0*delta_x_dot + x1*delta_y_dot + x15*delta_theta_dot
-    x39 = x4*x35 - x11*x36
-    x40 = (x38 + (sin_theta*x36 - cos_theta*x39))/x20
-    # outputs
-    return _stacked(
-        (13,),
-        y[0],
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x22,
-        x23,
-        x26,
-        delta_x_dot,
-        delta_y_dot,
-        delta_theta_dot,
-        x36 - x14*x40,
-        x39 + x19*x40,
-        -(c2*x33 + x2*x39 - x36*x24 + x25*x40),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -26,30 +26,6 @@ State y in functions of the rational form:
     theta1_dot [rad/s]
     theta2_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass of a bob
     l [m] > 0, default 1.0: length
@@ -62,19 +38,32 @@ Masses and their positions:
     m at (d + l*sin(theta2), -l*cos(theta2))
 
 Lagrangian:
-    L = g*l*m*cos(theta1) + g*l*m*cos(theta2)
-        - k*(-d + sqrt((l*cos(theta1) - l*cos(theta2))**2 + (d - l*sin(theta1) + l*sin(theta2))**2))**2/2
-        + l**2*m*theta1_dot**2/2 + l**2*m*theta2_dot**2/2
+    L = g*l*m*cos(theta1) + g*l*m*cos(theta2) - k*(-d
+        + sqrt((l*cos(theta1) - l*cos(theta2))**2
+        + (d - l*sin(theta1) + l*sin(theta2))**2))**2/2 + l**2*m*theta1_dot**2/2
+        + l**2*m*theta2_dot**2/2
 
 Equations of motion:
-    d**2*k*l*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
-        - d*k*l**2*sin(theta1)*cos(theta2)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
-        + d*k*l**2*sin(theta2)*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
+    d**2*k*l*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2)
+        + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2
+        + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
+        - d*k*l**2*sin(theta1)*cos(theta2)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2)
+        + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2
+        + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
+        + d*k*l**2*sin(theta2)*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2)
+        + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2
+        + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
         - d*k*l*cos(theta1) + g*l*m*sin(theta1) + k*l**2*sin(theta1)*cos(theta2)
         - k*l**2*sin(theta2)*cos(theta1) + l**2*m*theta1_ddot = 0
-    -d**2*k*l*cos(theta2)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
-        + d*k*l**2*sin(theta1)*cos(theta2)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
-        - d*k*l**2*sin(theta2)*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2) + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2 + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
+    -d**2*k*l*cos(theta2)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2)
+        + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2
+        + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
+        + d*k*l**2*sin(theta1)*cos(theta2)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2)
+        + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2
+        + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
+        - d*k*l**2*sin(theta2)*cos(theta1)/sqrt(d**2 - 2*d*l*sin(theta1) + 2*d*l*sin(theta2)
+        + l**2*sin(theta1)**2 - 2*l**2*sin(theta1)*sin(theta2) + l**2*sin(theta2)**2
+        + l**2*cos(theta1)**2 - 2*l**2*cos(theta1)*cos(theta2) + l**2*cos(theta2)**2)
         + d*k*l*cos(theta2) + g*l*m*sin(theta2) - k*l**2*sin(theta1)*cos(theta2)
         + k*l**2*sin(theta2)*cos(theta1) + l**2*m*theta2_ddot = 0
 
@@ -90,19 +79,18 @@ from math import cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "8e0436fec78e5b36"
+DIGEST = "c186b089c7032026"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -110,36 +98,15 @@ STATES = {
     "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
     "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
     "rational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
     ),
     "variational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
+        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
     "sensitivity": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
+        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "l", "k", "d", "g")
@@ -148,60 +115,25 @@ POSITIVE = ("m", "l", "k", "d")
 LINKS = (("rod", (0, 1)), ("rod", (2, 3)), ("spring", (1, 3)))
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "positions",
-    "points",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "rational_state",
-    "rhs_rational",
-    "rhs_variational",
-    "rhs_sensitivity",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "points",
+    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "rational_state",
+    "rhs_rational", "rhs_variational", "rhs_sensitivity",
 )
 OPERATIONS = {
-    "rhs": (46, 4),
-    "jacobian": (94, 6),
-    "parameter_jacobian": (121, 6),
-    "energy": (38, 4),
-    "mass_matrix": (2, 2),
-    "positions": (11, 0),
-    "points": (11, 0),
-    "hamiltonian_state": (4, 2),
-    "rhs_hamiltonian": (49, 5),
-    "jacobian_hamiltonian": (92, 7),
-    "energy_hamiltonian": (42, 5),
-    "lagrangian_state": (7, 3),
-    "rational_state": (4, 0),
-    "rhs_rational": (48, 4),
-    "rhs_variational": (116, 5),
-    "rhs_sensitivity": (185, 8),
-    "equilibrium": (0, 0),
+    "rhs": (46, 4), "jacobian": (94, 6), "parameter_jacobian": (120, 5), "energy": (38, 4),
+    "mass_matrix": (2, 2), "positions": (11, 0), "points": (11, 0),
+    "hamiltonian_state": (4, 2), "rhs_hamiltonian": (49, 5),
+    "jacobian_hamiltonian": (92, 7), "energy_hamiltonian": (42, 5),
+    "lagrangian_state": (7, 3), "rational_state": (4, 0), "rhs_rational": (48, 4),
+    "rhs_variational": (116, 5), "rhs_sensitivity": (184, 7), "equilibrium": (0, 0),
     "linear": (8, 8),
 }
 UNITS = {
-    "m": "kg",
-    "l": "m",
-    "k": "N/m",
-    "d": "m",
-    "g": "m/s^2",
-    "theta1": "rad",
-    "theta1_dot": "rad/s",
-    "p_theta1": "J s",
-    "delta_theta1": "rad",
-    "delta_theta1_dot": "rad/s",
-    "sin_theta1": "1",
-    "cos_theta1": "1",
-    "theta2": "rad",
-    "theta2_dot": "rad/s",
-    "p_theta2": "J s",
-    "delta_theta2": "rad",
-    "delta_theta2_dot": "rad/s",
-    "sin_theta2": "1",
-    "cos_theta2": "1",
+    "m": "kg", "l": "m", "k": "N/m", "d": "m", "g": "m/s^2", "theta1": "rad",
+    "theta1_dot": "rad/s", "p_theta1": "J s", "delta_theta1": "rad",
+    "delta_theta1_dot": "rad/s", "sin_theta1": "1", "cos_theta1": "1", "theta2": "rad",
+    "theta2_dot": "rad/s", "p_theta2": "J s", "delta_theta2": "rad",
+    "delta_theta2_dot": "rad/s", "sin_theta2": "1", "cos_theta2": "1",
 }
 
 
@@ -266,36 +198,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
     return (theta1_dot, theta2_dot, c0*(c1*x7), -c0*(c1*x8))
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    sin_theta2 = sin(theta2)
-    x2 = sin_theta2 - sin_theta1
-    x3 = l*x2
-    x4 = d + x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = k*(l*(x0*x1 + x2*(2.0*d + x3))/(d + x5))
-    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
-    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
-    # outputs
-    return _stacked((4,), y[0], theta1_dot, theta2_dot, c0*(c1*x7), -c0*(c1*x8))
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -369,221 +271,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, _, _ = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = l*k*c1
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    sin_theta2 = sin(theta2)
-    sin_theta1 = sin(theta1)
-    x2 = sin_theta2 - sin_theta1
-    x3 = l*x2
-    x4 = d + x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
-    x7 = l*x6
-    x8 = sin_theta1*x1 + cos_theta1*x4
-    x9 = x8*x8
-    x10 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
-    )
-    x11 = x5*x5
-    x12 = x6*x11
-    x13 = l*x5
-    x14 = x5*x11
-    x15 = c1*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c3*cos_theta1)
-    x16 = sin_theta2*x1 + cos_theta2*x4
-    x17 = x8*x16
-    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
-    x19 = c0*(c4*(x5*x17 + x18 - x6*x17)/x14)
-    x20 = x16*x16
-    x21 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
-    )
-    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c3*cos_theta2
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        c0*x15,
-        x19,
-        0.0,
-        0.0,
-        x19,
-        -c0*(c1*x22),
-        0.0,
-        0.0,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    121 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
-    params : iterable of 5 floats
-        m in kg; l in m; k in N/m; d in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = m*c0
-    c5 = k*c1
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = x0*x1
-    sin_theta2 = sin(theta2)
-    x3 = sin_theta2 - sin_theta1
-    x4 = l*x3
-    x5 = d + x4
-    x6 = sqrt(c2*x0*x0 + x5*x5)
-    x7 = l*(x2 + x3*(2.0*d + x4))/(d + x6)
-    x8 = sin_theta1*x1 + cos_theta1*x5
-    x9 = x7*x8
-    x10 = c1*(k*x9/x6 - c3*sin_theta1)
-    x11 = x2 + x3*x5
-    x12 = x6*x11
-    x13 = x6*x6
-    x14 = x7*x13
-    x15 = x8*x12 + (sin_theta1*x0 + cos_theta1*x3)*x14 - x11*x9
-    x16 = x6*x13
-    x17 = (1.0 - x5/x6)*x13
-    x18 = sin_theta2*x1 + cos_theta2*x5
-    x19 = x7*x18
-    x20 = c1*(k*x19/x6 + c3*sin_theta2)
-    x21 = x18*x12 + (x0*sin_theta2 + cos_theta2*x3)*x14 - x11*x19
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            -c0*(c1*(g*sin_theta1 + x10)),
-            c0*(c1*(k*x15/x16 - c4*x10)),
-            c0*(c1*x9/x6),
-            -c0*(c5*(x5*x9 + x8*x17 - cos_theta1*x14)/x16),
-            -c0*sin_theta1,
-        ),
-        (
-            c0*(c1*(x20 - g*sin_theta2)),
-            -c0*(c1*(k*x21/x16 - c4*x20)),
-            -c0*(c1*x19/x6),
-            c0*(c5*(x5*x19 + x18*x17 - cos_theta2*x14)/x16),
-            -c0*sin_theta2,
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, _, _ = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = m*c0
-    c5 = k*c1
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = x0*x1
-    sin_theta2 = sin(theta2)
-    x3 = sin_theta2 - sin_theta1
-    x4 = l*x3
-    x5 = d + x4
-    x6 = sqrt(c2*x0*x0 + x5*x5)
-    x7 = l*(x2 + x3*(2.0*d + x4))/(d + x6)
-    x8 = sin_theta1*x1 + cos_theta1*x5
-    x9 = x7*x8
-    x10 = c1*(k*x9/x6 - c3*sin_theta1)
-    x11 = x2 + x3*x5
-    x12 = x6*x11
-    x13 = x6*x6
-    x14 = x7*x13
-    x15 = x8*x12 + (sin_theta1*x0 + cos_theta1*x3)*x14 - x11*x9
-    x16 = x6*x13
-    x17 = (1.0 - x5/x6)*x13
-    x18 = sin_theta2*x1 + cos_theta2*x5
-    x19 = x7*x18
-    x20 = c1*(k*x19/x6 + c3*sin_theta2)
-    x21 = x18*x12 + (x0*sin_theta2 + cos_theta2*x3)*x14 - x11*x19
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -c0*(c1*(g*sin_theta1 + x10)),
-        c0*(c1*(k*x15/x16 - c4*x10)),
-        c0*(c1*x9/x6),
-        -c0*(c5*(x5*x9 + x8*x17 - cos_theta1*x14)/x16),
-        -c0*sin_theta1,
-        c0*(c1*(x20 - g*sin_theta2)),
-        -c0*(c1*(k*x21/x16 - c4*x20)),
-        -c0*(c1*x19/x6),
-        c0*(c5*(x5*x19 + x18*x17 - cos_theta2*x14)/x16),
-        -c0*sin_theta2,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -606,31 +293,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = c0*m
-    c2 = l*m*g
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = x0*x0
-    x2 = sin(theta2) - sin(theta1)
-    x3 = l*x2
-    x4 = d + x3
-    x5 = l*(l*x1 + x2*(2.0*d + x3))/(d + sqrt(c0*x1 + x4*x4))
-    x6 = k*x5*x5 + c1*theta1_dot*theta1_dot + c1*theta2_dot*theta2_dot
-    # outputs
-    return 0.5*x6 - c2*cos_theta1 - c2*cos_theta2
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m, l, k, d, g = params
     # terms of the parameters alone
     c0 = l*l
     c1 = c0*m
@@ -676,16 +338,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((c0, 0.0), (0.0, c0))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    m, l, _, _, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # outputs
-    return _stacked((2, 2), y[0], c0, 0.0, 0.0, c0)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -712,24 +364,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return (
         (l*sin(theta1), -l*cos(theta1)),
         (d + l*sin(theta2), -l*cos(theta2)),
-    )
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, _, _ = y
-    _, l, _, d, _ = params
-    # outputs
-    return _stacked(
-        (2, 2),
-        y[0],
-        l*sin(theta1),
-        -l*cos(theta1),
-        d + l*sin(theta2),
-        -l*cos(theta2),
     )
 
 
@@ -764,28 +398,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (4, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, _, _ = y
-    _, l, _, d, _ = params
-    # outputs
-    return _stacked(
-        (4, 2),
-        y[0],
-        0.0,
-        0.0,
-        l*sin(theta1),
-        -l*cos(theta1),
-        d,
-        0.0,
-        d + l*sin(theta2),
-        -l*cos(theta2),
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -812,17 +424,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     c0 = m*l*l
     # outputs
     return (theta1, theta2, c0*theta1_dot, c0*theta2_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m, l, _, _, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # outputs
-    return _stacked((4,), y[0], theta1, theta2, c0*theta1_dot, c0*theta2_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -870,175 +471,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*(c1*p_theta1), c0*(c1*p_theta2), l*x7, -l*x8)
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/(l*m)
-    c2 = l*l
-    c3 = m*g
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    sin_theta2 = sin(theta2)
-    x2 = sin_theta2 - sin_theta1
-    x3 = l*x2
-    x4 = d + x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = k*(l*(x0*x1 + x2*(2.0*d + x3))/(d + x5))
-    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
-    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
-    # outputs
-    return _stacked((4,), y[0], c0*(c1*p_theta1), c0*(c1*p_theta2), l*x7, -l*x8)
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    92 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
-    params : iterable of 5 floats
-        m in kg; l in m; k in N/m; d in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta1, theta2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(l*m)*(1.0/l)
-    c1 = l*l
-    c2 = m*g
-    c3 = k*c1
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    sin_theta2 = sin(theta2)
-    sin_theta1 = sin(theta1)
-    x2 = sin_theta2 - sin_theta1
-    x3 = l*x2
-    x4 = d + x3
-    x5 = sqrt(c1*x0*x0 + x4*x4)
-    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
-    x7 = l*x6
-    x8 = sin_theta1*x1 + cos_theta1*x4
-    x9 = x8*x8
-    x10 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
-    )
-    x11 = x5*x5
-    x12 = x6*x11
-    x13 = l*x5
-    x14 = x5*x11
-    x15 = l*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c2*cos_theta1)
-    x16 = sin_theta2*x1 + cos_theta2*x4
-    x17 = x8*x16
-    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
-    x19 = c3*(x5*x17 + x18 - x6*x17)/x14
-    x20 = x16*x16
-    x21 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
-    )
-    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c2*cos_theta2
-    # outputs
-    return (
-        (0.0, 0.0, c0, 0.0),
-        (0.0, 0.0, 0.0, c0),
-        (x15, x19, 0.0, 0.0),
-        (x19, -l*x22, 0.0, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, _, _ = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(l*m)*(1.0/l)
-    c1 = l*l
-    c2 = m*g
-    c3 = k*c1
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    sin_theta2 = sin(theta2)
-    sin_theta1 = sin(theta1)
-    x2 = sin_theta2 - sin_theta1
-    x3 = l*x2
-    x4 = d + x3
-    x5 = sqrt(c1*x0*x0 + x4*x4)
-    x6 = l*(x0*x1 + x2*(2.0*d + x3))/(d + x5)
-    x7 = l*x6
-    x8 = sin_theta1*x1 + cos_theta1*x4
-    x9 = x8*x8
-    x10 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
-    )
-    x11 = x5*x5
-    x12 = x6*x11
-    x13 = l*x5
-    x14 = x5*x11
-    x15 = l*(k*(x7*x9 + x10*x12 - x13*x9)/x14 - c2*cos_theta1)
-    x16 = sin_theta2*x1 + cos_theta2*x4
-    x17 = x8*x16
-    x18 = (sin_theta2*sin_theta1 + cos_theta1*cos_theta2)*x12
-    x19 = c3*(x5*x17 + x18 - x6*x17)/x14
-    x20 = x16*x16
-    x21 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
-    )
-    x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c2*cos_theta2
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        c0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c0,
-        x15,
-        x19,
-        0.0,
-        0.0,
-        x19,
-        -l*x22,
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1061,34 +493,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
     m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = c1*g
-    c4 = l*l
-    # intermediate terms
-    x0 = c0*p_theta1*(c2*p_theta1) + c0*p_theta2*(c2*p_theta2)
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    x1 = cos_theta1 - cos_theta2
-    x2 = x1*x1
-    x3 = sin(theta2) - sin(theta1)
-    x4 = l*x3
-    x5 = d + x4
-    x6 = l*(l*x2 + x3*(2.0*d + x4))/(d + sqrt(c4*x2 + x5*x5))
-    x7 = 0.5*x0 - (c3*cos_theta1 + c3*cos_theta2 - 0.5*k*x6*x6)
-    # outputs
-    return x7
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m, l, k, d, g = params
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = l*m
@@ -1139,18 +543,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*(c1*p_theta1), c0*(c1*p_theta2))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m, l, _, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/(l*m)
-    # outputs
-    return _stacked((4,), y[0], theta1, theta2, c0*(c1*p_theta1), c0*(c1*p_theta2))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1183,25 +575,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        sin(theta1),
-        cos(theta1),
-        sin(theta2),
-        cos(theta2),
-        theta1_dot,
-        theta2_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1223,41 +596,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    # intermediate terms
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = sin_theta1 - sin_theta2
-    x3 = l*x2
-    x4 = d - x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = k*(l*(x0*x1 - x2*(2.0*d - x3))/(d + x5))
-    x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
-    x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        c0*(c1*x7),
-        -c0*(c1*x8),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (6, ...)."""
-    from numpy import sqrt
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y
-    m, l, k, d, g = params
+    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = 1.0/m
@@ -1274,9 +615,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x7 = (sin_theta1*x1 + cos_theta1*x4)*x6/x5 - c3*sin_theta1
     x8 = (sin_theta2*x1 + cos_theta2*x4)*x6/x5 + c3*sin_theta2
     # outputs
-    return _stacked(
-        (6,),
-        y[0],
+    return (
         theta1_dot*cos_theta1,
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
@@ -1286,388 +625,70 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    116 operations, 5 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
-        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
-        rad/s.
-    params : iterable of 5 floats
-        m in kg; l in m; k in N/m; d in m; g in m/s^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = l*k
-    # intermediate terms
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = sin_theta1 - sin_theta2
-    x3 = l*x2
-    x4 = d - x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = l*(x0*x1 - x2*(2.0*d - x3))/(d + x5)
-    x7 = sin_theta1*x1 + cos_theta1*x4
-    x8 = x6*x7
-    x9 = sin_theta2*x1 + cos_theta2*x4
-    x10 = x6*x9
-    x11 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
-    )
-    x12 = x5*x5
-    x13 = x6*x12
-    x14 = l*x5
-    x15 = x5*x12
-    x16 = k*(l*x7*x8 + x11*x13 - x7*x7*x14)/x15 - c3*cos_theta1
-    x17 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x13
-    x18 = c4*(x5*x7*x9 + x17 - x9*x8)
-    x19 = c0*(c1*(delta_theta1*x16 + delta_theta2*x18/x15))
-    x20 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
-    )
-    x21 = k*(x9*x9*x14 + x20*x13 - l*x9*x10)/x15 + c3*cos_theta2
-    x22 = c0*(c1*(delta_theta1*x18/x15 - delta_theta2*x21))
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        c0*(c1*(k*x8/x5 - c3*sin_theta1)),
-        -c0*(c1*(k*x10/x5 + c3*sin_theta2)),
-        delta_theta1_dot,
-        delta_theta2_dot,
-        x19,
-        x22,
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin, "sqrt": numpy.sqrt}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (10, ...)."""
-    from numpy import sqrt
-
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
-    m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = l*k
-    # intermediate terms
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = sin_theta1 - sin_theta2
-    x3 = l*x2
-    x4 = d - x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = l*(x0*x1 - x2*(2.0*d - x3))/(d + x5)
-    x7 = sin_theta1*x1 + cos_theta1*x4
-    x8 = x6*x7
-    x9 = sin_theta2*x1 + cos_theta2*x4
-    x10 = x6*x9
-    x11 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
-    )
-    x12 = x5*x5
-    x13 = x6*x12
-    x14 = l*x5
-    x15 = x5*x12
-    x16 = k*(l*x7*x8 + x11*x13 - x7*x7*x14)/x15 - c3*cos_theta1
-    x17 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x13
-    x18 = c4*(x5*x7*x9 + x17 - x9*x8)
-    x19 = c0*(c1*(delta_theta1*x16 + delta_theta2*x18/x15))
-    x20 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
-    )
-    x21 = k*(x9*x9*x14 + x20*x13 - l*x9*x10)/x15 + c3*cos_theta2
-    x22 = c0*(c1*(delta_theta1*x18/x15 - delta_theta2*x21))
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        c0*(c1*(k*x8/x5 - c3*sin_theta1)),
-        -c0*(c1*(k*x10/x5 + c3*sin_theta2)),
-        delta_theta1_dot,
-        delta_theta2_dot,
-        x19,
-        x22,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    185 operations, 8 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
-        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
-        rad/s.
-    params : iterable of 10 floats
-        delta_m in kg; delta_l in m; delta_k in N/m; delta_d in m; delta_g in m/s^2; m in
-        kg; l in m; k in N/m; d in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_l, delta_k, delta_d, delta_g, m, l, k, d, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = l*k
-    c5 = m*c0
-    c6 = k*delta_d
-    c7 = m*delta_g
-    # intermediate terms
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = x0*x1
-    x3 = sin_theta1 - sin_theta2
-    x4 = l*x3
-    x5 = d - x4
-    x6 = sqrt(c2*x0*x0 + x5*x5)
-    x7 = l*(x2 - x3*(2.0*d - x4))/(d + x6)
-    x8 = sin_theta1*x1 + cos_theta1*x5
-    x9 = x7*x8
-    x10 = c1*(k*x9/x6 - c3*sin_theta1)
-    x11 = sin_theta2*x1 + cos_theta2*x5
-    x12 = x7*x11
-    x13 = c1*(k*x12/x6 + c3*sin_theta2)
-    x14 = l*x8
-    x15 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x5 + l*cos_theta1*cos_theta1)
-    )
-    x16 = x6*x6
-    x17 = x7*x16
-    x18 = x6*x8
-    x19 = x6*x16
-    x20 = k*(x9*x14 + x15*x17 - x18*x14)/x19 - c3*cos_theta1
-    x21 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x17
-    x22 = c4*(x11*x18 + x21 - x11*x9)
-    x23 = x2 - x3*x5
-    x24 = x23*x18 + (sin_theta1*x0 - cos_theta1*x3)*x17 - x23*x9
-    x25 = (1.0 - x5/x6)*x16
-    x26 = (
-        delta_theta1*x20 + delta_theta2*x22/x19 + delta_l*(k*x24/x19 - c5*x10)
-        + delta_k*x9/x6 - delta_m*(x10 + g*sin_theta1)
-        - c6*(x5*x9 + x8*x25 - cos_theta1*x17)/x19 - c7*sin_theta1
-    )
-    x27 = l*x11
-    x28 = x6*x11
-    x29 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x5 - l*cos_theta2*cos_theta2)
-    )
-    x30 = k*(x27*x28 + x29*x17 - x12*x27)/x19 + c3*cos_theta2
-    x31 = x23*x28 + (sin_theta2*x0 - cos_theta2*x3)*x17 - x23*x12
-    x32 = (
-        delta_theta2*x30 + delta_l*(k*x31/x19 - c5*x13) + delta_k*x12/x6 + c7*sin_theta2
-        - delta_theta1*x22/x19 - delta_m*(x13 - g*sin_theta2)
-        - c6*(x5*x12 + x11*x25 - cos_theta2*x17)/x19
-    )
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        c0*x10,
-        -c0*x13,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        c0*(c1*x26),
-        -c0*(c1*x32),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
-    from numpy import sqrt
-
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
-    delta_m, delta_l, delta_k, delta_d, delta_g, m, l, k, d, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*l
-    c3 = m*g
-    c4 = l*k
-    c5 = m*c0
-    c6 = k*delta_d
-    c7 = m*delta_g
-    # intermediate terms
-    x0 = cos_theta1 - cos_theta2
-    x1 = l*x0
-    x2 = x0*x1
-    x3 = sin_theta1 - sin_theta2
-    x4 = l*x3
-    x5 = d - x4
-    x6 = sqrt(c2*x0*x0 + x5*x5)
-    x7 = l*(x2 - x3*(2.0*d - x4))/(d + x6)
-    x8 = sin_theta1*x1 + cos_theta1*x5
-    x9 = x7*x8
-    x10 = c1*(k*x9/x6 - c3*sin_theta1)
-    x11 = sin_theta2*x1 + cos_theta2*x5
-    x12 = x7*x11
-    x13 = c1*(k*x12/x6 + c3*sin_theta2)
-    x14 = l*x8
-    x15 = (
-        l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x5 + l*cos_theta1*cos_theta1)
-    )
-    x16 = x6*x6
-    x17 = x7*x16
-    x18 = x6*x8
-    x19 = x6*x16
-    x20 = k*(x9*x14 + x15*x17 - x18*x14)/x19 - c3*cos_theta1
-    x21 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x17
-    x22 = c4*(x11*x18 + x21 - x11*x9)
-    x23 = x2 - x3*x5
-    x24 = x23*x18 + (sin_theta1*x0 - cos_theta1*x3)*x17 - x23*x9
-    x25 = (1.0 - x5/x6)*x16
-    x26 = (
-        delta_theta1*x20 + delta_theta2*x22/x19 + delta_l*(k*x24/x19 - c5*x10)
-        + delta_k*x9/x6 - delta_m*(x10 + g*sin_theta1)
-        - c6*(x5*x9 + x8*x25 - cos_theta1*x17)/x19 - c7*sin_theta1
-    )
-    x27 = l*x11
-    x28 = x6*x11
-    x29 = (
-        l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x5 - l*cos_theta2*cos_theta2)
-    )
-    x30 = k*(x27*x28 + x29*x17 - x12*x27)/x19 + c3*cos_theta2
-    x31 = x23*x28 + (sin_theta2*x0 - cos_theta2*x3)*x17 - x23*x12
-    x32 = (
-        delta_theta2*x30 + delta_l*(k*x31/x19 - c5*x13) + delta_k*x12/x6 + c7*sin_theta2
-        - delta_theta1*x22/x19 - delta_m*(x13 - g*sin_theta2)
-        - c6*(x5*x12 + x11*x25 - cos_theta2*x17)/x19
-    )
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        c0*x10,
-        -c0*x13,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        c0*(c1*x26),
-        -c0*(c1*x32),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m in kg; l in m; k in N/m; d in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2,), params[0], 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0).
-
-    8 operations, 8 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m in kg; l in m; k in N/m; d in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m, l, k, _, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = m*c0
-    c2 = l*(l*k + m*g)
-    c3 = -k*c0
-    # outputs
-    return (((c1, 0.0), (0.0, c1)), ((c2, c3), (c3, c2)))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 2, 2, ...)."""
-    # inputs
-    m, l, k, _, g = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = m*c0
-    c2 = l*(l*k + m*g)
-    c3 = -k*c0
-    # outputs
-    return _stacked((2, 2, 2), params[0], c1, 0.0, 0.0, c1, c2, c3, c3, c2)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -26,30 +26,6 @@ State y in functions of the rational form:
     theta1_dot [rad/s]
     theta2_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-
 Parameters params:
     m1 [kg] > 0, default 1.0: first mass
     m2 [kg] > 0, default 1.0: second mass
@@ -58,8 +34,10 @@ Parameters params:
     g [m/s^2] real, default 9.81: gravitational acceleration
 
 Masses and their positions:
-    m1 at (l1*sin(theta1)/2, -l1*cos(theta1)/2), moment of inertia l1**2*m1/12, orientation theta1
-    m2 at (l1*sin(theta1) + l2*sin(theta2)/2, -l1*cos(theta1) - l2*cos(theta2)/2), moment of inertia l2**2*m2/12, orientation theta2
+    m1 at (l1*sin(theta1)/2, -l1*cos(theta1)/2), moment of inertia l1**2*m1/12,
+        orientation theta1
+    m2 at (l1*sin(theta1) + l2*sin(theta2)/2, -l1*cos(theta1) - l2*cos(theta2)/2),
+        moment of inertia l2**2*m2/12, orientation theta2
 
 Lagrangian:
     L = g*l1*(m1/2 + m2)*cos(theta1) + g*l2*m2*cos(theta2)/2
@@ -85,19 +63,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_bar_pendulum"
-DIGEST = "1b338c7e41b7a77f"
+DIGEST = "b782d87a5dcf346e"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -105,36 +82,15 @@ STATES = {
     "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
     "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
     "rational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
     ),
     "variational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
+        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
     "sensitivity": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
+        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
@@ -143,60 +99,25 @@ POSITIVE = ("m1", "m2", "l1", "l2")
 LINKS = (("rod", (0, 1, 2)),)
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "points",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions", "points",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (39, 8),
-    "jacobian": (98, 9),
-    "parameter_jacobian": (98, 9),
-    "energy": (31, 12),
-    "mass_matrix": (12, 8),
-    "positions": (15, 0),
-    "points": (12, 0),
-    "hamiltonian_state": (19, 4),
-    "rhs_hamiltonian": (47, 11),
-    "jacobian_hamiltonian": (89, 11),
-    "energy_hamiltonian": (40, 9),
-    "lagrangian_state": (27, 6),
-    "rational_state": (4, 0),
-    "rhs_rational": (46, 8),
-    "rhs_variational": (90, 8),
-    "rhs_sensitivity": (144, 20),
-    "equilibrium": (0, 0),
+    "rhs": (39, 8), "jacobian": (98, 9), "parameter_jacobian": (98, 9), "energy": (31, 12),
+    "mass_matrix": (12, 8), "positions": (15, 0), "points": (12, 0),
+    "hamiltonian_state": (19, 4), "rhs_hamiltonian": (47, 11),
+    "jacobian_hamiltonian": (89, 11), "energy_hamiltonian": (40, 9),
+    "lagrangian_state": (27, 6), "rational_state": (4, 0), "rhs_rational": (46, 8),
+    "rhs_variational": (90, 8), "rhs_sensitivity": (144, 20), "equilibrium": (0, 0),
     "linear": (15, 15),
 }
 UNITS = {
-    "m1": "kg",
-    "m2": "kg",
-    "l1": "m",
-    "l2": "m",
-    "g": "m/s^2",
-    "theta1": "rad",
-    "theta1_dot": "rad/s",
-    "p_theta1": "J s",
-    "delta_theta1": "rad",
-    "delta_theta1_dot": "rad/s",
-    "sin_theta1": "1",
-    "cos_theta1": "1",
-    "theta2": "rad",
-    "theta2_dot": "rad/s",
-    "p_theta2": "J s",
-    "delta_theta2": "rad",
-    "delta_theta2_dot": "rad/s",
-    "sin_theta2": "1",
-    "cos_theta2": "1",
+    "m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad",
+    "theta1_dot": "rad/s", "p_theta1": "J s", "delta_theta1": "rad",
+    "delta_theta1_dot": "rad/s", "sin_theta1": "1", "cos_theta1": "1", "theta2": "rad",
+    "theta2_dot": "rad/s", "p_theta2": "J s", "delta_theta2": "rad",
+    "delta_theta2_dot": "rad/s", "sin_theta2": "1", "cos_theta2": "1",
 }
 
 
@@ -256,38 +177,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x4 = (x1 + 1.5*x2*x3)/(2.0*c3 - 1.5*cos_x0*x3)
     # outputs
     return (theta1_dot, theta2_dot, -c0*x4, 1.5*c4*(x2 + cos_x0*x4))
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/l2
-    # intermediate terms
-    x0 = theta1 - theta2
-    sin_x0 = sin(x0)
-    x1 = c1*theta2_dot*theta2_dot*sin_x0 + 2.0*c2*sin(theta1)
-    x2 = l1*theta1_dot*theta1_dot*sin_x0 - g*sin(theta2)
-    cos_x0 = cos(x0)
-    x3 = m2*cos_x0
-    x4 = (x1 + 1.5*x2*x3)/(2.0*c3 - 1.5*cos_x0*x3)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        theta1_dot,
-        theta2_dot,
-        -c0*x4,
-        1.5*c4*(x2 + cos_x0*x4),
-    )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -360,203 +249,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = l1*m2
-    c5 = 1.0/l2
-    # intermediate terms
-    cos_theta1 = cos(theta1)
-    cos_theta2 = cos(theta2)
-    sin_theta1 = sin(theta1)
-    sin_theta2 = sin(theta2)
-    x0 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = cos_theta2*sin_theta1 - cos_theta1*sin_theta2
-    x4 = l1*theta1_dot
-    x5 = x3*x4
-    x6 = theta1_dot*x5 - g*sin_theta2
-    x7 = c1*x3
-    x8 = m2*x0
-    x9 = 2.0*c3 - 1.5*x0*x8
-    x10 = (x1*x7 + 2.0*c2*sin_theta1 + 1.5*x6*x8)/x9
-    x11 = x3*(x6 + x0*x10)
-    x12 = x0*theta1_dot
-    x13 = x4*x12
-    x14 = x3*x10
-    x15 = x13 - x14
-    x16 = 2.0*(0.5*c1*x2 + c2*cos_theta1) - 1.5*m2*x11 + 1.5*x15*x8
-    x17 = x16/x9
-    x18 = x14 - (x13 + g*cos_theta2)
-    x19 = m2*(l2*x2 - 1.5*x11 - 1.5*x0*x18)/x9
-    x20 = c4*x3*x12/x9
-    x21 = theta2_dot*x7/x9
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        -c0*x17,
-        c0*x19,
-        -3.0*c0*x20,
-        -2.0*c0*x21,
-        1.5*c5*(x15 + x0*x17),
-        1.5*c5*(x18 - x0*x19),
-        3.0*c5*(x5 + 1.5*x0*x20),
-        3.0*c5*(x0*x21),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    98 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m2 + 0.5*m1
-    c3 = g*c2
-    c4 = m2 + (1.0/3.0)*m1
-    c5 = c4*c0
-    c6 = 1.0/l2
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = g*sin_theta1
-    x1 = theta1 - theta2
-    sin_x1 = sin(x1)
-    x2 = sin_x1*(theta2_dot*theta2_dot)
-    x3 = theta1_dot*(sin_x1*theta1_dot)
-    sin_theta2 = sin(theta2)
-    x4 = l1*x3 - g*sin_theta2
-    cos_x1 = cos(x1)
-    x5 = m2*cos_x1
-    x6 = 2.0*c4 - 1.5*cos_x1*x5
-    x7 = (c1*x2 + 2.0*c3*sin_theta1 + 1.5*x4*x5)/x6
-    x8 = (3.0*x0 - 2.0*x7)/x6
-    x9 = cos_x1*x7
-    x10 = x4 + x9
-    x11 = cos_x1*x10
-    x12 = (1.5*x11 + 2.0*(x0 + 0.5*l2*x2 - x7))/x6
-    x13 = x3 + c0*x9
-    x14 = (2.0*c5*x7 - 1.5*x13*x5)/x6
-    x15 = c6*x11
-    x16 = m2*(1.5*x15 - (1.5*x15 + x2))/x6
-    x17 = (2.0*c2*sin_theta1 - 1.5*sin_theta2*x5)/x6
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (-(1.0/3.0)*c0*x8, -c0*x12, c0*x14, c0*x16, -c0*x17),
-        (
-            0.5*c6*(cos_x1*x8),
-            1.5*c6*(cos_x1*x12),
-            1.5*c6*(x13 - cos_x1*x14),
-            -1.5*c6*(c6*x10 + cos_x1*x16),
-            -1.5*c6*(sin_theta2 - cos_x1*x17),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m2 + 0.5*m1
-    c3 = g*c2
-    c4 = m2 + (1.0/3.0)*m1
-    c5 = c4*c0
-    c6 = 1.0/l2
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = g*sin_theta1
-    x1 = theta1 - theta2
-    sin_x1 = sin(x1)
-    x2 = sin_x1*(theta2_dot*theta2_dot)
-    x3 = theta1_dot*(sin_x1*theta1_dot)
-    sin_theta2 = sin(theta2)
-    x4 = l1*x3 - g*sin_theta2
-    cos_x1 = cos(x1)
-    x5 = m2*cos_x1
-    x6 = 2.0*c4 - 1.5*cos_x1*x5
-    x7 = (c1*x2 + 2.0*c3*sin_theta1 + 1.5*x4*x5)/x6
-    x8 = (3.0*x0 - 2.0*x7)/x6
-    x9 = cos_x1*x7
-    x10 = x4 + x9
-    x11 = cos_x1*x10
-    x12 = (1.5*x11 + 2.0*(x0 + 0.5*l2*x2 - x7))/x6
-    x13 = x3 + c0*x9
-    x14 = (2.0*c5*x7 - 1.5*x13*x5)/x6
-    x15 = c6*x11
-    x16 = m2*(1.5*x15 - (1.5*x15 + x2))/x6
-    x17 = (2.0*c2*sin_theta1 - 1.5*sin_theta2*x5)/x6
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(1.0/3.0)*c0*x8,
-        -c0*x12,
-        c0*x14,
-        c0*x16,
-        -c0*x17,
-        0.5*c6*(cos_x1*x8),
-        1.5*c6*(cos_x1*x12),
-        1.5*c6*(x13 - cos_x1*x14),
-        -1.5*c6*(c6*x10 + cos_x1*x16),
-        -1.5*c6*(sin_theta2 - cos_x1*x17),
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -579,30 +271,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
     m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*l2
-    c1 = l2*c0
-    c2 = l1*l1*(m2 + (1.0/3.0)*m1)
-    c3 = l1*c0
-    c4 = g*c0
-    c5 = l1*g*(m2 + 0.5*m1)
-    # intermediate terms
-    x0 = (
-        c2*theta1_dot*theta1_dot + c3*theta1_dot*theta2_dot*cos(theta1 - theta2)
-        - c4*cos(theta2)
-    )
-    x1 = (1.0/6.0)*c1*theta2_dot*theta2_dot + 0.5*x0 - c5*cos(theta1)
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
     # terms of the parameters alone
     c0 = m2*l2
     c1 = l2*c0
@@ -651,22 +319,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((l1*l1*(m2 + (1.0/3.0)*m1), x0), (x0, (1.0/3.0)*l2*c0))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, _, _ = y
-    m1, m2, l1, l2, _ = params
-    # terms of the parameters alone
-    c0 = m2*l2
-    c1 = l1*c0
-    # intermediate terms
-    x0 = 0.5*c1*cos(theta1 - theta2)
-    # outputs
-    return _stacked((2, 2), y[0], l1*l1*(m2 + (1.0/3.0)*m1), x0, x0, (1.0/3.0)*l2*c0)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -696,27 +348,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return (
         (0.5*x0, -0.5*x1),
         (x0 + 0.5*l2*sin(theta2), -(x1 + 0.5*l2*cos(theta2))),
-    )
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, _, _ = y
-    _, _, l1, l2, _ = params
-    # intermediate terms
-    x0 = l1*sin(theta1)
-    x1 = l1*cos(theta1)
-    # outputs
-    return _stacked(
-        (2, 2),
-        y[0],
-        0.5*x0,
-        -0.5*x1,
-        x0 + 0.5*l2*sin(theta2),
-        -(x1 + 0.5*l2*cos(theta2)),
     )
 
 
@@ -753,29 +384,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (3, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, _, _ = y
-    _, _, l1, l2, _ = params
-    # intermediate terms
-    x0 = l1*sin(theta1)
-    x1 = l1*cos(theta1)
-    # outputs
-    return _stacked(
-        (3, 2),
-        y[0],
-        0.0,
-        0.0,
-        x0,
-        -x1,
-        x0 + l2*sin(theta2),
-        -(x1 + l2*cos(theta2)),
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -806,30 +414,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x1 = c1*((1.0/3.0)*l2*theta2_dot + 0.5*l1*theta1_dot*x0)
     # outputs
     return (theta1, theta2, l1*(c0*theta1_dot + 0.5*c1*theta2_dot*x0), x1)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, _ = params
-    # terms of the parameters alone
-    c0 = l1*(m2 + (1.0/3.0)*m1)
-    c1 = m2*l2
-    # intermediate terms
-    x0 = cos(theta1 - theta2)
-    x1 = c1*((1.0/3.0)*l2*theta2_dot + 0.5*l1*theta1_dot*x0)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        theta1,
-        theta2,
-        l1*(c0*theta1_dot + 0.5*c1*theta2_dot*x0),
-        x1,
-    )
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -876,164 +460,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = m2 + (1.0/3.0)*m1
-    c3 = 1.0/(m2*l2)
-    c4 = l1*g*(m2 + 0.5*m1)
-    c5 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    x1 = (2.0*c0*p_theta1 - 3.0*c1*cos_x0*p_theta2)/(2.0*c2 - 1.5*m2*cos_x0*cos_x0)
-    x2 = c3*p_theta2 - 0.5*cos_x0*x1
-    x3 = sin(x0)*(x1*x2)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        c0*x1,
-        3.0*c1*x2,
-        -(c4*sin(theta1) + 1.5*m2*x3),
-        0.5*m2*(3.0*x3 - c5*sin(theta2)),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    89 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/(m2*l2)
-    c2 = 1.0/l2
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = l1*g*(m2 + 0.5*m1)
-    c5 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    x1 = c2*cos_x0
-    x2 = 2.0*c3 - 1.5*m2*cos_x0*cos_x0
-    x3 = (2.0*c0*p_theta1 - 3.0*p_theta2*x1)/x2
-    x4 = cos_x0*x3
-    x5 = c1*p_theta2 - 0.5*x4
-    sin_x0 = sin(x0)
-    x6 = m2*sin_x0
-    x7 = (x5 - 0.5*x4)*x6/x2
-    x8 = c0*x7
-    x9 = 3.0*x8
-    x10 = -3.0*x8
-    x11 = c0/x2
-    x12 = x1/x2
-    x13 = sin_x0*x3
-    x14 = x13 - 3.0*cos_x0*x7
-    x15 = c2*x14
-    x16 = 1.5*x15
-    x17 = -1.5*x15
-    x18 = x4*x5
-    x19 = x5*x7
-    x20 = 1.5*m2*x18 + 4.5*x6*x19 + 0.75*x3*x14*x6 + c4*cos(theta1)
-    x21 = x13*x14 + 2.0*(x18 + 3.0*sin_x0*x19)
-    x22 = 1.5*m2*(0.5*x21)
-    # outputs
-    return (
-        (x9, x10, 2.0*c0*x11, -3.0*c0*x12),
-        (x16, x17, -3.0*c2*(cos_x0*x11), 3.0*c2*(c1 + 1.5*cos_x0*x12)),
-        (-x20, x22, x10, x17),
-        (x22, -0.5*m2*(c5*cos(theta2) + 1.5*x21), x9, x16),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/(m2*l2)
-    c2 = 1.0/l2
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = l1*g*(m2 + 0.5*m1)
-    c5 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    x1 = c2*cos_x0
-    x2 = 2.0*c3 - 1.5*m2*cos_x0*cos_x0
-    x3 = (2.0*c0*p_theta1 - 3.0*p_theta2*x1)/x2
-    x4 = cos_x0*x3
-    x5 = c1*p_theta2 - 0.5*x4
-    sin_x0 = sin(x0)
-    x6 = m2*sin_x0
-    x7 = (x5 - 0.5*x4)*x6/x2
-    x8 = c0*x7
-    x9 = 3.0*x8
-    x10 = -3.0*x8
-    x11 = c0/x2
-    x12 = x1/x2
-    x13 = sin_x0*x3
-    x14 = x13 - 3.0*cos_x0*x7
-    x15 = c2*x14
-    x16 = 1.5*x15
-    x17 = -1.5*x15
-    x18 = x4*x5
-    x19 = x5*x7
-    x20 = 1.5*m2*x18 + 4.5*x6*x19 + 0.75*x3*x14*x6 + c4*cos(theta1)
-    x21 = x13*x14 + 2.0*(x18 + 3.0*sin_x0*x19)
-    x22 = 1.5*m2*(0.5*x21)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        x9,
-        x10,
-        2.0*c0*x11,
-        -3.0*c0*x12,
-        x16,
-        x17,
-        -3.0*c2*(cos_x0*x11),
-        3.0*c2*(c1 + 1.5*cos_x0*x12),
-        -x20,
-        x22,
-        x10,
-        x17,
-        x22,
-        -0.5*m2*(c5*cos(theta2) + 1.5*x21),
-        x9,
-        x16,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1056,33 +482,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
     m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = m2 + (1.0/3.0)*m1
-    c3 = m2*l2
-    c4 = 1.0/c3
-    c5 = l1*(m2 + 0.5*m1)
-    # intermediate terms
-    x0 = c0*p_theta1
-    x1 = cos(theta1 - theta2)
-    x2 = c1*p_theta2
-    x3 = (2.0*x0 - 3.0*x1*x2)/(2.0*c2 - 1.5*m2*x1*x1)
-    x4 = (
-        0.5*x0*x3 + 1.5*(c4*p_theta2 - 0.5*x1*x3)*x2
-        - g*(c5*cos(theta1) + 0.5*c3*cos(theta2))
-    )
-    # outputs
-    return x4
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l2
@@ -1137,32 +536,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*x1, 3.0*c1*(c3*p_theta2 - 0.5*x0*x1))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = m2 + (1.0/3.0)*m1
-    c3 = 1.0/(m2*l2)
-    # intermediate terms
-    x0 = cos(theta1 - theta2)
-    x1 = (2.0*c0*p_theta1 - 3.0*c1*x0*p_theta2)/(2.0*c2 - 1.5*m2*x0*x0)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        theta1,
-        theta2,
-        c0*x1,
-        3.0*c1*(c3*p_theta2 - 0.5*x0*x1),
-    )
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1195,25 +568,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        sin(theta1),
-        cos(theta1),
-        sin(theta2),
-        cos(theta2),
-        theta1_dot,
-        theta2_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1235,37 +589,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/l2
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = l1*theta1_dot*theta1_dot*x0 - g*sin_theta2
-    x2 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x3 = m2*x2
-    x4 = c1*theta2_dot*theta2_dot*x0 + 2.0*c2*sin_theta1 + 1.5*x1*x3
-    x5 = x4/(2.0*c3 - 1.5*x2*x3)
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x5,
-        1.5*c4*(x1 + x2*x5),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = m2*l2
@@ -1280,9 +606,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x4 = c1*theta2_dot*theta2_dot*x0 + 2.0*c2*sin_theta1 + 1.5*x1*x3
     x5 = x4/(2.0*c3 - 1.5*x2*x3)
     # outputs
-    return _stacked(
-        (6,),
-        y[0],
+    return (
         theta1_dot*cos_theta1,
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
@@ -1292,360 +616,70 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    90 operations, 8 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
-        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
-        rad/s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/l2
-    # intermediate terms
-    x0 = theta2_dot*theta2_dot
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = c1*x1
-    x3 = l1*theta1_dot
-    x4 = theta1_dot*x3
-    x5 = x1*x4 - g*sin_theta2
-    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x7 = m2*x6
-    x8 = 2.0*c3 - 1.5*x6*x7
-    x9 = (x0*x2 + 2.0*c2*sin_theta1 + 1.5*x5*x7)/x8
-    x10 = x5 + x6*x9
-    x11 = x6*x0
-    x12 = x1*x10
-    x13 = delta_theta1*(0.5*c1*x11 + c2*cos_theta1 - 0.75*m2*x12)
-    x14 = 2.0*(x13 + theta2_dot*delta_theta2_dot*x2) - m2*delta_theta2*(l2*x11 - 1.5*x12)
-    x15 = x6*x4
-    x16 = x1*x9
-    x17 = delta_theta1*(x15 - x16) + delta_theta2*(x16 - (x15 + g*cos_theta2))
-    x18 = x1*delta_theta1_dot*x3 + 0.5*x17
-    x19 = (x14 + 3.0*x18*x7)/x8
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x9,
-        1.5*c4*x10,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x19,
-        3.0*c4*(x18 + 0.5*x6*x19),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/l2
-    # intermediate terms
-    x0 = theta2_dot*theta2_dot
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = c1*x1
-    x3 = l1*theta1_dot
-    x4 = theta1_dot*x3
-    x5 = x1*x4 - g*sin_theta2
-    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x7 = m2*x6
-    x8 = 2.0*c3 - 1.5*x6*x7
-    x9 = (x0*x2 + 2.0*c2*sin_theta1 + 1.5*x5*x7)/x8
-    x10 = x5 + x6*x9
-    x11 = x6*x0
-    x12 = x1*x10
-    x13 = delta_theta1*(0.5*c1*x11 + c2*cos_theta1 - 0.75*m2*x12)
-    x14 = 2.0*(x13 + theta2_dot*delta_theta2_dot*x2) - m2*delta_theta2*(l2*x11 - 1.5*x12)
-    x15 = x6*x4
-    x16 = x1*x9
-    x17 = delta_theta1*(x15 - x16) + delta_theta2*(x16 - (x15 + g*cos_theta2))
-    x18 = x1*delta_theta1_dot*x3 + 0.5*x17
-    x19 = (x14 + 3.0*x18*x7)/x8
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x9,
-        1.5*c4*x10,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x19,
-        3.0*c4*(x18 + 0.5*x6*x19),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    144 operations, 20 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
-        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
-        rad/s.
-    params : iterable of 10 floats
-        delta_m1, delta_m2 in kg; delta_l1, delta_l2 in m; delta_g in m/s^2; m1, m2 in kg;
-        l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m1, delta_m2, delta_l1, delta_l2, delta_g, m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m2 + 0.5*m1
-    c3 = g*c2
-    c4 = m2 + (1.0/3.0)*m1
-    c5 = 1.0/l2
-    c6 = l1*m2
-    c7 = l2*c6
-    c8 = l1*delta_m2
-    c9 = l1*c2*delta_g
-    c10 = c6*delta_l2
-    c11 = l1*delta_m1
-    c12 = c4*delta_l1
-    c13 = m2*c5
-    c14 = l1*l2
-    c15 = l2*delta_l1
-    c16 = l2*delta_g
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = theta1_dot*theta1_dot
-    x4 = l1*x3
-    x5 = x0*x4 - g*sin_theta2
-    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x7 = m2*x6
-    x8 = 2.0*c4 - 1.5*x6*x7
-    x9 = (c1*x2 + 2.0*c3*sin_theta1 + 1.5*x5*x7)/x8
-    x10 = x6*x9
-    x11 = x5 + x10
-    x12 = x6*x1
-    x13 = x0*x11
-    x14 = l1*delta_theta1*(0.5*c1*x12 + c3*cos_theta1 - 0.75*m2*x13)
-    x15 = g*sin_theta1
-    x16 = x6*x11
-    x17 = c10*(x2 + 1.5*c5*x16) - c6*delta_theta2*(l2*x12 - 1.5*x13)
-    x18 = (
-        x14 + c7*theta2_dot*x0*delta_theta2_dot + c8*(x15 + 0.5*l2*x2 + 0.75*x16 - x9)
-        + c9*sin_theta1 + 0.5*x17 - c11*((1.0/3.0)*x9 - 0.5*x15) - c12*x9
-    )
-    x19 = x6*x4
-    x20 = x0*x9
-    x21 = (
-        l2*delta_theta1*(x19 - x20) + l2*delta_theta2*(x20 - (x19 + g*cos_theta2))
-        + c15*(x0*x3 + c0*x10) - delta_l2*x11 - c16*sin_theta2
-    )
-    x22 = c14*theta1_dot*x0*delta_theta1_dot + 0.5*x21
-    x23 = (2.0*c0*x18 + 3.0*c13*x6*x22)/x8
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x9,
-        1.5*c5*x11,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x23,
-        3.0*c5*(c5*x22 + 0.5*x6*x23),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
-    delta_m1, delta_m2, delta_l1, delta_l2, delta_g, m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m2 + 0.5*m1
-    c3 = g*c2
-    c4 = m2 + (1.0/3.0)*m1
-    c5 = 1.0/l2
-    c6 = l1*m2
-    c7 = l2*c6
-    c8 = l1*delta_m2
-    c9 = l1*c2*delta_g
-    c10 = c6*delta_l2
-    c11 = l1*delta_m1
-    c12 = c4*delta_l1
-    c13 = m2*c5
-    c14 = l1*l2
-    c15 = l2*delta_l1
-    c16 = l2*delta_g
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = theta1_dot*theta1_dot
-    x4 = l1*x3
-    x5 = x0*x4 - g*sin_theta2
-    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x7 = m2*x6
-    x8 = 2.0*c4 - 1.5*x6*x7
-    x9 = (c1*x2 + 2.0*c3*sin_theta1 + 1.5*x5*x7)/x8
-    x10 = x6*x9
-    x11 = x5 + x10
-    x12 = x6*x1
-    x13 = x0*x11
-    x14 = l1*delta_theta1*(0.5*c1*x12 + c3*cos_theta1 - 0.75*m2*x13)
-    x15 = g*sin_theta1
-    x16 = x6*x11
-    x17 = c10*(x2 + 1.5*c5*x16) - c6*delta_theta2*(l2*x12 - 1.5*x13)
-    x18 = (
-        x14 + c7*theta2_dot*x0*delta_theta2_dot + c8*(x15 + 0.5*l2*x2 + 0.75*x16 - x9)
-        + c9*sin_theta1 + 0.5*x17 - c11*((1.0/3.0)*x9 - 0.5*x15) - c12*x9
-    )
-    x19 = x6*x4
-    x20 = x0*x9
-    x21 = (
-        l2*delta_theta1*(x19 - x20) + l2*delta_theta2*(x20 - (x19 + g*cos_theta2))
-        + c15*(x0*x3 + c0*x10) - delta_l2*x11 - c16*sin_theta2
-    )
-    x22 = c14*theta1_dot*x0*delta_theta1_dot + 0.5*x21
-    x23 = (2.0*c0*x18 + 3.0*c13*x6*x22)/x8
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x9,
-        1.5*c5*x11,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x23,
-        3.0*c5*(c5*x22 + 0.5*x6*x23),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2,), params[0], 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0).
-
-    15 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*l2
-    c1 = 0.5*l1*c0
-    # outputs
-    return (
-        ((l1*l1*(m2 + (1.0/3.0)*m1), c1), (c1, (1.0/3.0)*l2*c0)),
-        ((l1*g*(m2 + 0.5*m1), 0.0), (0.0, 0.5*g*c0)),
-    )
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 2, 2, ...)."""
-    # inputs
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = m2*l2
-    c1 = 0.5*l1*c0
-    # outputs
-    return _stacked(
-        (2, 2, 2),
-        params[0],
-        l1*l1*(m2 + (1.0/3.0)*m1),
-        c1,
-        c1,
-        (1.0/3.0)*l2*c0,
-        l1*g*(m2 + 0.5*m1),
-        0.0,
-        0.0,
-        0.5*g*c0,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

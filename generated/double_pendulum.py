@@ -26,30 +26,6 @@ State y in functions of the rational form:
     theta1_dot [rad/s]
     theta2_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta1 [1]
-    cos_theta1 [1]
-    sin_theta2 [1]
-    cos_theta2 [1]
-    theta1_dot [rad/s]
-    theta2_dot [rad/s]
-    delta_theta1 [rad]
-    delta_theta2 [rad]
-    delta_theta1_dot [rad/s]
-    delta_theta2_dot [rad/s]
-
 Parameters params:
     m1 [kg] > 0, default 1.0: first mass
     m2 [kg] > 0, default 1.0: second mass
@@ -85,19 +61,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_pendulum"
-DIGEST = "67cb3047e7de4907"
+DIGEST = "c34cf5513872dc71"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -105,36 +80,15 @@ STATES = {
     "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
     "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
     "rational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
     ),
     "variational": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
+        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
     "sensitivity": (
-        "sin_theta1",
-        "cos_theta1",
-        "sin_theta2",
-        "cos_theta2",
-        "theta1_dot",
-        "theta2_dot",
-        "delta_theta1",
-        "delta_theta2",
-        "delta_theta1_dot",
-        "delta_theta2_dot",
+        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
+        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
@@ -142,60 +96,25 @@ DEFAULTS: tuple[float, ...] = (1.0, 1.0, 2.0, 2.0, 9.81)
 POSITIVE = ("m1", "m2", "l1", "l2")
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "reactions",
-    "mass_matrix",
-    "positions",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "reactions", "mass_matrix",
+    "positions", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
+    "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (32, 5),
-    "jacobian": (84, 6),
-    "parameter_jacobian": (78, 6),
-    "energy": (26, 8),
-    "reactions": (48, 4),
-    "mass_matrix": (9, 6),
-    "positions": (12, 0),
-    "hamiltonian_state": (15, 3),
-    "rhs_hamiltonian": (35, 8),
-    "jacobian_hamiltonian": (65, 8),
-    "energy_hamiltonian": (31, 6),
-    "lagrangian_state": (20, 4),
-    "rational_state": (4, 0),
-    "rhs_rational": (39, 5),
-    "rhs_variational": (77, 5),
-    "rhs_sensitivity": (125, 17),
-    "equilibrium": (0, 0),
+    "rhs": (32, 5), "jacobian": (84, 6), "parameter_jacobian": (78, 6), "energy": (26, 8),
+    "reactions": (48, 4), "mass_matrix": (9, 6), "positions": (12, 0),
+    "hamiltonian_state": (15, 3), "rhs_hamiltonian": (35, 8),
+    "jacobian_hamiltonian": (65, 8), "energy_hamiltonian": (31, 6),
+    "lagrangian_state": (20, 4), "rational_state": (4, 0), "rhs_rational": (39, 5),
+    "rhs_variational": (77, 5), "rhs_sensitivity": (125, 17), "equilibrium": (0, 0),
     "linear": (8, 8),
 }
 UNITS = {
-    "m1": "kg",
-    "m2": "kg",
-    "l1": "m",
-    "l2": "m",
-    "g": "m/s^2",
-    "theta1": "rad",
-    "theta1_dot": "rad/s",
-    "p_theta1": "J s",
-    "delta_theta1": "rad",
-    "delta_theta1_dot": "rad/s",
-    "sin_theta1": "1",
-    "cos_theta1": "1",
-    "theta2": "rad",
-    "theta2_dot": "rad/s",
-    "p_theta2": "J s",
-    "delta_theta2": "rad",
-    "delta_theta2_dot": "rad/s",
-    "sin_theta2": "1",
-    "cos_theta2": "1",
+    "m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad",
+    "theta1_dot": "rad/s", "p_theta1": "J s", "delta_theta1": "rad",
+    "delta_theta1_dot": "rad/s", "sin_theta1": "1", "cos_theta1": "1", "theta2": "rad",
+    "theta2_dot": "rad/s", "p_theta2": "J s", "delta_theta2": "rad",
+    "delta_theta2_dot": "rad/s", "sin_theta2": "1", "cos_theta2": "1",
 }
 
 
@@ -253,29 +172,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x3 = x2/(m1 + m2*sin_x0*sin_x0)
     # outputs
     return (theta1_dot, theta2_dot, -c0*x3, c3*(x1 + cos_x0*x3))
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = (m1 + m2)*g
-    c3 = 1.0/l2
-    # intermediate terms
-    x0 = theta1 - theta2
-    sin_x0 = sin(x0)
-    cos_x0 = cos(x0)
-    x1 = l1*theta1_dot*theta1_dot*sin_x0 - g*sin(theta2)
-    x2 = c1*theta2_dot*theta2_dot*sin_x0 + c2*sin(theta1) + m2*cos_x0*x1
-    x3 = x2/(m1 + m2*sin_x0*sin_x0)
-    # outputs
-    return _stacked((4,), y[0], theta1_dot, theta2_dot, -c0*x3, c3*(x1 + cos_x0*x3))
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -346,199 +242,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = (m1 + m2)*g
-    c3 = l1*m2
-    c4 = 1.0/l2
-    # intermediate terms
-    cos_theta2 = cos(theta2)
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    sin_theta2 = sin(theta2)
-    x0 = cos_theta2*cos_theta1 + sin_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = l1*theta1_dot
-    x4 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x5 = x4*theta1_dot
-    x6 = x3*x5 - g*sin_theta2
-    x7 = c1*x4
-    x8 = m2*x0
-    x9 = m2*x4
-    x10 = m1 + x4*x9
-    x11 = (x1*x7 + c2*sin_theta1 + x6*x8)/x10
-    x12 = x6 + x0*x11
-    x13 = x0*theta1_dot*x3
-    x14 = x4*x11
-    x15 = x13 - x14
-    x16 = (c1*x2 + c2*cos_theta1 - x12*x9 + x15*x8)/x10
-    x17 = x14 - (x13 + g*cos_theta2)
-    x18 = m2*(l2*x2 - x4*x12 - x0*x17)/x10
-    x19 = c3*x0*x5/x10
-    x20 = theta2_dot*x7/x10
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        -c0*x16,
-        c0*x18,
-        -2.0*c0*x19,
-        -2.0*c0*x20,
-        c4*(x15 + x0*x16),
-        c4*(x17 - x0*x18),
-        2.0*c4*(x4*x3 + x0*x19),
-        2.0*c4*(x0*x20),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    78 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; theta1_dot, theta2_dot in rad/s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m1 + m2
-    c3 = g*c2
-    c4 = c2*c0
-    c5 = 1.0/l2
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = g*sin_theta1
-    x1 = theta1 - theta2
-    sin_x1 = sin(x1)
-    x2 = theta2_dot*(sin_x1*theta2_dot)
-    x3 = theta1_dot*(sin_x1*theta1_dot)
-    sin_theta2 = sin(theta2)
-    x4 = l1*x3 - g*sin_theta2
-    cos_x1 = cos(x1)
-    x5 = m2*cos_x1
-    x6 = m1 + m2*sin_x1*sin_x1
-    x7 = (c1*x2 + c3*sin_theta1 + x4*x5)/x6
-    x8 = (x0 - x7)/x6
-    x9 = cos_x1*x7
-    x10 = x4 + x9
-    x11 = cos_x1*x10
-    x12 = (x0 + l2*x2 + x11 - x7)/x6
-    x13 = x3 + c0*x9
-    x14 = (c4*x7 - x13*x5)/x6
-    x15 = c5*x11
-    x16 = m2*(x15 - (x15 + x2))/x6
-    x17 = (c2*sin_theta1 - sin_theta2*x5)/x6
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (-c0*x8, -c0*x12, c0*x14, c0*x16, -c0*x17),
-        (
-            c5*(cos_x1*x8),
-            c5*(cos_x1*x12),
-            c5*(x13 - cos_x1*x14),
-            -c5*(c5*x10 + cos_x1*x16),
-            -c5*(sin_theta2 - cos_x1*x17),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m1 + m2
-    c3 = g*c2
-    c4 = c2*c0
-    c5 = 1.0/l2
-    # intermediate terms
-    sin_theta1 = sin(theta1)
-    x0 = g*sin_theta1
-    x1 = theta1 - theta2
-    sin_x1 = sin(x1)
-    x2 = theta2_dot*(sin_x1*theta2_dot)
-    x3 = theta1_dot*(sin_x1*theta1_dot)
-    sin_theta2 = sin(theta2)
-    x4 = l1*x3 - g*sin_theta2
-    cos_x1 = cos(x1)
-    x5 = m2*cos_x1
-    x6 = m1 + m2*sin_x1*sin_x1
-    x7 = (c1*x2 + c3*sin_theta1 + x4*x5)/x6
-    x8 = (x0 - x7)/x6
-    x9 = cos_x1*x7
-    x10 = x4 + x9
-    x11 = cos_x1*x10
-    x12 = (x0 + l2*x2 + x11 - x7)/x6
-    x13 = x3 + c0*x9
-    x14 = (c4*x7 - x13*x5)/x6
-    x15 = c5*x11
-    x16 = m2*(x15 - (x15 + x2))/x6
-    x17 = (c2*sin_theta1 - sin_theta2*x5)/x6
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -c0*x8,
-        -c0*x12,
-        c0*x14,
-        c0*x16,
-        -c0*x17,
-        c5*(cos_x1*x8),
-        c5*(cos_x1*x12),
-        c5*(x13 - cos_x1*x14),
-        -c5*(c5*x10 + cos_x1*x16),
-        -c5*(sin_theta2 - cos_x1*x17),
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -561,31 +264,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta1, theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
     m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*l2
-    c1 = l1*c0
-    c2 = l2*c0
-    c3 = l1*(m2 + m1)
-    c4 = l1*c3
-    c5 = g*c3
-    c6 = g*c0
-    # intermediate terms
-    x0 = c2*theta2_dot*theta2_dot + c4*theta1_dot*theta1_dot
-    x1 = (
-        c1*theta2_dot*theta1_dot*cos(theta1 - theta2) + 0.5*x0 - c5*cos(theta1)
-        - c6*cos(theta2)
-    )
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
     # terms of the parameters alone
     c0 = m2*l2
     c1 = l1*c0
@@ -652,41 +330,6 @@ def reactions(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def reactions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`reactions` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = m2 + m1
-    c1 = l1*c0
-    c2 = m2*l2
-    c3 = g*c0
-    # intermediate terms
-    x0 = theta1_dot*theta1_dot
-    cos_theta2 = cos(theta2)
-    cos_theta1 = cos(theta1)
-    sin_theta1 = sin(theta1)
-    sin_theta2 = sin(theta2)
-    x1 = cos_theta2*cos_theta1 + sin_theta1*sin_theta2
-    x2 = theta2_dot*theta2_dot
-    x3 = c2*x2
-    x4 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x5 = l1*x0
-    x6 = x4*x5 - g*sin_theta2
-    x7 = m2*x4
-    x8 = (x4*x3 + c3*sin_theta1 + m2*x6*x1)/(m1 + x4*x7)
-    # outputs
-    return _stacked(
-        (2,),
-        y[0],
-        c1*x0 + x1*x3 + c3*cos_theta1 - (x6 + x1*x8)*x7,
-        m2*(l2*x2 + x1*x5 + g*cos_theta2 - x4*x8),
-    )
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -718,22 +361,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((l1*l1*(m1 + m2), x0), (x0, l2*c0))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, _, _ = y
-    m1, m2, l1, l2, _ = params
-    # terms of the parameters alone
-    c0 = m2*l2
-    c1 = l1*c0
-    # intermediate terms
-    x0 = c1*cos(theta1 - theta2)
-    # outputs
-    return _stacked((2, 2), y[0], l1*l1*(m1 + m2), x0, x0, l2*c0)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -761,20 +388,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x1 = l1*cos(theta1)
     # outputs
     return ((x0, -x1), (x0 + l2*sin(theta2), -(x1 + l2*cos(theta2))))
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, _, _ = y
-    _, _, l1, l2, _ = params
-    # intermediate terms
-    x0 = l1*sin(theta1)
-    x1 = l1*cos(theta1)
-    # outputs
-    return _stacked((2, 2), y[0], x0, -x1, x0 + l2*sin(theta2), -(x1 + l2*cos(theta2)))
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -806,29 +419,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x0 = cos(theta1 - theta2)
     # outputs
     return (
-        theta1,
-        theta2,
-        l1*(c0*theta1_dot + c1*theta2_dot*x0),
-        c1*(l2*theta2_dot + l1*theta1_dot*x0),
-    )
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, _ = params
-    # terms of the parameters alone
-    c0 = l1*(m1 + m2)
-    c1 = m2*l2
-    # intermediate terms
-    x0 = cos(theta1 - theta2)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
         theta1,
         theta2,
         l1*(c0*theta1_dot + c1*theta2_dot*x0),
@@ -881,157 +471,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = 1.0/(m2*l2)
-    c3 = l1*(m1 + m2)*g
-    c4 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    sin_x0 = sin(x0)
-    x1 = m2*sin_x0
-    x2 = (c0*p_theta1 - c1*p_theta2*cos_x0)/(m1 + sin_x0*x1)
-    x3 = c2*p_theta2 - cos_x0*x2
-    x4 = x2*x3
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        c0*x2,
-        c1*x3,
-        -(c3*sin(theta1) + x1*x4),
-        m2*(sin_x0*x4 - c4*sin(theta2)),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    65 operations, 8 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta1, theta2 in rad; p_theta1, p_theta2 in J s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/(m2*l2)
-    c2 = 1.0/l2
-    c3 = l1*(m2 + m1)*g
-    c4 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    x1 = c2*cos_x0
-    sin_x0 = sin(x0)
-    x2 = m2*sin_x0
-    x3 = m1 + sin_x0*x2
-    x4 = (c0*p_theta1 - p_theta2*x1)/x3
-    x5 = cos_x0*x4
-    x6 = c1*p_theta2 - x5
-    x7 = (x6 - x5)*x2/x3
-    x8 = c0*x7
-    x9 = -x8
-    x10 = c0/x3
-    x11 = x1/x3
-    x12 = sin_x0*x4
-    x13 = x12 - cos_x0*x7
-    x14 = c2*x13
-    x15 = -x14
-    x16 = x5*x6
-    x17 = x6*x7
-    x18 = x12*x13 + (x16 + sin_x0*x17)
-    x19 = m2*x18
-    # outputs
-    return (
-        (x8, x9, c0*x10, -c0*x11),
-        (x14, x15, -c2*(cos_x0*x10), c2*(c1 + cos_x0*x11)),
-        (-(m2*x16 + x2*x17 + x4*x13*x2 + c3*cos(theta1)), x19, x9, x15),
-        (x19, -m2*(x18 + c4*cos(theta2)), x8, x14),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/(m2*l2)
-    c2 = 1.0/l2
-    c3 = l1*(m2 + m1)*g
-    c4 = l2*g
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    x1 = c2*cos_x0
-    sin_x0 = sin(x0)
-    x2 = m2*sin_x0
-    x3 = m1 + sin_x0*x2
-    x4 = (c0*p_theta1 - p_theta2*x1)/x3
-    x5 = cos_x0*x4
-    x6 = c1*p_theta2 - x5
-    x7 = (x6 - x5)*x2/x3
-    x8 = c0*x7
-    x9 = -x8
-    x10 = c0/x3
-    x11 = x1/x3
-    x12 = sin_x0*x4
-    x13 = x12 - cos_x0*x7
-    x14 = c2*x13
-    x15 = -x14
-    x16 = x5*x6
-    x17 = x6*x7
-    x18 = x12*x13 + (x16 + sin_x0*x17)
-    x19 = m2*x18
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        x8,
-        x9,
-        c0*x10,
-        -c0*x11,
-        x14,
-        x15,
-        -c2*(cos_x0*x10),
-        c2*(c1 + cos_x0*x11),
-        -(m2*x16 + x2*x17 + x4*x13*x2 + c3*cos(theta1)),
-        x19,
-        x9,
-        x15,
-        x19,
-        -m2*(x18 + c4*cos(theta2)),
-        x8,
-        x14,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1054,31 +493,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta1, theta2, p_theta1, p_theta2 = y.tolist() if hasattr(y, "tolist") else y
     m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = m2*l2
-    c3 = 1.0/c2
-    c4 = l1*(m1 + m2)
-    # intermediate terms
-    x0 = c0*p_theta1
-    x1 = theta1 - theta2
-    cos_x1 = cos(x1)
-    x2 = c1*p_theta2
-    sin_x1 = sin(x1)
-    x3 = (x0 - cos_x1*x2)/(m1 + m2*sin_x1*sin_x1)
-    x4 = 0.5*(x0*x3 + (c3*p_theta2 - cos_x1*x3)*x2) - g*(c4*cos(theta1) + c2*cos(theta2))
-    # outputs
-    return x4
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, g = params
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = 1.0/l2
@@ -1132,26 +546,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, p_theta1, p_theta2 = y
-    m1, m2, l1, l2, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = 1.0/l2
-    c2 = 1.0/(m2*l2)
-    # intermediate terms
-    x0 = theta1 - theta2
-    cos_x0 = cos(x0)
-    sin_x0 = sin(x0)
-    x1 = (c0*p_theta1 - c1*p_theta2*cos_x0)/(m1 + m2*sin_x0*sin_x0)
-    # outputs
-    return _stacked((4,), y[0], theta1, theta2, c0*x1, c1*(c2*p_theta2 - cos_x0*x1))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1184,25 +578,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta1, theta2, theta1_dot, theta2_dot = y
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        sin(theta1),
-        cos(theta1),
-        sin(theta2),
-        cos(theta2),
-        theta1_dot,
-        theta2_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1224,35 +599,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = (m1 + m2)*g
-    c3 = 1.0/l2
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x2 = l1*theta1_dot*theta1_dot*x0 - g*sin_theta2
-    x3 = c1*theta2_dot*theta2_dot*x0 + c2*sin_theta1 + m2*x1*x2
-    x4 = x3/(m1 + m2*x0*x0)
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x4,
-        c3*(x2 + x1*x4),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot = y
-    m1, m2, l1, l2, g = params
+    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l1
     c1 = m2*l2
@@ -1265,9 +614,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x3 = c1*theta2_dot*theta2_dot*x0 + c2*sin_theta1 + m2*x1*x2
     x4 = x3/(m1 + m2*x0*x0)
     # outputs
-    return _stacked(
-        (6,),
-        y[0],
+    return (
         theta1_dot*cos_theta1,
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
@@ -1277,350 +624,70 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    77 operations, 5 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
-        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
-        rad/s.
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = (m1 + m2)*g
-    c3 = 1.0/l2
-    # intermediate terms
-    x0 = theta2_dot*theta2_dot
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = c1*x1
-    x3 = l1*theta1_dot
-    x4 = theta1_dot*x3
-    x5 = x1*x4 - g*sin_theta2
-    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x7 = m2*x6
-    x8 = m2*x1
-    x9 = m1 + x1*x8
-    x10 = (x0*x2 + c2*sin_theta1 + x5*x7)/x9
-    x11 = x5 + x6*x10
-    x12 = x6*x0
-    x13 = (
-        delta_theta1*(c1*x12 + c2*cos_theta1 - x11*x8) + 2.0*theta2_dot*delta_theta2_dot*x2
-        - m2*delta_theta2*(l2*x12 - x1*x11)
-    )
-    x14 = x6*x4
-    x15 = x1*x10
-    x16 = (
-        delta_theta1*(x14 - x15) + delta_theta2*(x15 - (x14 + g*cos_theta2))
-        + 2.0*x1*delta_theta1_dot*x3
-    )
-    x17 = (x13 + x16*x7)/x9
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x10,
-        c3*x11,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x17,
-        c3*(x16 + x6*x17),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = (m1 + m2)*g
-    c3 = 1.0/l2
-    # intermediate terms
-    x0 = theta2_dot*theta2_dot
-    x1 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x2 = c1*x1
-    x3 = l1*theta1_dot
-    x4 = theta1_dot*x3
-    x5 = x1*x4 - g*sin_theta2
-    x6 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x7 = m2*x6
-    x8 = m2*x1
-    x9 = m1 + x1*x8
-    x10 = (x0*x2 + c2*sin_theta1 + x5*x7)/x9
-    x11 = x5 + x6*x10
-    x12 = x6*x0
-    x13 = (
-        delta_theta1*(c1*x12 + c2*cos_theta1 - x11*x8) + 2.0*theta2_dot*delta_theta2_dot*x2
-        - m2*delta_theta2*(l2*x12 - x1*x11)
-    )
-    x14 = x6*x4
-    x15 = x1*x10
-    x16 = (
-        delta_theta1*(x14 - x15) + delta_theta2*(x15 - (x14 + g*cos_theta2))
-        + 2.0*x1*delta_theta1_dot*x3
-    )
-    x17 = (x13 + x16*x7)/x9
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x10,
-        c3*x11,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x17,
-        c3*(x16 + x6*x17),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+reactions_many = _over_arrays(reactions)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    125 operations, 17 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta1, cos_theta1, sin_theta2, cos_theta2 in 1; theta1_dot, theta2_dot in
-        rad/s; delta_theta1, delta_theta2 in rad; delta_theta1_dot, delta_theta2_dot in
-        rad/s.
-    params : iterable of 10 floats
-        delta_m1, delta_m2 in kg; delta_l1, delta_l2 in m; delta_g in m/s^2; m1, m2 in kg;
-        l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m1, delta_m2, delta_l1, delta_l2, delta_g, m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m1 + m2
-    c3 = c2*g
-    c4 = 1.0/l2
-    c5 = l1*m2
-    c6 = l2*c5
-    c7 = l1*delta_m2
-    c8 = c5*delta_l2
-    c9 = l1*c2*delta_g
-    c10 = l1*delta_m1
-    c11 = c2*delta_l1
-    c12 = m2*c4
-    c13 = l1*l2
-    c14 = l2*delta_l1
-    c15 = l2*delta_g
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x4 = theta1_dot*theta1_dot
-    x5 = l1*x4
-    x6 = x0*x5 - g*sin_theta2
-    x7 = m2*x0
-    x8 = m1 + x0*x7
-    x9 = (c1*x2 + c3*sin_theta1 + m2*x3*x6)/x8
-    x10 = x3*x9
-    x11 = x6 + x10
-    x12 = x3*x1
-    x13 = l1*delta_theta1*(c1*x12 + c3*cos_theta1 - x11*x7)
-    x14 = g*sin_theta1
-    x15 = x3*x11
-    x16 = (
-        x13 + 2.0*c6*theta2_dot*x0*delta_theta2_dot + c7*(x14 + l2*x2 + x15 - x9)
-        + c8*(x2 + c4*x15) + c9*sin_theta1 - c5*delta_theta2*(l2*x12 - x0*x11)
-        - c10*(x9 - x14) - c11*x9
-    )
-    x17 = x3*x5
-    x18 = x0*x9
-    x19 = (
-        l2*delta_theta1*(x17 - x18) + l2*delta_theta2*(x18 - (x17 + g*cos_theta2))
-        + 2.0*c13*theta1_dot*x0*delta_theta1_dot + c14*(x0*x4 + c0*x10) - delta_l2*x11
-        - c15*sin_theta2
-    )
-    x20 = (c0*x16 + c12*x3*x19)/x8
-    # outputs
-    return (
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x9,
-        c4*x11,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x20,
-        c4*(c4*x19 + x3*x20),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_theta1, cos_theta1, sin_theta2, cos_theta2, theta1_dot, theta2_dot, delta_theta1, delta_theta2, delta_theta1_dot, delta_theta2_dot = y
-    delta_m1, delta_m2, delta_l1, delta_l2, delta_g, m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l1
-    c1 = m2*l2
-    c2 = m1 + m2
-    c3 = c2*g
-    c4 = 1.0/l2
-    c5 = l1*m2
-    c6 = l2*c5
-    c7 = l1*delta_m2
-    c8 = c5*delta_l2
-    c9 = l1*c2*delta_g
-    c10 = l1*delta_m1
-    c11 = c2*delta_l1
-    c12 = m2*c4
-    c13 = l1*l2
-    c14 = l2*delta_l1
-    c15 = l2*delta_g
-    # intermediate terms
-    x0 = sin_theta1*cos_theta2 - cos_theta1*sin_theta2
-    x1 = theta2_dot*theta2_dot
-    x2 = x0*x1
-    x3 = cos_theta1*cos_theta2 + sin_theta1*sin_theta2
-    x4 = theta1_dot*theta1_dot
-    x5 = l1*x4
-    x6 = x0*x5 - g*sin_theta2
-    x7 = m2*x0
-    x8 = m1 + x0*x7
-    x9 = (c1*x2 + c3*sin_theta1 + m2*x3*x6)/x8
-    x10 = x3*x9
-    x11 = x6 + x10
-    x12 = x3*x1
-    x13 = l1*delta_theta1*(c1*x12 + c3*cos_theta1 - x11*x7)
-    x14 = g*sin_theta1
-    x15 = x3*x11
-    x16 = (
-        x13 + 2.0*c6*theta2_dot*x0*delta_theta2_dot + c7*(x14 + l2*x2 + x15 - x9)
-        + c8*(x2 + c4*x15) + c9*sin_theta1 - c5*delta_theta2*(l2*x12 - x0*x11)
-        - c10*(x9 - x14) - c11*x9
-    )
-    x17 = x3*x5
-    x18 = x0*x9
-    x19 = (
-        l2*delta_theta1*(x17 - x18) + l2*delta_theta2*(x18 - (x17 + g*cos_theta2))
-        + 2.0*c13*theta1_dot*x0*delta_theta1_dot + c14*(x0*x4 + c0*x10) - delta_l2*x11
-        - c15*sin_theta2
-    )
-    x20 = (c0*x16 + c12*x3*x19)/x8
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        theta1_dot*cos_theta1,
-        -theta1_dot*sin_theta1,
-        theta2_dot*cos_theta2,
-        -theta2_dot*sin_theta2,
-        -c0*x9,
-        c4*x11,
-        delta_theta1_dot,
-        delta_theta2_dot,
-        -c0*x20,
-        c4*(c4*x19 + x3*x20),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2,), params[0], 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0).
-
-    8 operations, 8 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m1, m2 in kg; l1, l2 in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m1, m2, l1, l2, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l1*(m1 + m2)
-    c1 = m2*l2
-    c2 = l1*c1
-    # outputs
-    return (((l1*c0, c2), (c2, l2*c1)), ((g*c0, 0.0), (0.0, g*c1)))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 2, 2, ...)."""
-    # inputs
-    m1, m2, l1, l2, g = params
-    # terms of the parameters alone
-    c0 = l1*(m1 + m2)
-    c1 = m2*l2
-    c2 = l1*c1
-    # outputs
-    return _stacked((2, 2, 2), params[0], l1*c0, c2, c2, l2*c1, g*c0, 0.0, 0.0, g*c1)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -18,20 +18,6 @@ State y in functions of the rational form:
     cos_theta [1]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta [1]
-    cos_theta [1]
-    theta_dot [rad/s]
-    delta_theta [rad]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta [1]
-    cos_theta [1]
-    theta_dot [rad/s]
-    delta_theta [rad]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 1.0: length
@@ -63,19 +49,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "1be50dff1db845b4"
+DIGEST = "a2309edafc64f1da"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -84,18 +69,10 @@ STATES = {
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
-        "sin_theta",
-        "cos_theta",
-        "theta_dot",
-        "delta_theta",
-        "delta_theta_dot",
+        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
     "sensitivity": (
-        "sin_theta",
-        "cos_theta",
-        "theta_dot",
-        "delta_theta",
-        "delta_theta_dot",
+        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "l", "a", "Omega", "c", "g")
@@ -103,74 +80,28 @@ DEFAULTS: tuple[float, ...] = (1.0, 1.0, 0.1, 100.0, 0.0, 9.81)
 POSITIVE = ("m", "l")
 LINKS = (("rod", (0, 1)),)
 TIMED = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "power",
-    "positions",
-    "points",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rhs_rational",
-    "rhs_variational",
-    "rhs_sensitivity",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "power", "positions", "points",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rhs_rational", "rhs_variational", "rhs_sensitivity",
 )
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "power",
-    "positions",
-    "points",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
-    "rhs_rational",
-    "rhs_variational",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "power", "positions", "points",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rational_state", "rhs_rational", "rhs_variational",
     "rhs_sensitivity",
 )
 OPERATIONS = {
-    "rhs": (19, 7),
-    "jacobian": (16, 8),
-    "parameter_jacobian": (43, 9),
-    "energy": (21, 6),
-    "power": (22, 6),
-    "mass_matrix": (2, 2),
-    "positions": (8, 0),
-    "points": (8, 0),
-    "hamiltonian_state": (10, 2),
-    "rhs_hamiltonian": (25, 8),
-    "jacobian_hamiltonian": (34, 10),
-    "energy_hamiltonian": (29, 8),
-    "lagrangian_state": (13, 5),
-    "rational_state": (2, 0),
-    "rhs_rational": (21, 7),
-    "rhs_variational": (31, 7),
-    "rhs_sensitivity": (60, 15),
-    "equilibrium": (0, 0),
+    "rhs": (19, 7), "jacobian": (16, 8), "parameter_jacobian": (43, 9), "energy": (21, 6),
+    "power": (22, 6), "mass_matrix": (2, 2), "positions": (8, 0), "points": (8, 0),
+    "hamiltonian_state": (10, 2), "rhs_hamiltonian": (25, 8),
+    "jacobian_hamiltonian": (34, 10), "energy_hamiltonian": (29, 8),
+    "lagrangian_state": (13, 5), "rational_state": (2, 0), "rhs_rational": (21, 7),
+    "rhs_variational": (31, 7), "rhs_sensitivity": (60, 15), "equilibrium": (0, 0),
 }
 UNITS = {
-    "m": "kg",
-    "l": "m",
-    "a": "m",
-    "Omega": "rad/s",
-    "c": "N m s",
-    "g": "m/s^2",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
-    "cos_theta": "1",
+    "m": "kg", "l": "m", "a": "m", "Omega": "rad/s", "c": "N m s", "g": "m/s^2",
+    "theta": "rad", "theta_dot": "rad/s", "p_theta": "J s", "delta_theta": "rad",
+    "delta_theta_dot": "rad/s", "sin_theta": "1", "cos_theta": "1",
 }
 
 
@@ -227,26 +158,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot, -c0*(c2*x0))
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = g*c1
-    c4 = Omega*Omega*a*c1
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = c3*sin_theta + c*theta_dot - c4*sin_theta*cos(Omega*t)
-    # outputs
-    return _stacked((2,), y[0], theta_dot, -c0*(c2*x0))
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -279,123 +190,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta, _ = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = Omega*Omega*a
-    # outputs
-    return _stacked(
-        (2, 2),
-        y[0],
-        0.0,
-        1.0,
-        -c0*(cos(theta)*(g - c1*cos(Omega*t))),
-        -c0*(c*(1.0/(l*m))),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    43 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 2 floats
-        theta in rad; theta_dot in rad/s.
-    params : iterable of 6 floats
-        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = g*c2
-    c5 = Omega*Omega
-    c6 = a*c5
-    c7 = c2*c6
-    c8 = Omega*a
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = Omega*t
-    cos_x0 = cos(x0)
-    x1 = sin_theta*cos_x0
-    x2 = c3*(c4*sin_theta + c*theta_dot - c7*x1)
-    x3 = sin_theta*(c6*cos_x0 - g)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            c0*(c1*(x2 + x3)),
-            c0*(c0*(2.0*x2 + x3)),
-            c0*(c5*x1),
-            c0*(c8*sin_theta*(2.0*cos_x0 - x0*sin(x0))),
-            -c0*(c3*theta_dot),
-            -c0*sin_theta,
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (2, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/m
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = g*c2
-    c5 = Omega*Omega
-    c6 = a*c5
-    c7 = c2*c6
-    c8 = Omega*a
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = Omega*t
-    cos_x0 = cos(x0)
-    x1 = sin_theta*cos_x0
-    x2 = c3*(c4*sin_theta + c*theta_dot - c7*x1)
-    x3 = sin_theta*(c6*cos_x0 - g)
-    # outputs
-    return _stacked(
-        (2, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c0*(c1*(x2 + x3)),
-        c0*(c0*(2.0*x2 + x3)),
-        c0*(c5*x1),
-        c0*(c8*sin_theta*(2.0*cos_x0 - x0*sin(x0))),
-        -c0*(c3*theta_dot),
-        -c0*sin_theta,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
 
@@ -418,26 +212,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, a, Omega, _, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = a*g
-    c1 = l*l
-    c2 = a*a*Omega*Omega
-    c3 = l*g
-    # intermediate terms
-    x0 = Omega*t
-    sin_x0 = sin(x0)
-    x1 = c0*cos(x0) + 0.5*(c1*theta_dot*theta_dot - c2*sin_x0*sin_x0) - c3*cos(theta)
-    # outputs
-    return m*x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    m, l, a, Omega, _, g = params
     # terms of the parameters alone
     c0 = a*g
     c1 = l*l
@@ -492,32 +266,6 @@ def power(t: float, y: Numbers, params: Numbers) -> float:
     return -x1
 
 
-def power_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`power` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = Omega*a
-    c1 = m*c0
-    c2 = g*c1
-    c3 = Omega*c1
-    c4 = c0*c3
-    c5 = l*c3
-    # intermediate terms
-    x0 = Omega*t
-    sin_x0 = sin(x0)
-    cos_x0 = cos(x0)
-    x1 = (
-        c*theta_dot*theta_dot + c2*sin_x0 + c4*sin_x0*cos_x0
-        - c5*theta_dot*cos_x0*sin(theta)
-    )
-    # outputs
-    return -x1
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -541,14 +289,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # outputs
     return ((m*l*l,),)
-
-
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
-    # inputs
-    m, l, _, _, _, _ = params
-    # outputs
-    return _stacked((1, 1), y[0], m*l*l)
 
 
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -575,17 +315,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     _, l, a, Omega, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # outputs
     return ((l*sin(theta), a*cos(Omega*t) - l*cos(theta)),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    _, l, a, Omega, _, _ = params
-    # outputs
-    return _stacked((1, 2), y[0], l*sin(theta), a*cos(Omega*t) - l*cos(theta))
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -616,19 +345,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, x0), (l*sin(theta), x0 - l*cos(theta)))
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    _, l, a, Omega, _, _ = params
-    # intermediate terms
-    x0 = a*cos(Omega*t)
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, x0, l*sin(theta), x0 - l*cos(theta))
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -656,20 +372,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = Omega*a
     # outputs
     return (theta, c0*(l*theta_dot - c1*sin(theta)*sin(Omega*t)))
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, theta_dot = y
-    m, l, a, Omega, _, _ = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = Omega*a
-    # outputs
-    return _stacked((2,), y[0], theta, c0*(l*theta_dot - c1*sin(theta)*sin(Omega*t)))
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -711,101 +413,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*x1, -(c5*sin_theta + c6*x1 + c7*x0*x1*cos(theta)))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = Omega*a
-    c4 = c1*c3
-    c5 = c1*g
-    c6 = c0*c
-    c7 = m*c3
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin(Omega*t)
-    x1 = c2*(p_theta + c4*sin_theta*x0)
-    # outputs
-    return _stacked((2,), y[0], c0*x1, -(c5*sin_theta + c6*x1 + c7*x0*x1*cos(theta)))
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    34 operations, 10 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 2 floats
-        theta in rad; p_theta in J s.
-    params : iterable of 6 floats
-        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = Omega*a
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = c1*m
-    c5 = c2*g
-    c6 = c0*c
-    c7 = c1*c2
-    c8 = c3*c
-    # intermediate terms
-    x0 = sin(Omega*t)
-    cos_theta = cos(theta)
-    x1 = x0*cos_theta
-    x2 = c1*x1
-    x3 = x0*sin(theta)
-    x4 = c4*x2*x1 + c5*cos_theta + c6*x2 - c4*(c3*(p_theta + c7*x3))*x3
-    # outputs
-    return ((c0*x2, c0*c3), (-x4, -c0*(c8 + x2)))
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = Omega*a
-    c2 = l*m
-    c3 = 1.0/c2
-    c4 = c1*m
-    c5 = c2*g
-    c6 = c0*c
-    c7 = c1*c2
-    c8 = c3*c
-    # intermediate terms
-    x0 = sin(Omega*t)
-    cos_theta = cos(theta)
-    x1 = x0*cos_theta
-    x2 = c1*x1
-    x3 = x0*sin(theta)
-    x4 = c4*x2*x1 + c5*cos_theta + c6*x2 - c4*(c3*(p_theta + c7*x3))*x3
-    # outputs
-    return _stacked((2, 2), y[0], c0*x2, c0*c3, -x4, -c0*(c8 + x2))
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -828,31 +435,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, l, a, Omega, _, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = Omega*a
-    c3 = c1*c2
-    c4 = 1.0/c1
-    c5 = c2*c2
-    c6 = l*g
-    c7 = a*g
-    # intermediate terms
-    x0 = Omega*t
-    sin_x0 = sin(x0)
-    x1 = p_theta + c3*sin(theta)*sin_x0
-    x2 = 0.5*c5*sin_x0*sin_x0 + c6*cos(theta) - c7*cos(x0)
-    # outputs
-    return 0.5*c0*x1*(c4*x1) - m*x2
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, a, Omega, _, g = params
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = l*m
@@ -902,22 +484,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(c2*(p_theta + c3*sin(theta)*sin(Omega*t))))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (2, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, a, Omega, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = Omega*a*c1
-    # outputs
-    return _stacked((2,), y[0], theta, c0*(c2*(p_theta + c3*sin(theta)*sin(Omega*t))))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -941,16 +507,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (sin(theta), cos(theta), theta_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    # outputs
-    return _stacked((3,), y[0], sin(theta), cos(theta), theta_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -987,234 +543,71 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(c2*x0))
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (3, ...)."""
-    from numpy import cos
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    # inputs
-    sin_theta, cos_theta, theta_dot = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = g*c1
-    c4 = Omega*Omega*a*c1
-    # intermediate terms
-    x0 = c*theta_dot + c3*sin_theta - c4*sin_theta*cos(Omega*t)
-    # outputs
-    return _stacked((3,), y[0], theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(c2*x0))
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
 
-    31 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 5 floats
-        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
-        in rad/s.
-    params : iterable of 6 floats
-        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = g*c1
-    c4 = a*(Omega*Omega)
-    c5 = c1*c4
-    # intermediate terms
-    x0 = cos(Omega*t)
-    x1 = c2*(c3*sin_theta + c*theta_dot - c5*sin_theta*x0)
-    x2 = c1*cos_theta*delta_theta*(g - c4*x0) + c*delta_theta_dot
-    # outputs
-    return (
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*x1,
-        delta_theta_dot,
-        -c0*(c2*x2),
-    )
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (5, ...)."""
-    from numpy import cos
-
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
-    m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = g*c1
-    c4 = a*(Omega*Omega)
-    c5 = c1*c4
-    # intermediate terms
-    x0 = cos(Omega*t)
-    x1 = c2*(c3*sin_theta + c*theta_dot - c5*sin_theta*x0)
-    x2 = c1*cos_theta*delta_theta*(g - c4*x0) + c*delta_theta_dot
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*x1,
-        delta_theta_dot,
-        -c0*(c2*x2),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+power_many = _over_arrays(power)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    60 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 5 floats
-        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
-        in rad/s.
-    params : iterable of 12 floats
-        delta_m in kg; delta_l, delta_a in m; delta_Omega in rad/s; delta_c in N m s;
-        delta_g in m/s^2; m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_l, delta_a, delta_Omega, delta_c, delta_g, m, l, a, Omega, c, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = g*c1
-    c4 = Omega*Omega
-    c5 = a*c1
-    c6 = c4*c5
-    c7 = a*c4
-    c8 = c1*delta_g
-    c9 = l*delta_m
-    c10 = m*delta_l
-    c11 = c1*delta_a*c4
-    c12 = Omega*delta_Omega*c5
-    # intermediate terms
-    x0 = Omega*t
-    cos_x0 = cos(x0)
-    x1 = sin_theta*cos_x0
-    x2 = c2*(c3*sin_theta + c*theta_dot - c6*x1)
-    x3 = g - c7*cos_x0
-    x4 = sin_theta*x3
-    x5 = (
-        c1*cos_theta*delta_theta*x3 + c*delta_theta_dot + delta_c*theta_dot + c8*sin_theta
-        - c9*(x2 - x4) - c10*(2.0*x2 - x4) - c11*x1
-        - c12*sin_theta*(2.0*cos_x0 - x0*sin(x0))
-    )
-    # outputs
-    return (
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*x2,
-        delta_theta_dot,
-        -c0*(c2*x5),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
-    delta_m, delta_l, delta_a, delta_Omega, delta_c, delta_g, m, l, a, Omega, c, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = g*c1
-    c4 = Omega*Omega
-    c5 = a*c1
-    c6 = c4*c5
-    c7 = a*c4
-    c8 = c1*delta_g
-    c9 = l*delta_m
-    c10 = m*delta_l
-    c11 = c1*delta_a*c4
-    c12 = Omega*delta_Omega*c5
-    # intermediate terms
-    x0 = Omega*t
-    cos_x0 = cos(x0)
-    x1 = sin_theta*cos_x0
-    x2 = c2*(c3*sin_theta + c*theta_dot - c6*x1)
-    x3 = g - c7*cos_x0
-    x4 = sin_theta*x3
-    x5 = (
-        c1*cos_theta*delta_theta*x3 + c*delta_theta_dot + delta_c*theta_dot + c8*sin_theta
-        - c9*(x2 - x4) - c10*(2.0*x2 - x4) - c11*x1
-        - c12*sin_theta*(2.0*cos_x0 - x0*sin(x0))
-    )
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*x2,
-        delta_theta_dot,
-        -c0*(c2*x5),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 6 floats
-        m in kg; l, a in m; Omega in rad/s; c in N m s; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0).
-    """
-    # inputs
-    # outputs
-    return (0.0,)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (1, ...)."""
-    # inputs
-    # outputs
-    return _stacked((1,), params[0], 0.0)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

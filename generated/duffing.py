@@ -13,18 +13,6 @@ State y = (q, p), in functions of the Hamiltonian form:
     x [m]
     p_x [kg m/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    x [m]
-    x_dot [m/s]
-    delta_x [m]
-    delta_x_dot [m/s]
-
-State y of `rhs_sensitivity`: the same:
-    x [m]
-    x_dot [m/s]
-    delta_x [m]
-    delta_x_dot [m/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass
     k [N/m] real, default 1.0: linear stiffness
@@ -54,25 +42,23 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "0c1b061460e07d4d"
+DIGEST = "0357e624a457729c"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("x", "x_dot"),
-    "hamiltonian": ("x", "p_x"),
+    "lagrangian": ("x", "x_dot"), "hamiltonian": ("x", "p_x"),
     "variational": ("x", "x_dot", "delta_x", "delta_x_dot"),
     "sensitivity": ("x", "x_dot", "delta_x", "delta_x_dot"),
 }
@@ -81,54 +67,23 @@ DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 0.1, 0.2, 1.0)
 POSITIVE = ("m",)
 LINKS = (("spring", (0, 1)), ("plate", (2, 3, 4, 5)))
 TIMED = (
-    "rhs",
-    "parameter_jacobian",
-    "energy",
-    "power",
-    "rhs_hamiltonian",
-    "energy_hamiltonian",
-    "rhs_variational",
-    "rhs_sensitivity",
+    "rhs", "parameter_jacobian", "energy", "power", "rhs_hamiltonian", "energy_hamiltonian",
+    "rhs_variational", "rhs_sensitivity",
 )
 CALLS_FUNCTIONS = (
-    "rhs",
-    "parameter_jacobian",
-    "energy",
-    "power",
-    "rhs_hamiltonian",
-    "energy_hamiltonian",
-    "rhs_variational",
-    "rhs_sensitivity",
+    "rhs", "parameter_jacobian", "energy", "power", "rhs_hamiltonian", "energy_hamiltonian",
+    "rhs_variational", "rhs_sensitivity",
 )
 OPERATIONS = {
-    "rhs": (21, 1),
-    "jacobian": (12, 3),
-    "parameter_jacobian": (33, 2),
-    "energy": (15, 0),
-    "power": (9, 1),
-    "mass_matrix": (0, 0),
-    "positions": (0, 0),
-    "points": (2, 0),
-    "hamiltonian_state": (1, 0),
-    "rhs_hamiltonian": (21, 1),
-    "jacobian_hamiltonian": (11, 3),
-    "energy_hamiltonian": (17, 1),
-    "lagrangian_state": (2, 1),
-    "rhs_variational": (30, 1),
-    "rhs_sensitivity": (46, 2),
+    "rhs": (21, 1), "jacobian": (12, 3), "parameter_jacobian": (33, 2), "energy": (15, 0),
+    "power": (9, 1), "mass_matrix": (0, 0), "positions": (0, 0), "points": (2, 0),
+    "hamiltonian_state": (1, 0), "rhs_hamiltonian": (21, 1),
+    "jacobian_hamiltonian": (11, 3), "energy_hamiltonian": (17, 1),
+    "lagrangian_state": (2, 1), "rhs_variational": (30, 1), "rhs_sensitivity": (46, 2),
 }
 UNITS = {
-    "m": "kg",
-    "k": "N/m",
-    "beta": "N/m^3",
-    "c": "N s/m",
-    "F": "N",
-    "Omega": "rad/s",
-    "x": "m",
-    "x_dot": "m/s",
-    "p_x": "kg m/s",
-    "delta_x": "m",
-    "delta_x_dot": "m/s",
+    "m": "kg", "k": "N/m", "beta": "N/m^3", "c": "N s/m", "F": "N", "Omega": "rad/s",
+    "x": "m", "x_dot": "m/s", "p_x": "kg m/s", "delta_x": "m", "delta_x_dot": "m/s",
 }
 
 
@@ -181,22 +136,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x_dot, -c0*(x1 + c*x_dot))
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (2, ...)."""
-    from numpy import cos
-
-    # inputs
-    x, x_dot = y
-    m, k, beta, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = beta*(x*x)
-    x1 = 0.5*k*x + 0.25*x*x0 - F*cos(Omega*t) + 0.5*x*(k + 1.5*x0)
-    # outputs
-    return _stacked((2,), y[0], x_dot, -c0*(x1 + c*x_dot))
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -228,102 +167,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0), (-0.5*c0*(x1 + (3.0*x0 + x1)), -c0*c))
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    x, _ = y
-    m, k, beta, c, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = beta*x*x
-    x1 = k + 1.5*x0
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0, -0.5*c0*(x1 + (3.0*x0 + x1)), -c0*c)
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    33 operations, 2 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 2 floats
-        x in m; x_dot in m/s.
-    params : iterable of 6 floats
-        m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in rad/s.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    x, x_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, k, beta, c, F, Omega = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = F*c0
-    # intermediate terms
-    x0 = x*x
-    x1 = beta*x0
-    x2 = Omega*t
-    cos_x2 = cos(x2)
-    x3 = 0.5*k*x + 0.25*x*x1 - F*cos_x2 + 0.5*x*(k + 1.5*x1)
-    x4 = c0*x
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            c0*(c0*(x3 + c*x_dot)),
-            -x4,
-            -x4*x0,
-            -c0*x_dot,
-            c0*cos_x2,
-            -c1*t*sin(x2),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (2, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, x_dot = y
-    m, k, beta, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = F*c0
-    # intermediate terms
-    x0 = x*x
-    x1 = beta*x0
-    x2 = Omega*t
-    cos_x2 = cos(x2)
-    x3 = 0.5*k*x + 0.25*x*x1 - F*cos_x2 + 0.5*x*(k + 1.5*x1)
-    x4 = c0*x
-    # outputs
-    return _stacked(
-        (2, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c0*(c0*(x3 + c*x_dot)),
-        -x4,
-        -x4*x0,
-        -c0*x_dot,
-        c0*cos_x2,
-        -c1*t*sin(x2),
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -346,20 +189,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     x, x_dot = y.tolist() if hasattr(y, "tolist") else y
     m, k, beta, _, F, Omega = params.tolist() if hasattr(params, "tolist") else params
-    # intermediate terms
-    x0 = x*x
-    x1 = 0.25*beta*x0*x0 + 0.5*(k*x0 + m*x_dot*x_dot) - F*x*cos(Omega*t)
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    x, x_dot = y
-    m, k, beta, _, F, Omega = params
     # intermediate terms
     x0 = x*x
     x1 = 0.25*beta*x0*x0 + 0.5*(k*x0 + m*x_dot*x_dot) - F*x*cos(Omega*t)
@@ -395,19 +224,6 @@ def power(t: float, y: Numbers, params: Numbers) -> float:
     return -(c*x_dot*x_dot - c0*x*sin(Omega*t))
 
 
-def power_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`power` over arrays: the result has shape (...)."""
-    from numpy import sin
-
-    # inputs
-    x, x_dot = y
-    _, _, _, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = F*Omega
-    # outputs
-    return -(c*x_dot*x_dot - c0*x*sin(Omega*t))
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -433,14 +249,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((m,),)
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
-    # inputs
-    m, _, _, _, _, _ = params
-    # outputs
-    return _stacked((1, 1), y[0], m)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -464,14 +272,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x, _ = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return ((x, 0.0),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 2, ...)."""
-    # inputs
-    x, _ = y
-    # outputs
-    return _stacked((1, 2), y[0], x, 0.0)
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -509,32 +309,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (6, 2, ...)."""
-    # inputs
-    x, _ = y
-    # intermediate terms
-    x0 = x - (3.0/20.0)
-    x1 = (3.0/20.0) + x
-    # outputs
-    return _stacked(
-        (6, 2),
-        y[0],
-        -2.0,
-        0.0,
-        x,
-        0.0,
-        x0,
-        (-3.0/20.0),
-        x1,
-        (-3.0/20.0),
-        x1,
-        (3.0/20.0),
-        x0,
-        (3.0/20.0),
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -559,15 +333,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     m, _, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # outputs
     return (x, m*x_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
-    # inputs
-    x, x_dot = y
-    m, _, _, _, _, _ = params
-    # outputs
-    return _stacked((2,), y[0], x, m*x_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -602,68 +367,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x0, -(x2 + c*x0))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
-    from numpy import cos
-
-    # inputs
-    x, p_x = y
-    m, k, beta, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = c0*p_x
-    x1 = beta*(x*x)
-    x2 = 0.5*k*x + 0.25*x*x1 - F*cos(Omega*t) + 0.5*x*(k + 1.5*x1)
-    # outputs
-    return _stacked((2,), y[0], x0, -(x2 + c*x0))
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    11 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        x in m; p_x in kg m/s.
-    params : iterable of 6 floats
-        m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in rad/s.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    x, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, k, beta, c, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = beta*x*x
-    x1 = k + 1.5*x0
-    # outputs
-    return ((0.0, c0), (-0.5*(x1 + (3.0*x0 + x1)), -c0*c))
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    x, _ = y
-    m, k, beta, c, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = beta*x*x
-    x1 = k + 1.5*x0
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, c0, -0.5*(x1 + (3.0*x0 + x1)), -c0*c)
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -686,21 +389,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     x, p_x = y.tolist() if hasattr(y, "tolist") else y
     m, k, beta, _, F, Omega = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = 0.5*p_x*(c0*p_x) + x*(0.5*k*x + 0.25*beta*x*x*x - F*cos(Omega*t))
-    # outputs
-    return x0
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    x, p_x = y
-    m, k, beta, _, F, Omega = params
     # terms of the parameters alone
     c0 = 1.0/m
     # intermediate terms
@@ -737,142 +425,69 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x, c0*p_x)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (2, ...)."""
-    # inputs
-    x, p_x = y
-    m, _, _, _, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # outputs
-    return _stacked((2,), y[0], x, c0*p_x)
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    30 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 4 floats
-        x in m; x_dot in m/s; delta_x in m; delta_x_dot in m/s.
-    params : iterable of 6 floats
-        m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in rad/s.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    x, x_dot, delta_x, delta_x_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, k, beta, c, F, Omega = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = beta*(x*x)
-    x1 = k + 1.5*x0
-    x2 = 0.5*k*x + 0.25*x*x0 - F*cos(Omega*t) + 0.5*x*x1 + c*x_dot
-    x3 = c0*(0.5*delta_x*(x1 + (3.0*x0 + x1)) + c*delta_x_dot)
-    # outputs
-    return (x_dot, -c0*x2, delta_x_dot, -x3)
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+power_many = _over_arrays(power)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (4, ...)."""
-    from numpy import cos
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    # inputs
-    x, x_dot, delta_x, delta_x_dot = y
-    m, k, beta, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = beta*(x*x)
-    x1 = k + 1.5*x0
-    x2 = 0.5*k*x + 0.25*x*x0 - F*cos(Omega*t) + 0.5*x*x1 + c*x_dot
-    x3 = c0*(0.5*delta_x*(x1 + (3.0*x0 + x1)) + c*delta_x_dot)
-    # outputs
-    return _stacked((4,), y[0], x_dot, -c0*x2, delta_x_dot, -x3)
-
-
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    46 operations, 2 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s.
-    y : iterable of 4 floats
-        x in m; x_dot in m/s; delta_x in m; delta_x_dot in m/s.
-    params : iterable of 12 floats
-        delta_m in kg; delta_k in N/m; delta_beta in N/m^3; delta_c in N s/m; delta_F in N;
-        delta_Omega in rad/s; m in kg; k in N/m; beta in N/m^3; c in N s/m; F in N; Omega in
-        rad/s.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    x, x_dot, delta_x, delta_x_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_k, delta_beta, delta_c, delta_F, delta_Omega, m, k, beta, c, F, Omega = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = F*delta_Omega
-    # intermediate terms
-    x0 = x*x
-    x1 = x*x0
-    x2 = Omega*t
-    cos_x2 = cos(x2)
-    x3 = beta*x0
-    x4 = k + 1.5*x3
-    x5 = 0.5*k*x + 0.25*beta*x1 - F*cos_x2 + 0.5*x*x4 + c*x_dot
-    x6 = c0*x5
-    x7 = (
-        0.5*delta_x*(x4 + (3.0*x3 + x4)) + c*delta_x_dot + delta_k*x + delta_beta*x1
-        + delta_c*x_dot + c1*t*sin(x2) - delta_m*x6 - delta_F*cos_x2
-    )
-    # outputs
-    return (x_dot, -x6, delta_x_dot, -c0*x7)
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, x_dot, delta_x, delta_x_dot = y
-    delta_m, delta_k, delta_beta, delta_c, delta_F, delta_Omega, m, k, beta, c, F, Omega = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = F*delta_Omega
-    # intermediate terms
-    x0 = x*x
-    x1 = x*x0
-    x2 = Omega*t
-    cos_x2 = cos(x2)
-    x3 = beta*x0
-    x4 = k + 1.5*x3
-    x5 = 0.5*k*x + 0.25*beta*x1 - F*cos_x2 + 0.5*x*x4 + c*x_dot
-    x6 = c0*x5
-    x7 = (
-        0.5*delta_x*(x4 + (3.0*x3 + x4)) + c*delta_x_dot + delta_k*x + delta_beta*x1
-        + delta_c*x_dot + c1*t*sin(x2) - delta_m*x6 - delta_F*cos_x2
-    )
-    # outputs
-    return _stacked((4,), y[0], x_dot, -x6, delta_x_dot, -c0*x7)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -25,28 +25,6 @@ State y in functions of the rational form:
     r_dot [m/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    r [m]
-    sin_theta [1]
-    cos_theta [1]
-    r_dot [m/s]
-    theta_dot [rad/s]
-    delta_r [m]
-    delta_theta [rad]
-    delta_r_dot [m/s]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    r [m]
-    sin_theta [1]
-    cos_theta [1]
-    r_dot [m/s]
-    theta_dot [rad/s]
-    delta_r [m]
-    delta_theta [rad]
-    delta_r_dot [m/s]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     k [N/m] > 0, default 100.0: stiffness of the spring
@@ -75,19 +53,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "37af72fa0212b3f3"
+DIGEST = "bad26d858eca526b"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -96,26 +73,12 @@ STATES = {
     "hamiltonian": ("r", "theta", "p_r", "p_theta"),
     "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
     "variational": (
-        "r",
-        "sin_theta",
-        "cos_theta",
-        "r_dot",
-        "theta_dot",
-        "delta_r",
-        "delta_theta",
-        "delta_r_dot",
-        "delta_theta_dot",
+        "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
+        "delta_r_dot", "delta_theta_dot",
     ),
     "sensitivity": (
-        "r",
-        "sin_theta",
-        "cos_theta",
-        "r_dot",
-        "theta_dot",
-        "delta_r",
-        "delta_theta",
-        "delta_r_dot",
-        "delta_theta_dot",
+        "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
+        "delta_r_dot", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "k", "l", "g")
@@ -123,52 +86,22 @@ DEFAULTS: tuple[float, ...] = (1.0, 100.0, 1.0, 9.81)
 POSITIVE = ("m", "k", "l", "r")
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "positions",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "rhs_hamiltonian",
+    "jacobian_hamiltonian", "energy_hamiltonian", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (19, 2),
-    "jacobian": (24, 1),
-    "parameter_jacobian": (22, 3),
-    "energy": (17, 1),
-    "mass_matrix": (2, 0),
-    "positions": (5, 0),
-    "hamiltonian_state": (4, 0),
-    "rhs_hamiltonian": (20, 2),
-    "jacobian_hamiltonian": (27, 2),
-    "energy_hamiltonian": (19, 2),
-    "lagrangian_state": (5, 1),
-    "rational_state": (2, 0),
-    "rhs_rational": (20, 2),
-    "rhs_variational": (45, 2),
-    "rhs_sensitivity": (61, 4),
-    "equilibrium": (4, 4),
-    "linear": (7, 7),
+    "rhs": (19, 2), "jacobian": (24, 1), "parameter_jacobian": (22, 3), "energy": (17, 1),
+    "mass_matrix": (2, 0), "positions": (5, 0), "hamiltonian_state": (4, 0),
+    "rhs_hamiltonian": (20, 2), "jacobian_hamiltonian": (27, 2),
+    "energy_hamiltonian": (19, 2), "lagrangian_state": (5, 1), "rational_state": (2, 0),
+    "rhs_rational": (20, 2), "rhs_variational": (45, 2), "rhs_sensitivity": (61, 4),
+    "equilibrium": (4, 4), "linear": (7, 7),
 }
 UNITS = {
-    "m": "kg",
-    "k": "N/m",
-    "l": "m",
-    "g": "m/s^2",
-    "r": "m",
-    "r_dot": "m/s",
-    "p_r": "kg m/s",
-    "delta_r": "m",
-    "delta_r_dot": "m/s",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
-    "cos_theta": "1",
+    "m": "kg", "k": "N/m", "l": "m", "g": "m/s^2", "r": "m", "r_dot": "m/s",
+    "p_r": "kg m/s", "delta_r": "m", "delta_r_dot": "m/s", "theta": "rad",
+    "theta_dot": "rad/s", "p_theta": "J s", "delta_theta": "rad",
+    "delta_theta_dot": "rad/s", "sin_theta": "1", "cos_theta": "1",
 }
 
 
@@ -221,29 +154,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (r_dot, theta_dot, c0*x0, -(2.0*r_dot*theta_dot + g*sin(theta))/r)
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos(theta))
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        r_dot,
-        theta_dot,
-        c0*x0,
-        -(2.0*r_dot*theta_dot + g*sin(theta))/r,
-    )
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -284,117 +194,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    m, k, _, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # intermediate terms
-    x0 = g*sin(theta)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        -c0*(k - m*theta_dot*theta_dot),
-        -x0,
-        0.0,
-        2.0*theta_dot*r,
-        (x0 + 2.0*theta_dot*r_dot)/r/r,
-        -g*cos(theta)/r,
-        -2.0*theta_dot/r,
-        -2.0*r_dot/r,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    22 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
-    params : iterable of 4 floats
-        m in kg; k in N/m; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    r, theta, _, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = theta_dot*(r*theta_dot)
-    cos_theta = cos(theta)
-    x1 = r - l
-    x2 = x0 + g*cos_theta - c0*(m*x0 - (k*x1 - c1*cos_theta))
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0),
-        (c0*x2, -c0*x1, k*c0, cos_theta),
-        (0.0, 0.0, 0.0, -sin(theta)/r),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, theta_dot = y
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = theta_dot*(r*theta_dot)
-    cos_theta = cos(theta)
-    x1 = r - l
-    x2 = x0 + g*cos_theta - c0*(m*x0 - (k*x1 - c1*cos_theta))
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c0*x2,
-        -c0*x1,
-        k*c0,
-        cos_theta,
-        0.0,
-        0.0,
-        0.0,
-        -sin(theta)/r,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -417,22 +216,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     r, theta, r_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*g
-    # intermediate terms
-    x0 = r - l
-    x1 = k*x0*x0 + m*r_dot*r_dot + m*r*r*theta_dot*theta_dot
-    # outputs
-    return 0.5*x1 - c0*r*cos(theta)
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    m, k, l, g = params
     # terms of the parameters alone
     c0 = m*g
     # intermediate terms
@@ -468,15 +251,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((m, 0.0), (0.0, m*r*r))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    r, _, _, _ = y
-    m, _, _, _ = params
-    # outputs
-    return _stacked((2, 2), y[0], m, 0.0, 0.0, m*r*r)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -500,16 +274,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     r, theta, _, _ = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return ((r*sin(theta), -r*cos(theta)),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, _ = y
-    # outputs
-    return _stacked((1, 2), y[0], r*sin(theta), -r*cos(theta))
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -536,15 +300,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     m, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
     # outputs
     return (r, theta, m*r_dot, m*r*r*theta_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    m, _, _, _ = params
-    # outputs
-    return _stacked((4,), y[0], r, theta, m*r_dot, m*r*r*theta_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -583,108 +338,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, p_r, p_theta = y
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = c0*p_theta/r
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        c0*p_r,
-        x0/r,
-        -(k*(r - l) - c1*cos(theta) - m*x0*x0/r),
-        -c1*r*sin(theta),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    27 operations, 2 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        r in m; theta in rad; p_r in kg m/s; p_theta in J s.
-    params : iterable of 4 floats
-        m in kg; k in N/m; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    r, theta, _, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, k, _, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = c0*p_theta/r
-    x1 = x0/r
-    x2 = x1/r
-    x3 = m*x0
-    x4 = -c1*sin(theta)
-    # outputs
-    return (
-        (0.0, 0.0, c0, 0.0),
-        (-2.0*x2, 0.0, 0.0, c0/r/r),
-        (-(k + 4.0*x1*x3/r - x0*x3/(r*r)), x4, 0.0, 2.0*x2),
-        (x4, -c1*r*cos(theta), 0.0, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, p_theta = y
-    m, k, _, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = c0*p_theta/r
-    x1 = x0/r
-    x2 = x1/r
-    x3 = m*x0
-    x4 = -c1*sin(theta)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        c0,
-        0.0,
-        -2.0*x2,
-        0.0,
-        0.0,
-        c0/r/r,
-        -(k + 4.0*x1*x3/r - x0*x3/(r*r)),
-        x4,
-        0.0,
-        2.0*x2,
-        x4,
-        -c1*r*cos(theta),
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -707,23 +360,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*g
-    c1 = 1.0/m
-    # intermediate terms
-    x0 = r - l
-    x1 = 0.5*k*x0*x0 - c0*r*cos(theta) + 0.5*(p_r*(c1*p_r) + p_theta*(c1*p_theta/r)/r)
-    # outputs
-    return x1
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    r, theta, p_r, p_theta = y
-    m, k, l, g = params
     # terms of the parameters alone
     c0 = m*g
     c1 = 1.0/m
@@ -762,17 +398,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (r, theta, c0*p_r, c0*p_theta/r/r)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    r, theta, p_r, p_theta = y
-    m, _, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    # outputs
-    return _stacked((4,), y[0], r, theta, c0*p_r, c0*p_theta/r/r)
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -796,16 +421,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     r, theta, r_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (r, sin(theta), cos(theta), r_dot, theta_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    # outputs
-    return _stacked((5,), y[0], r, sin(theta), cos(theta), r_dot, theta_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -845,274 +460,69 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (5, ...)."""
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot = y
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = m*theta_dot*theta_dot*r - (k*(r - l) - c1*cos_theta)
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        c0*x0,
-        -(2.0*r_dot*theta_dot + g*sin_theta)/r,
-    )
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    45 operations, 2 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 9 floats
-        r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
-        delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
-    params : iterable of 4 floats
-        m in kg; k in N/m; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = m*theta_dot
-    x1 = theta_dot*r
-    x2 = 2.0*r_dot*theta_dot + g*sin_theta
-    x3 = r*delta_theta_dot
-    x4 = delta_r*(k - theta_dot*x0) + c1*sin_theta*delta_theta - 2.0*x0*x3
-    x5 = g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x1 + r_dot*x3) - x2*delta_r
-    # outputs
-    return (
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        c0*(x0*x1 - (k*(r - l) - c1*cos_theta)),
-        -x2/r,
-        delta_r_dot,
-        delta_theta_dot,
-        -c0*x4,
-        -x5/r/r,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (9, ...)."""
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = m*theta_dot
-    x1 = theta_dot*r
-    x2 = 2.0*r_dot*theta_dot + g*sin_theta
-    x3 = r*delta_theta_dot
-    x4 = delta_r*(k - theta_dot*x0) + c1*sin_theta*delta_theta - 2.0*x0*x3
-    x5 = g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x1 + r_dot*x3) - x2*delta_r
-    # outputs
-    return _stacked(
-        (9,),
-        y[0],
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        c0*(x0*x1 - (k*(r - l) - c1*cos_theta)),
-        -x2/r,
-        delta_r_dot,
-        delta_theta_dot,
-        -c0*x4,
-        -x5/r/r,
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    61 operations, 4 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 9 floats
-        r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
-        delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
-    params : iterable of 8 floats
-        delta_m in kg; delta_k in N/m; delta_l in m; delta_g in m/s^2; m in kg; k in N/m; l
-        in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_k, delta_l, delta_g, m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    c2 = k*delta_l
-    c3 = m*delta_g
-    # intermediate terms
-    x0 = theta_dot*r
-    x1 = m*theta_dot
-    x2 = r - l
-    x3 = c0*(x0*x1 - (k*x2 - c1*cos_theta))
-    x4 = 2.0*r_dot*theta_dot + g*sin_theta
-    x5 = g*cos_theta
-    x6 = (
-        delta_r*(k - theta_dot*x1) + c1*sin_theta*delta_theta
-        + delta_m*(x3 - (theta_dot*x0 + x5)) + delta_k*x2 - c2 - 2.0*m*delta_theta_dot*x0
-        - c3*cos_theta
-    )
-    x7 = (
-        r*delta_theta*x5 + delta_g*sin_theta*r
-        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
-    )
-    # outputs
-    return (
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        x3,
-        -x4/r,
-        delta_r_dot,
-        delta_theta_dot,
-        -c0*x6,
-        -x7/r/r,
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (9, ...)."""
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
-    delta_m, delta_k, delta_l, delta_g, m, k, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    c2 = k*delta_l
-    c3 = m*delta_g
-    # intermediate terms
-    x0 = theta_dot*r
-    x1 = m*theta_dot
-    x2 = r - l
-    x3 = c0*(x0*x1 - (k*x2 - c1*cos_theta))
-    x4 = 2.0*r_dot*theta_dot + g*sin_theta
-    x5 = g*cos_theta
-    x6 = (
-        delta_r*(k - theta_dot*x1) + c1*sin_theta*delta_theta
-        + delta_m*(x3 - (theta_dot*x0 + x5)) + delta_k*x2 - c2 - 2.0*m*delta_theta_dot*x0
-        - c3*cos_theta
-    )
-    x7 = (
-        r*delta_theta*x5 + delta_g*sin_theta*r
-        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
-    )
-    # outputs
-    return _stacked(
-        (9,),
-        y[0],
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        x3,
-        -x4/r,
-        delta_r_dot,
-        delta_theta_dot,
-        -c0*x6,
-        -x7/r/r,
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    4 operations, 4 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 4 floats
-        m in kg; k in N/m; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (g*m/k + l, 0).
-    """
-    # inputs
-    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # outputs
-    return (l + g*m*(1.0/k), 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (2, ...)."""
-    # inputs
-    m, k, l, g = params
-    # outputs
-    return _stacked((2,), params[0], l + g*m*(1.0/k), 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (g*m/k + l, 0).
-
-    7 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 4 floats
-        m in kg; k in N/m; l in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m, k, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*g
-    c1 = l + 1.0/k*c0
-    # outputs
-    return (((m, 0.0), (0.0, m*c1*c1)), ((k, 0.0), (0.0, c1*c0)))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 2, 2, ...)."""
-    # inputs
-    m, k, l, g = params
-    # terms of the parameters alone
-    c0 = m*g
-    c1 = l + 1.0/k*c0
-    # outputs
-    return _stacked((2, 2, 2), params[0], m, 0.0, 0.0, m*c1*c1, k, 0.0, 0.0, c1*c0)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

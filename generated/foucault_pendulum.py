@@ -18,26 +18,6 @@ State y = (q, p), in functions of the Hamiltonian form:
     p_x [kg m/s]
     p_y [kg m/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    x [m]
-    y [m]
-    x_dot [m/s]
-    y_dot [m/s]
-    delta_x [m]
-    delta_y [m]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-
-State y of `rhs_sensitivity`: the same:
-    x [m]
-    y [m]
-    x_dot [m/s]
-    y_dot [m/s]
-    delta_x [m]
-    delta_y [m]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-
 Parameters params:
     m [kg] > 0, default 28.0: mass
     l [m] > 0, default 67.0: length
@@ -46,12 +26,18 @@ Parameters params:
     latitude [rad] real, default 0.8527: latitude
 
 Masses and their positions:
-    m at (-x*sin(Omega*t) + (-y*sin(latitude) - sqrt(l**2 - x**2 - y**2)*cos(latitude))*cos(Omega*t), x*cos(Omega*t) + (-y*sin(latitude) - sqrt(l**2 - x**2 - y**2)*cos(latitude))*sin(Omega*t), y*cos(latitude) - sqrt(l**2 - x**2 - y**2)*sin(latitude))
+    m at (-x*sin(Omega*t)
+        + (-y*sin(latitude) - sqrt(l**2 - x**2 - y**2)*cos(latitude))*cos(Omega*t),
+        x*cos(Omega*t)
+        + (-y*sin(latitude) - sqrt(l**2 - x**2 - y**2)*cos(latitude))*sin(Omega*t),
+        y*cos(latitude) - sqrt(l**2 - x**2 - y**2)*sin(latitude))
 
 Lagrangian:
-    L = Omega**2*m*(x**2*sin(latitude)**2 + x**2*cos(latitude)**2 + (y*sin(latitude) + sqrt(l**2 - x**2 - y**2)*cos(latitude))**2)/2
+    L = Omega**2*m*(x**2*sin(latitude)**2 + x**2*cos(latitude)**2
+        + (y*sin(latitude) + sqrt(l**2 - x**2 - y**2)*cos(latitude))**2)/2
         + Omega*m*x*y_dot*(-y*cos(latitude)/sqrt(l**2 - x**2 - y**2) + sin(latitude))
-        - Omega*m*x_dot*(y*sin(latitude) + (x**2/sqrt(l**2 - x**2 - y**2) + sqrt(l**2 - x**2 - y**2))*cos(latitude))
+        - Omega*m*x_dot*(y*sin(latitude)
+        + (x**2/sqrt(l**2 - x**2 - y**2) + sqrt(l**2 - x**2 - y**2))*cos(latitude))
         + g*m*sqrt(l**2 - x**2 - y**2) + m*x*x_dot*y*y_dot/(l**2 - x**2 - y**2)
         + m*x_dot**2*(x**2/(l**2 - x**2 - y**2) + 1)/2
         + m*y_dot**2*(y**2/(l**2 - x**2 - y**2) + 1)/2
@@ -59,27 +45,29 @@ Lagrangian:
 Equations of motion:
     Omega**2*m*x*y*sin(latitude)*cos(latitude)/sqrt(l**2 - x**2 - y**2)
         - Omega**2*m*x*sin(latitude)**2
-        + 2*Omega*m*x**2*y*y_dot*cos(latitude)/(2*l**2*sqrt(l**2 - x**2 - y**2) - 2*x**2*sqrt(l**2 - x**2 - y**2) - 2*y**2*sqrt(l**2 - x**2 - y**2))
-        - Omega*m*x**2*y*y_dot*cos(latitude)/(l**2*sqrt(l**2 - x**2 - y**2) - x**2*sqrt(l**2 - x**2 - y**2) - y**2*sqrt(l**2 - x**2 - y**2))
+        + 2*Omega*m*x**2*y*y_dot*cos(latitude)/(2*l**2*sqrt(l**2 - x**2 - y**2)
+        - 2*x**2*sqrt(l**2 - x**2 - y**2) - 2*y**2*sqrt(l**2 - x**2 - y**2))
+        - Omega*m*x**2*y*y_dot*cos(latitude)/(l**2*sqrt(l**2 - x**2 - y**2)
+        - x**2*sqrt(l**2 - x**2 - y**2) - y**2*sqrt(l**2 - x**2 - y**2))
         + 2*Omega*m*y*y_dot*cos(latitude)/sqrt(l**2 - x**2 - y**2)
         - 2*Omega*m*y_dot*sin(latitude) + g*m*x/sqrt(l**2 - x**2 - y**2)
         + m*x**3*x_dot**2/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
-        + 2*m*x**2*x_dot*y*y_dot/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
-        + m*x*x_dot**2/(l**2 - x**2 - y**2)
-        + m*x*y**2*y_dot**2/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
-        + m*x*y*y_ddot/(l**2 - x**2 - y**2) + m*x*y_dot**2/(l**2 - x**2 - y**2)
-        + m*x_ddot*(x**2/(l**2 - x**2 - y**2) + 1) = 0
+        + 2*m*x**2*x_dot*y*y_dot/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2
+        + y**4) + m*x*x_dot**2/(l**2 - x**2 - y**2) + m*x*y**2*y_dot**2/(l**4 - 2*l**2*x**2
+        - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4) + m*x*y*y_ddot/(l**2 - x**2 - y**2)
+        + m*x*y_dot**2/(l**2 - x**2 - y**2) + m*x_ddot*(x**2/(l**2 - x**2 - y**2) + 1) = 0
     Omega**2*m*y**2*sin(latitude)*cos(latitude)/sqrt(l**2 - x**2 - y**2)
-        - Omega**2*m*y*(sin(latitude)**2 - cos(latitude)**2)
-        - Omega**2*m*sqrt(l**2 - x**2 - y**2)*sin(latitude)*cos(latitude)
-        - 2*Omega*m*x**2*x_dot*y*cos(latitude)/(2*l**2*sqrt(l**2 - x**2 - y**2) - 2*x**2*sqrt(l**2 - x**2 - y**2) - 2*y**2*sqrt(l**2 - x**2 - y**2))
-        + Omega*m*x**2*x_dot*y*cos(latitude)/(l**2*sqrt(l**2 - x**2 - y**2) - x**2*sqrt(l**2 - x**2 - y**2) - y**2*sqrt(l**2 - x**2 - y**2))
+        - Omega**2*m*y*(sin(latitude)**2 - cos(latitude)**2) - Omega**2*m*sqrt(l**2 - x**2
+        - y**2)*sin(latitude)*cos(latitude)
+        - 2*Omega*m*x**2*x_dot*y*cos(latitude)/(2*l**2*sqrt(l**2 - x**2 - y**2)
+        - 2*x**2*sqrt(l**2 - x**2 - y**2) - 2*y**2*sqrt(l**2 - x**2 - y**2))
+        + Omega*m*x**2*x_dot*y*cos(latitude)/(l**2*sqrt(l**2 - x**2 - y**2)
+        - x**2*sqrt(l**2 - x**2 - y**2) - y**2*sqrt(l**2 - x**2 - y**2))
         - 2*Omega*m*x_dot*y*cos(latitude)/sqrt(l**2 - x**2 - y**2)
         + 2*Omega*m*x_dot*sin(latitude) + g*m*y/sqrt(l**2 - x**2 - y**2)
         + m*x**2*x_dot**2*y/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
-        + m*x*x_ddot*y/(l**2 - x**2 - y**2)
-        + 2*m*x*x_dot*y**2*y_dot/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
-        + m*x_dot**2*y/(l**2 - x**2 - y**2)
+        + m*x*x_ddot*y/(l**2 - x**2 - y**2) + 2*m*x*x_dot*y**2*y_dot/(l**4 - 2*l**2*x**2
+        - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4) + m*x_dot**2*y/(l**2 - x**2 - y**2)
         + m*y**3*y_dot**2/(l**4 - 2*l**2*x**2 - 2*l**2*y**2 + x**4 + 2*x**2*y**2 + y**4)
         + m*y*y_dot**2/(l**2 - x**2 - y**2) + m*y_ddot*(y**2/(l**2 - x**2 - y**2) + 1) = 0
 
@@ -95,19 +83,18 @@ from math import cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "cdf6e39392a269ee"
+DIGEST = "e7bb6716c7af98ed"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -115,24 +102,10 @@ STATES = {
     "lagrangian": ("x", "y", "x_dot", "y_dot"),
     "hamiltonian": ("x", "y", "p_x", "p_y"),
     "variational": (
-        "x",
-        "y",
-        "x_dot",
-        "y_dot",
-        "delta_x",
-        "delta_y",
-        "delta_x_dot",
-        "delta_y_dot",
+        "x", "y", "x_dot", "y_dot", "delta_x", "delta_y", "delta_x_dot", "delta_y_dot",
     ),
     "sensitivity": (
-        "x",
-        "y",
-        "x_dot",
-        "y_dot",
-        "delta_x",
-        "delta_y",
-        "delta_x_dot",
-        "delta_y_dot",
+        "x", "y", "x_dot", "y_dot", "delta_x", "delta_y", "delta_x_dot", "delta_y_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "l", "g", "Omega", "latitude")
@@ -140,50 +113,21 @@ DEFAULTS: tuple[float, ...] = (28.0, 67.0, 9.81, 7.292e-05, 0.8527)
 POSITIVE = ("m", "l")
 TIMED = ("positions",)
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "positions",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rhs_variational",
-    "rhs_sensitivity",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "hamiltonian_state",
+    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state",
+    "rhs_variational", "rhs_sensitivity",
 )
 OPERATIONS = {
-    "rhs": (116, 7),
-    "jacobian": (388, 9),
-    "parameter_jacobian": (288, 11),
-    "energy": (41, 6),
-    "mass_matrix": (15, 1),
-    "positions": (25, 3),
-    "hamiltonian_state": (38, 3),
-    "rhs_hamiltonian": (127, 9),
-    "jacobian_hamiltonian": (391, 10),
-    "energy_hamiltonian": (67, 7),
-    "lagrangian_state": (45, 4),
-    "rhs_variational": (362, 9),
-    "rhs_sensitivity": (495, 11),
+    "rhs": (114, 7), "jacobian": (382, 9), "parameter_jacobian": (282, 9),
+    "energy": (41, 6), "mass_matrix": (15, 1), "positions": (25, 3),
+    "hamiltonian_state": (38, 3), "rhs_hamiltonian": (127, 9),
+    "jacobian_hamiltonian": (390, 10), "energy_hamiltonian": (67, 7),
+    "lagrangian_state": (45, 4), "rhs_variational": (359, 9), "rhs_sensitivity": (492, 11),
 }
 UNITS = {
-    "m": "kg",
-    "l": "m",
-    "g": "m/s^2",
-    "Omega": "rad/s",
-    "latitude": "rad",
-    "x": "m",
-    "x_dot": "m/s",
-    "p_x": "kg m/s",
-    "delta_x": "m",
-    "delta_x_dot": "m/s",
-    "y": "m",
-    "y_dot": "m/s",
-    "p_y": "kg m/s",
-    "delta_y": "m",
-    "delta_y_dot": "m/s",
+    "m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s", "latitude": "rad", "x": "m",
+    "x_dot": "m/s", "p_x": "kg m/s", "delta_x": "m", "delta_x_dot": "m/s", "y": "m",
+    "y_dot": "m/s", "p_y": "kg m/s", "delta_y": "m", "delta_y_dot": "m/s",
 }
 
 
@@ -208,7 +152,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    116 operations, 7 of them on parameters alone.
+    114 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -264,64 +208,15 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
     x22 = x21 - g*y_/x9
     x23 = m*(1.0/(m*(1.0 - x1/x2)))
-    x24 = m*(x19 - g*x/x9 + x22*x6*x23/x2)/(m*(1.0 - x0/x2 - y_*x11*x23/x4))
+    x24 = (x19 - g*x/x9 + x22*x6*x23/x2)/(1.0 - x0/x2 - y_*x11*x23/x4)
     # outputs
     return (x_dot, y_dot, x24, (x22 + x24*x6/x2)*x23)
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x_dot*x_dot
-    x4 = x2*x2
-    x5 = y_dot*y_dot
-    x6 = x*y_
-    x7 = y_*x6
-    x8 = cos_latitude*y_
-    x9 = sqrt(-x2)
-    x10 = sin_latitude - x8/x9
-    x11 = x*x6
-    x12 = x9*x9
-    x13 = x9*x12
-    x14 = x10 - cos_latitude*x11/x13
-    x15 = Omega*y_dot
-    x16 = sin_latitude*y_ + cos_latitude*x9
-    x17 = sin_latitude - x8*(x12 - x0)/x13
-    x18 = x_dot*y_dot
-    x19 = (
-        x*(x2 - x0)*x3/x4 + x5*x7/x4 + x14*x15 + c1*x*(c2 - cos_latitude*x16/x9) + x17*x15
-        - 2.0*x11*x18/x4 - x*(2.0*x1 - x2)*x5/x4
-    )
-    x20 = Omega*x_dot
-    x21 = (
-        x11*x3/x4 + y_*(x2 - x1)*x5/x4 + c1*x10*x16 + y_*(x2 - 2.0*x0)*x3/x4 - x17*x20
-        - 2.0*x18*x7/x4 - x14*x20
-    )
-    x22 = x21 - g*y_/x9
-    x23 = m*(1.0/(m*(1.0 - x1/x2)))
-    x24 = m*(x19 - g*x/x9 + x22*x6*x23/x2)/(m*(1.0 - x0/x2 - y_*x11*x23/x4))
-    # outputs
-    return _stacked((4,), y[0], x_dot, y_dot, x24, (x22 + x24*x6/x2)*x23)
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    388 operations, 9 of them on parameters alone.
+    382 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -404,8 +299,8 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x45 = m*(1.0/(m*(1.0 - x1/x2)))
     x46 = x22*x45
     x47 = x45*x32
-    x48 = m*(1.0 - x0/x2 - x*x47/x7)
-    x49 = m*(x38 - g*x/x11 + x44*x46/x2)/x48
+    x48 = 1.0 - x0/x2 - x*x47/x7
+    x49 = (x38 - g*x/x11 + x44*x46/x2)/x48
     x50 = x*x49
     x51 = (x44 + x49*x22/x2)*x45
     x52 = y_*(2.0*x27)
@@ -417,7 +312,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x58 = (2.0*x40 - x2)*x56/x8 + (x2 + 2.0*x28)*x39/x8 + x10*x57/x8 - x28*x39/x8
     x59 = g*x22/x17
     x60 = x21*x54/x25 + x55 + 2.0*x58 - x26*x54/x25 + x59 + x49*x52/x7 + 2.0*x51*x32/x7
-    x61 = m*(x53 - x60*x46/x2)/x48
+    x61 = (x53 - x60*x46/x2)/x48
     x62 = x1 + x16
     x63 = x16*x62 + x0*(3.0*x1 + x16)
     x64 = x16*x20 + 3.0*x1*x20 - 2.0*x1*x16
@@ -432,402 +327,26 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         + x63*x70/x25 - c1*(x14*x62/x17 - x34*x34) - 4.0*x65*x30/x8
     )
     x72 = x71 - g*x62/x17 + x65*x50/x7 + 2.0*x51*x41/x7
-    x73 = m*(x68 + 2.0*x22*x50/x7 - x*x51*x65/x7 - x72*x46/x2)
-    x74 = x73/x48
-    x75 = x*x29/x7 - y_dot*x32/x7
-    x76 = x36 + x35
-    x77 = 2.0*(-(x_dot*x42/x7 + x75)) + x76
-    x78 = y_*x45
-    x79 = m*x*(2.0*(x_dot*x4 - y_dot*x22) - x2*x77*x78)/(x7*x48)
-    x80 = y_dot*x40 - x29
-    x81 = 2.0*(-(y_dot*x37/x7 + x75)) + x76 + 2.0*x80*x47/x8
-    x82 = m*x81/x48
+    x73 = (x68 + 2.0*x22*x50/x7 - x*x51*x65/x7 - x72*x46/x2)/x48
+    x74 = x*x29/x7 - y_dot*x32/x7
+    x75 = x36 + x35
+    x76 = 2.0*(-(x_dot*x42/x7 + x74)) + x75
+    x77 = y_*x45
+    x78 = x*(2.0*(x_dot*x4 - y_dot*x22) - x2*x76*x77)/(x7*x48)
+    x79 = y_dot*x40 - x29
+    x80 = 2.0*(-(y_dot*x37/x7 + x74)) + x75 + 2.0*x79*x47/x8
+    x81 = x80/x48
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
-        (x61, -x74, x79, x82),
+        (x61, -x73, x78, x81),
         (
             -(x60 - x61*x22/x2)*x45,
-            (x72 - x74*x22/x2)*x45,
-            -(x77 - x79*x22/x2)*x45,
-            (2.0*x80 + x*x2*x82)*x78/x7,
+            (x72 - x73*x22/x2)*x45,
+            -(x76 - x78*x22/x2)*x45,
+            (2.0*x79 + x*x2*x81)*x77/x7,
         ),
-    )
-
-
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = Omega*Omega
-    cos_latitude = cos(latitude)
-    sin_latitude = sin(latitude)
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
-    c4 = cos_latitude*c1
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x2 - 4.0*x0
-    x4 = x2 - x0
-    x5 = x_dot*x_dot
-    x6 = x4*x5
-    x7 = x2*x2
-    x8 = x2*x7
-    x9 = y_dot*y_dot
-    x10 = x1*x3
-    x11 = sqrt(-x2)
-    x12 = cos_latitude*x11
-    x13 = sin_latitude*y_ + x12
-    x14 = cos_latitude*x13
-    x15 = c2 - x14/x11
-    x16 = x11*x11
-    x17 = x11*x16
-    x18 = x1 - 0.5*x2
-    x19 = 2.0*x18
-    x20 = x16 - x0
-    x21 = 4.0*x16 - 3.0*x20
-    x22 = x*y_
-    x23 = c3*y_dot
-    x24 = x22*x23
-    x25 = x16*x17
-    x26 = x16 + (3.0*x0 + 2.0*x16)
-    x27 = x0 - 0.5*x2
-    x28 = -2.0*x27
-    x29 = x_dot*x22
-    x30 = y_dot*x29
-    x31 = (
-        x3*x6/x8 + x9*x10/x8 + c1*(x15 - cos_latitude*x0*(x13 - x12)/x17)
-        + (4.0*x0*x19 + 2.0*x0*x2 - x2*x19)*x9/x8 + x21*x24/x25 - x26*x24/x25
-        - 4.0*x28*x30/x8
-    )
-    x32 = y_*x22
-    x33 = cos_latitude*y_
-    x34 = sin_latitude - x33/x11
-    x35 = Omega*(x34 - cos_latitude*x*x22/x17)
-    x36 = Omega*(sin_latitude - x20*x33/x17)
-    x37 = x*x19
-    x38 = x*x6/x7 + x9*x32/x7 + y_dot*x35 + c1*x*x15 + y_dot*x36 - 2.0*x*x30/x7 - x9*x37/x7
-    x39 = x_dot*x29
-    x40 = x2 - x1
-    x41 = y_*x40
-    x42 = y_*x28
-    x43 = (
-        x*x39/x7 + x9*x41/x7 + c1*x13*x34 + x5*x42/x7 - x_dot*x36 - 2.0*y_*x30/x7
-        - x_dot*x35
-    )
-    x44 = x43 - g*y_/x11
-    x45 = m*(1.0/(m*(1.0 - x1/x2)))
-    x46 = x22*x45
-    x47 = x45*x32
-    x48 = m*(1.0 - x0/x2 - x*x47/x7)
-    x49 = m*(x38 - g*x/x11 + x44*x46/x2)/x48
-    x50 = x*x49
-    x51 = (x44 + x49*x22/x2)*x45
-    x52 = y_*(2.0*x27)
-    x53 = x31 - g*(x0 + x16)/x17 + 2.0*x4*x50/x7 - x51*x52/x7
-    x54 = c3*x29
-    x55 = c4*x*(y_*x13 + x16*x34)/x17
-    x56 = x22*x9
-    x57 = x_dot*y_dot
-    x58 = (2.0*x40 - x2)*x56/x8 + (x2 + 2.0*x28)*x39/x8 + x10*x57/x8 - x28*x39/x8
-    x59 = g*x22/x17
-    x60 = x21*x54/x25 + x55 + 2.0*x58 - x26*x54/x25 + x59 + x49*x52/x7 + 2.0*x51*x32/x7
-    x61 = m*(x53 - x60*x46/x2)/x48
-    x62 = x1 + x16
-    x63 = x16*x62 + x0*(3.0*x1 + x16)
-    x64 = x16*x20 + 3.0*x1*x20 - 2.0*x1*x16
-    x65 = -2.0*x18
-    x66 = x1 - 0.25*x2
-    x67 = (x2 - 2.0*x19)*x56/x8 - (x2 - 2.0*x4)*x39/x8 - x65*x56/x8 - x0*(4.0*x66)*x57/x8
-    x68 = x59 + (x55 + x63*x23/x25 + x64*x23/x25 + 2.0*x67)
-    x69 = -4.0*x66
-    x70 = c3*x_dot
-    x71 = (
-        x0*x69*x5/x8 + x64*x70/x25 + x40*x69*x9/x8 + (x2*x28 + 2.0*x1*x2 - 4.0*x1*x28)*x5/x8
-        + x63*x70/x25 - c1*(x14*x62/x17 - x34*x34) - 4.0*x65*x30/x8
-    )
-    x72 = x71 - g*x62/x17 + x65*x50/x7 + 2.0*x51*x41/x7
-    x73 = m*(x68 + 2.0*x22*x50/x7 - x*x51*x65/x7 - x72*x46/x2)
-    x74 = x73/x48
-    x75 = x*x29/x7 - y_dot*x32/x7
-    x76 = x36 + x35
-    x77 = 2.0*(-(x_dot*x42/x7 + x75)) + x76
-    x78 = y_*x45
-    x79 = m*x*(2.0*(x_dot*x4 - y_dot*x22) - x2*x77*x78)/(x7*x48)
-    x80 = y_dot*x40 - x29
-    x81 = 2.0*(-(y_dot*x37/x7 + x75)) + x76 + 2.0*x80*x47/x8
-    x82 = m*x81/x48
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        x61,
-        -x74,
-        x79,
-        x82,
-        -(x60 - x61*x22/x2)*x45,
-        (x72 - x74*x22/x2)*x45,
-        -(x77 - x79*x22/x2)*x45,
-        (2.0*x80 + x*x2*x82)*x78/x7,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    288 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        x, y in m; x_dot, y_dot in m/s.
-    params : iterable of 5 floats
-        m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    x, y_, x_dot, y_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*l
-    cos_latitude = cos(latitude)
-    c2 = Omega*cos_latitude
-    c3 = Omega*Omega
-    c4 = cos_latitude*c3
-    sin_latitude = sin(latitude)
-    c5 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c6 = m*Omega
-    # intermediate terms
-    x0 = x*y_
-    x1 = y_*y_dot
-    x2 = y_dot*x1
-    x3 = x0*x2
-    x4 = x*x
-    x5 = y_*y_
-    x6 = x4 + x5 - c1
-    x7 = x6*x6
-    x8 = x6*x7
-    x9 = sqrt(-x6)
-    x10 = x9*x9
-    x11 = c2*(3.0*x4 + x10)
-    x12 = x9*x10
-    x13 = x10*x12
-    x14 = cos_latitude*x9
-    x15 = sin_latitude*y_
-    x16 = x14 + x15
-    x17 = x6 - x4
-    x18 = x_dot*x_dot
-    x19 = x*x18
-    x20 = 2.0*x5 - x6
-    x21 = y_dot*(x*y_dot)
-    x22 = x*x0
-    x23 = x_dot*y_dot*x22
-    x24 = x10 - x4
-    x25 = c2*(2.0*x10 - 3.0*x24)
-    x26 = (
-        4.0*x3/x8 + x1*x11/x13 + c4*x*(x16 - x14)/x12
-        + 2.0*((2.0*x17 - x6)*x19/x8 - (x6 + 2.0*x20)*x21/x8) - 8.0*x23/x8 - x1*x25/x13
-    )
-    x27 = g*x
-    x28 = cos_latitude*y_
-    x29 = sin_latitude - x28/x9
-    x30 = x29 - cos_latitude*x22/x12
-    x31 = Omega*y_dot
-    x32 = c5 - cos_latitude*x16/x9
-    x33 = sin_latitude - x24*x28/x12
-    x34 = x17*x19/x7 + x3/x7 + x30*x31 + c3*x*x32 + x33*x31 - 2.0*x23/x7 - x20*x21/x7
-    x35 = x22*x18
-    x36 = x6 - x5
-    x37 = x16*x29
-    x38 = x6 - 2.0*x4
-    x39 = y_*x18
-    x40 = Omega*x_dot
-    x41 = x_dot*x0*x1
-    x42 = x35/x7 + x36*x2/x7 + c3*x37 + x38*x39/x7 - x33*x40 - 2.0*x41/x7 - x30*x40
-    x43 = g*y_
-    x44 = x42 - x43/x9
-    x45 = m*(1.0/(m*(1.0 - x5/x6)))
-    x46 = x0*x45
-    x47 = y_*x45
-    x48 = m*(1.0 - x4/x6 - x22*x47/x7)
-    x49 = m*(x34 - x27/x9 + x44*x46/x6)/x48
-    x50 = x49*x0
-    x51 = (x44 + x50/x6)*x45
-    x52 = y_*x_dot
-    x53 = (
-        4.0*x35/x8 + x52*x25/x13 + c4*(y_*x16 + x10*x29)/x12
-        + 2.0*((2.0*x36 - x6)*x2/x8 + (2.0*x38 - x6)*x39/x8) - 8.0*x41/x8 - x52*x11/x13
-    )
-    x54 = x53 + x43/x12 + 2.0*(x50/x7 + x5*x51/x7)
-    x55 = x26 + x27/x12 + 2.0*(x4*x49/x7 + x51*x0/x7) + x54*x46/x6
-    x56 = c0*x55/x48
-    x57 = m*x*(1.0 + x5*x45/x6)/(x48*x9)
-    x58 = Omega*x
-    x59 = x_dot*x33 + x_dot*x30 - 2.0*Omega*x37
-    x60 = m*(y_dot*x30 + 2.0*x32*x58 + y_dot*x33 - x59*x46/x6)
-    x61 = x60/x48
-    x62 = cos_latitude + x15/x9
-    x63 = x62 + sin_latitude*x22/x12
-    x64 = x28 - sin_latitude*x9
-    x65 = cos_latitude + x15*x24/x12
-    x66 = y_dot*x63 + (sin_latitude*x16 - cos_latitude*x64)*x58/x9 + y_dot*x65
-    x67 = x_dot*x65 + x_dot*x63 - Omega*(x16*x62 + x29*x64)
-    x68 = c6*(x66 - x67*x46/x6)/x48
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, x56, -x57, x61, x68),
-        (
-            0.0,
-            (l*x54 + x56*x0/x6)*x45,
-            -(1.0/x9 + x*x57/x6)*x47,
-            -(x59 - x61*x0/x6)*x45,
-            -(Omega*x67 - x68*x0/x6)*x45,
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 5, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*l
-    cos_latitude = cos(latitude)
-    c2 = Omega*cos_latitude
-    c3 = Omega*Omega
-    c4 = cos_latitude*c3
-    sin_latitude = sin(latitude)
-    c5 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c6 = m*Omega
-    # intermediate terms
-    x0 = x*y_
-    x1 = y_*y_dot
-    x2 = y_dot*x1
-    x3 = x0*x2
-    x4 = x*x
-    x5 = y_*y_
-    x6 = x4 + x5 - c1
-    x7 = x6*x6
-    x8 = x6*x7
-    x9 = sqrt(-x6)
-    x10 = x9*x9
-    x11 = c2*(3.0*x4 + x10)
-    x12 = x9*x10
-    x13 = x10*x12
-    x14 = cos_latitude*x9
-    x15 = sin_latitude*y_
-    x16 = x14 + x15
-    x17 = x6 - x4
-    x18 = x_dot*x_dot
-    x19 = x*x18
-    x20 = 2.0*x5 - x6
-    x21 = y_dot*(x*y_dot)
-    x22 = x*x0
-    x23 = x_dot*y_dot*x22
-    x24 = x10 - x4
-    x25 = c2*(2.0*x10 - 3.0*x24)
-    x26 = (
-        4.0*x3/x8 + x1*x11/x13 + c4*x*(x16 - x14)/x12
-        + 2.0*((2.0*x17 - x6)*x19/x8 - (x6 + 2.0*x20)*x21/x8) - 8.0*x23/x8 - x1*x25/x13
-    )
-    x27 = g*x
-    x28 = cos_latitude*y_
-    x29 = sin_latitude - x28/x9
-    x30 = x29 - cos_latitude*x22/x12
-    x31 = Omega*y_dot
-    x32 = c5 - cos_latitude*x16/x9
-    x33 = sin_latitude - x24*x28/x12
-    x34 = x17*x19/x7 + x3/x7 + x30*x31 + c3*x*x32 + x33*x31 - 2.0*x23/x7 - x20*x21/x7
-    x35 = x22*x18
-    x36 = x6 - x5
-    x37 = x16*x29
-    x38 = x6 - 2.0*x4
-    x39 = y_*x18
-    x40 = Omega*x_dot
-    x41 = x_dot*x0*x1
-    x42 = x35/x7 + x36*x2/x7 + c3*x37 + x38*x39/x7 - x33*x40 - 2.0*x41/x7 - x30*x40
-    x43 = g*y_
-    x44 = x42 - x43/x9
-    x45 = m*(1.0/(m*(1.0 - x5/x6)))
-    x46 = x0*x45
-    x47 = y_*x45
-    x48 = m*(1.0 - x4/x6 - x22*x47/x7)
-    x49 = m*(x34 - x27/x9 + x44*x46/x6)/x48
-    x50 = x49*x0
-    x51 = (x44 + x50/x6)*x45
-    x52 = y_*x_dot
-    x53 = (
-        4.0*x35/x8 + x52*x25/x13 + c4*(y_*x16 + x10*x29)/x12
-        + 2.0*((2.0*x36 - x6)*x2/x8 + (2.0*x38 - x6)*x39/x8) - 8.0*x41/x8 - x52*x11/x13
-    )
-    x54 = x53 + x43/x12 + 2.0*(x50/x7 + x5*x51/x7)
-    x55 = x26 + x27/x12 + 2.0*(x4*x49/x7 + x51*x0/x7) + x54*x46/x6
-    x56 = c0*x55/x48
-    x57 = m*x*(1.0 + x5*x45/x6)/(x48*x9)
-    x58 = Omega*x
-    x59 = x_dot*x33 + x_dot*x30 - 2.0*Omega*x37
-    x60 = m*(y_dot*x30 + 2.0*x32*x58 + y_dot*x33 - x59*x46/x6)
-    x61 = x60/x48
-    x62 = cos_latitude + x15/x9
-    x63 = x62 + sin_latitude*x22/x12
-    x64 = x28 - sin_latitude*x9
-    x65 = cos_latitude + x15*x24/x12
-    x66 = y_dot*x63 + (sin_latitude*x16 - cos_latitude*x64)*x58/x9 + y_dot*x65
-    x67 = x_dot*x65 + x_dot*x63 - Omega*(x16*x62 + x29*x64)
-    x68 = c6*(x66 - x67*x46/x6)/x48
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x56,
-        -x57,
-        x61,
-        x68,
-        0.0,
-        (l*x54 + x56*x0/x6)*x45,
-        -(1.0/x9 + x*x57/x6)*x47,
-        -(x59 - x61*x0/x6)*x45,
-        -(Omega*x67 - x68*x0/x6)*x45,
     )
 
 
@@ -853,31 +372,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     x, y_, x_dot, y_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = Omega*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c2 = cos_latitude*cos_latitude
-    c3 = sin_latitude*sin_latitude
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = sqrt(-x2)
-    x4 = sin_latitude*y_ + cos_latitude*x3
-    x5 = c1*(x4*x4 + c2*x0 + c3*x0) - x_dot*x_dot*(1.0 - x0/x2) - y_dot*y_dot*(1.0 - x1/x2)
-    # outputs
-    return -m*(g*x3 + x_dot*x*y_*y_dot/x2 + 0.5*x5)
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot = y
-    m, l, g, Omega, latitude = params
     # terms of the parameters alone
     c0 = l*l
     c1 = Omega*Omega
@@ -929,22 +423,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((m*(1.0 - x0/x2), x3), (x3, m*(1.0 - x1/x2)))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    x, y_, _, _ = y
-    m, l, _, _, _ = params
-    # terms of the parameters alone
-    c0 = l*l
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = -m*x*y_/x2
-    # outputs
-    return _stacked((2, 2), y[0], m*(1.0 - x0/x2), x3, x3, m*(1.0 - x1/x2))
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -987,33 +465,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 3, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, _, _ = y
-    _, l, _, Omega, latitude = params
-    # terms of the parameters alone
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c0 = l*l
-    # intermediate terms
-    x0 = sqrt(-(x*x + y_*y_ - c0))
-    x1 = sin_latitude*y_ + cos_latitude*x0
-    x2 = Omega*t
-    cos_x2 = cos(x2)
-    sin_x2 = sin(x2)
-    # outputs
-    return _stacked(
-        (1, 3),
-        y[0],
-        -(x1*cos_x2 + x*sin_x2),
-        x*cos_x2 - x1*sin_x2,
-        cos_latitude*y_ - sin_latitude*x0,
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1050,36 +501,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = y_dot*(1.0 - x1/x2) + Omega*x*(sin_latitude - cos_latitude*y_/x3) - x_dot*x5/x2
     # outputs
     return (x, y_, -m*(x4 + y_dot*x5/x2 - x_dot*(1.0 - x0/x2)), m*x6)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot = y
-    m, l, _, Omega, latitude = params
-    # terms of the parameters alone
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c0 = l*l
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = sqrt(-x2)
-    x4 = Omega*(sin_latitude*y_ + cos_latitude*(x3 + x0/x3))
-    x5 = x*y_
-    x6 = y_dot*(1.0 - x1/x2) + Omega*x*(sin_latitude - cos_latitude*y_/x3) - x_dot*x5/x2
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        x,
-        y_,
-        -m*(x4 + y_dot*x5/x2 - x_dot*(1.0 - x0/x2)),
-        m*x6,
-    )
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1149,331 +570,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x14, x15, m*x23, -m*x24)
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, p_x, p_y = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = m*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = l*l
-    c2 = Omega*Omega
-    c3 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c4 = Omega*cos_latitude
-    # intermediate terms
-    x0 = sin_latitude*y_
-    x1 = x*x
-    x2 = y_*y_
-    x3 = x1 + x2 - c1
-    x4 = sqrt(-x3)
-    x5 = cos_latitude*y_
-    x6 = sin_latitude - x5/x4
-    x7 = p_y - c0*x*x6
-    x8 = 1.0/(m*(1.0 - x2/x3))
-    x9 = x*y_
-    x10 = m*x9
-    x11 = x8*x10
-    x12 = p_x + c0*(x0 + cos_latitude*(x4 + x1/x4)) + x7*x11/x3
-    x13 = x3*x3
-    x14 = x12/(m*(1.0 - x1/x3 - x9*x11/x13))
-    x15 = x8*(x7 + x14*x10/x3)
-    x16 = x0 + cos_latitude*x4
-    x17 = x4*x4
-    x18 = x*x14
-    x19 = x4*x17
-    x20 = y_*x15
-    x21 = x15*x20
-    x22 = x14*x18
-    x23 = (
-        c2*x*(c3 - cos_latitude*x16/x4) + c4*(x17 - (x1 + 2.0*x17))*x18/x19 + x9*x21/x13
-        + Omega*x15*(x6 - cos_latitude*x*x9/x19) - g*x/x4 - (x3 - x1)*x22/x13
-        - x14*(x3 - 2.0*x1)*x20/x13
-    )
-    x24 = (
-        g*y_/x4 + Omega*x14*(sin_latitude - x5*(x17 - x1)/x19) + (x3 - x2)*x21/x13
-        + c4*x*x15*(x2 + x17)/x19 - c2*x6*x16 - x9*x22/x13 - x15*(2.0*x2 - x3)*x18/x13
-    )
-    # outputs
-    return _stacked((4,), y[0], x14, x15, m*x23, -m*x24)
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    391 operations, 10 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        x, y in m; p_x, p_y in kg m/s.
-    params : iterable of 5 floats
-        m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    x, y_, p_x, p_y = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = m*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c2 = Omega*cos_latitude
-    c3 = Omega*Omega
-    c4 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c5 = cos_latitude*c3
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = sin_latitude*y_
-    x5 = sqrt(-x2)
-    x6 = cos_latitude*y_
-    x7 = sin_latitude - x6/x5
-    x8 = p_y - c1*x*x7
-    x9 = x*y_
-    x10 = 1.0/(m*(1.0 - x1/x2))
-    x11 = m*x10
-    x12 = x9*x11
-    x13 = p_x + c1*(x4 + cos_latitude*(x5 + x0/x5)) + x8*x12/x2
-    x14 = x2*x2
-    x15 = m*(1.0 - x0/x2 - x12*x9/x14)
-    x16 = x13/x15
-    x17 = x*x16
-    x18 = x3*x17
-    x19 = x2 - 2.0*x0
-    x20 = x16*x9
-    x21 = x10*(x8 + m*x20/x2)
-    x22 = y_*x21
-    x23 = x19*x22
-    x24 = x5*x5
-    x25 = x24 - (x0 + 2.0*x24)
-    x26 = c2*x
-    x27 = x25*x26
-    x28 = x5*x24
-    x29 = x16*x19
-    x30 = x21*x9
-    x31 = Omega*(x7 - cos_latitude*x*x9/x28)
-    x32 = y_*(x29 - 2.0*x30)/x14 - x31
-    x33 = m*((2.0*x18 + x23)/x14 - x27/x28 + x32*x12/x2)/x15
-    x34 = x1 - 0.5*x2
-    x35 = 2.0*x34
-    x36 = x21*x35
-    x37 = x24 - x0
-    x38 = Omega*(sin_latitude - x6*x37/x28)
-    x39 = x35*x17
-    x40 = x2 - x1
-    x41 = x40*x22
-    x42 = x1 + x24
-    x43 = x42*x26
-    x44 = (x39 - 2.0*x41)/x14 - x43/x28
-    x45 = m*(x*(2.0*x20 + x36)/x14 - x38 + x44*x12/x2)/x15
-    x46 = 1.0/x15
-    x47 = x12/(x2*x15)
-    x48 = (x32 + x33*x9/x2)*x11
-    x49 = (x44 + x45*x9/x2)*x11
-    x50 = cos_latitude*x5
-    x51 = x4 + x50
-    x52 = cos_latitude*x51
-    x53 = c3*(c4 - x52/x5 - cos_latitude*x0*(x51 - x50)/x28)
-    x54 = c2*x16
-    x55 = x24*x28
-    x56 = x2 - 4.0*x0
-    x57 = x2*x14
-    x58 = x21*x20
-    x59 = x9*x22
-    x60 = (x2 + 2.0*x19)*x58/x57 + x48*x59/x14 - x18*x33/x14
-    x61 = x16*x16
-    x62 = c2*x30
-    x63 = y_*x29
-    x64 = (
-        x53 + x25*(3.0*x0 + x24)*x54/x55 + x56*x22*x22/x57 + x27*x33/x28 + x31*x48 + 2.0*x60
-        - x3*x56*x61/x57 - (x24 + (3.0*x0 + 2.0*x24))*x62/x55 - x23*x33/x14 - x48*x63/x14
-        - g*(x0 + x24)/x28
-    )
-    x65 = x16*x21
-    x66 = x24*x42
-    x67 = c2*x21
-    x68 = x21*x30
-    x69 = x16*x20*(x2 - 2.0*x3)/x57 + x49*x59/x14 - (-2.0*x34)*x68/x57 - x18*x45/x14
-    x70 = c5*x*(y_*x51 + x7*x24)/x28 + g*x9/x28
-    x71 = c2*x20
-    x72 = (
-        (2.0*x1*x2 + x2*x19 - 4.0*x1*x19)*x65/x57 + (x66 + x0*(3.0*x1 + x24))*x67/x55
-        + x27*x45/x28 + x31*x49 + 2.0*x69 + x70 - (2.0*x24 + 3.0*x25)*x71/x55 - x23*x45/x14
-        - x49*x63/x14
-    )
-    x73 = x*x33
-    x74 = (x2 - 2.0*x40)*x68/x57 + x41*x48/x14 - x29*x20/x57 - x20*x73/x14
-    x75 = (
-        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x65/x57 + (4.0*x24 - 3.0*x37)*x71/x55
-        + (x66 + 3.0*x0*x42 - 2.0*x0*x24)*x67/x55 + x33*x38 + x43*x48/x28 + 2.0*x74 + x70
-        - x36*x73/x14 - x39*x48/x14
-    )
-    x76 = x1 - 0.25*x2
-    x77 = x*x45
-    x78 = x20*x77/x14 - (x2 - 2.0*x35)*x58/x57 - x41*x49/x14
-    x79 = (
-        c3*(x42*x52/x28 - x7*x7) + x0*(4.0*x76)*x61/x57 + x21*x21*x40*(-4.0*x76)/x57
-        + 3.0*x42*x62/x55 + x36*x77/x14 + x39*x49/x14 + g*x42/x28 + 2.0*x78
-        - (x24*x37 + 3.0*x1*x37 - 2.0*x1*x24)*x54/x55 - x38*x45 - x43*x49/x28
-    )
-    # outputs
-    return (
-        (x33, -x45, x46, x47),
-        (x48, -x49, x46*x12/x2, x10*(1.0 + m*x47*x9/x2)),
-        (m*x64, -m*x72, -x33, -x48),
-        (-m*x75, -m*x79, x45, x49),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, p_x, p_y = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = m*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c2 = Omega*cos_latitude
-    c3 = Omega*Omega
-    c4 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c5 = cos_latitude*c3
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = sin_latitude*y_
-    x5 = sqrt(-x2)
-    x6 = cos_latitude*y_
-    x7 = sin_latitude - x6/x5
-    x8 = p_y - c1*x*x7
-    x9 = x*y_
-    x10 = 1.0/(m*(1.0 - x1/x2))
-    x11 = m*x10
-    x12 = x9*x11
-    x13 = p_x + c1*(x4 + cos_latitude*(x5 + x0/x5)) + x8*x12/x2
-    x14 = x2*x2
-    x15 = m*(1.0 - x0/x2 - x12*x9/x14)
-    x16 = x13/x15
-    x17 = x*x16
-    x18 = x3*x17
-    x19 = x2 - 2.0*x0
-    x20 = x16*x9
-    x21 = x10*(x8 + m*x20/x2)
-    x22 = y_*x21
-    x23 = x19*x22
-    x24 = x5*x5
-    x25 = x24 - (x0 + 2.0*x24)
-    x26 = c2*x
-    x27 = x25*x26
-    x28 = x5*x24
-    x29 = x16*x19
-    x30 = x21*x9
-    x31 = Omega*(x7 - cos_latitude*x*x9/x28)
-    x32 = y_*(x29 - 2.0*x30)/x14 - x31
-    x33 = m*((2.0*x18 + x23)/x14 - x27/x28 + x32*x12/x2)/x15
-    x34 = x1 - 0.5*x2
-    x35 = 2.0*x34
-    x36 = x21*x35
-    x37 = x24 - x0
-    x38 = Omega*(sin_latitude - x6*x37/x28)
-    x39 = x35*x17
-    x40 = x2 - x1
-    x41 = x40*x22
-    x42 = x1 + x24
-    x43 = x42*x26
-    x44 = (x39 - 2.0*x41)/x14 - x43/x28
-    x45 = m*(x*(2.0*x20 + x36)/x14 - x38 + x44*x12/x2)/x15
-    x46 = 1.0/x15
-    x47 = x12/(x2*x15)
-    x48 = (x32 + x33*x9/x2)*x11
-    x49 = (x44 + x45*x9/x2)*x11
-    x50 = cos_latitude*x5
-    x51 = x4 + x50
-    x52 = cos_latitude*x51
-    x53 = c3*(c4 - x52/x5 - cos_latitude*x0*(x51 - x50)/x28)
-    x54 = c2*x16
-    x55 = x24*x28
-    x56 = x2 - 4.0*x0
-    x57 = x2*x14
-    x58 = x21*x20
-    x59 = x9*x22
-    x60 = (x2 + 2.0*x19)*x58/x57 + x48*x59/x14 - x18*x33/x14
-    x61 = x16*x16
-    x62 = c2*x30
-    x63 = y_*x29
-    x64 = (
-        x53 + x25*(3.0*x0 + x24)*x54/x55 + x56*x22*x22/x57 + x27*x33/x28 + x31*x48 + 2.0*x60
-        - x3*x56*x61/x57 - (x24 + (3.0*x0 + 2.0*x24))*x62/x55 - x23*x33/x14 - x48*x63/x14
-        - g*(x0 + x24)/x28
-    )
-    x65 = x16*x21
-    x66 = x24*x42
-    x67 = c2*x21
-    x68 = x21*x30
-    x69 = x16*x20*(x2 - 2.0*x3)/x57 + x49*x59/x14 - (-2.0*x34)*x68/x57 - x18*x45/x14
-    x70 = c5*x*(y_*x51 + x7*x24)/x28 + g*x9/x28
-    x71 = c2*x20
-    x72 = (
-        (2.0*x1*x2 + x2*x19 - 4.0*x1*x19)*x65/x57 + (x66 + x0*(3.0*x1 + x24))*x67/x55
-        + x27*x45/x28 + x31*x49 + 2.0*x69 + x70 - (2.0*x24 + 3.0*x25)*x71/x55 - x23*x45/x14
-        - x49*x63/x14
-    )
-    x73 = x*x33
-    x74 = (x2 - 2.0*x40)*x68/x57 + x41*x48/x14 - x29*x20/x57 - x20*x73/x14
-    x75 = (
-        (4.0*x0*x35 + 2.0*x0*x2 - x2*x35)*x65/x57 + (4.0*x24 - 3.0*x37)*x71/x55
-        + (x66 + 3.0*x0*x42 - 2.0*x0*x24)*x67/x55 + x33*x38 + x43*x48/x28 + 2.0*x74 + x70
-        - x36*x73/x14 - x39*x48/x14
-    )
-    x76 = x1 - 0.25*x2
-    x77 = x*x45
-    x78 = x20*x77/x14 - (x2 - 2.0*x35)*x58/x57 - x41*x49/x14
-    x79 = (
-        c3*(x42*x52/x28 - x7*x7) + x0*(4.0*x76)*x61/x57 + x21*x21*x40*(-4.0*x76)/x57
-        + 3.0*x42*x62/x55 + x36*x77/x14 + x39*x49/x14 + g*x42/x28 + 2.0*x78
-        - (x24*x37 + 3.0*x1*x37 - 2.0*x1*x24)*x54/x55 - x38*x45 - x43*x49/x28
-    )
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        x33,
-        -x45,
-        x46,
-        x47,
-        x48,
-        -x49,
-        x46*x12/x2,
-        x10*(1.0 + m*x47*x9/x2),
-        m*x64,
-        -m*x72,
-        -x33,
-        -x48,
-        -m*x75,
-        -m*x79,
-        x45,
-        x49,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1496,42 +592,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     x, y_, p_x, p_y = y.tolist() if hasattr(y, "tolist") else y
     m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = Omega*m
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = l*l
-    c2 = Omega*Omega
-    c3 = cos_latitude*cos_latitude
-    c4 = sin_latitude*sin_latitude
-    # intermediate terms
-    x0 = sin_latitude*y_
-    x1 = x*x
-    x2 = y_*y_
-    x3 = x1 + x2 - c1
-    x4 = sqrt(-x3)
-    x5 = p_x + c0*(x0 + cos_latitude*(x4 + x1/x4))
-    x6 = 1.0/(m*(1.0 - x2/x3))
-    x7 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x4)
-    x8 = m*y_
-    x9 = x*x8
-    x10 = (x5 + x6*x7*x9/x3)/(m*(1.0 - x1/x3 - y_*x1*x6*x8/(x3*x3)))
-    x11 = x0 + cos_latitude*x4
-    x12 = (
-        0.5*(x5*x10 + x7*(x6*(x7 + x10*x9/x3)))
-        - m*(0.5*c2*(x11*x11 + c3*x1 + c4*x1) + g*x4)
-    )
-    # outputs
-    return x12
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, p_x, p_y = y
-    m, l, g, Omega, latitude = params
     # terms of the parameters alone
     c0 = Omega*m
     sin_latitude = sin(latitude)
@@ -1604,620 +664,67 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x, y_, x10, x6*(x5 + x10*x8/x2))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin, sqrt
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    # inputs
-    x, y_, p_x, p_y = y
-    m, l, _, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = m*Omega
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = l*l
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c1
-    x3 = sqrt(-x2)
-    x4 = p_x + c0*(sin_latitude*y_ + cos_latitude*(x3 + x0/x3))
-    x5 = p_y - c0*x*(sin_latitude - cos_latitude*y_/x3)
-    x6 = 1.0/(m*(1.0 - x1/x2))
-    x7 = x*y_
-    x8 = m*x7
-    x9 = x6*x8
-    x10 = (x4 + x5*x9/x2)/(m*(1.0 - x0/x2 - x7*x9/(x2*x2)))
-    # outputs
-    return _stacked((4,), y[0], x, y_, x10, x6*(x5 + x10*x8/x2))
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin, "sqrt": numpy.sqrt}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
 
-    362 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        x, y in m; x_dot, y_dot in m/s; delta_x, delta_y in m; delta_x_dot, delta_y_dot in
-        m/s.
-    params : iterable of 5 floats
-        m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
-    c4 = cos_latitude*c1
-    # intermediate terms
-    x0 = y_dot*y_dot
-    x1 = x*y_
-    x2 = y_*x1
-    x3 = x*x
-    x4 = y_*y_
-    x5 = x3 + x4 - c0
-    x6 = x5*x5
-    x7 = cos_latitude*y_
-    x8 = sqrt(-x5)
-    x9 = sin_latitude - x7/x8
-    x10 = x*x1
-    x11 = x8*x8
-    x12 = x8*x11
-    x13 = Omega*(x9 - cos_latitude*x10/x12)
-    x14 = cos_latitude*x8
-    x15 = sin_latitude*y_ + x14
-    x16 = cos_latitude*x15
-    x17 = c2 - x16/x8
-    x18 = x3 - x11
-    x19 = Omega*(sin_latitude + x7*x18/x12)
-    x20 = x_dot*x_dot
-    x21 = x3 - x5
-    x22 = x*x21
-    x23 = x_dot*x1
-    x24 = y_dot*x23
-    x25 = 2.0*x4 - x5
-    x26 = x*x25
-    x27 = (
-        x0*x2/x6 + y_dot*x13 + c1*x*x17 + y_dot*x19 - x20*x22/x6 - 2.0*x*x24/x6 - x0*x26/x6
-    )
-    x28 = x4 - x5
-    x29 = y_*x28
-    x30 = 2.0*x3 - x5
-    x31 = y_*x30
-    x32 = x_dot*x23
-    x33 = (
-        x_dot*x19 + x0*x29/x6 + x20*x31/x6 + 2.0*y_*x24/x6 + x_dot*x13 - x*x32/x6
-        - c1*x9*x15
-    )
-    x34 = x33 + g*y_/x8
-    x35 = m*(1.0/(m*(1.0 - x4/x5)))
-    x36 = x1*x35
-    x37 = m*(1.0 - x3/x5 - x*x35*x2/x6)
-    x38 = m*(x27 - g*x/x8 - x34*x36/x5)/x37
-    x39 = (x34 - x38*x1/x5)*x35
-    x40 = 4.0*x3 - x5
-    x41 = x5*x6
-    x42 = 4.0*x11 + 3.0*x18
-    x43 = c3*y_dot
-    x44 = x1*x43
-    x45 = x12*x11
-    x46 = x4*x40
-    x47 = x11 + (3.0*x3 + 2.0*x11)
-    x48 = (
-        x21*x40*x20/x41 + c1*(x17 + cos_latitude*x3*(x14 - x15)/x12) + 4.0*x30*x24/x41
-        + (4.0*x3*x25 + 2.0*x3*x5 - x5*x25)*x0/x41 + x42*x44/x45 - x0*x46/x41 - x47*x44/x45
-    )
-    x49 = x48 - g*(x3 + x11)/x12 + x39*x31/x6 - 2.0*x38*x22/x6
-    x50 = y_dot*x2/x6 - x*x23/x6
-    x51 = x13 + x19
-    x52 = x4 + x11
-    x53 = x11*x52 + x3*(3.0*x4 + x11)
-    x54 = c4*x*(y_*x15 + x9*x11)/x12
-    x55 = x1*x0
-    x56 = x_dot*y_dot
-    x57 = 4.0*x4 - x5
-    x58 = x3*x57
-    x59 = x25*x55/x41 + (x5 - 2.0*x25)*x55/x41 - (x5 + 2.0*x21)*x32/x41 - x56*x58/x41
-    x60 = 2.0*x4*x11 + x11*x18 + 3.0*x4*x18
-    x61 = g*x1/x12
-    x62 = x53*x43/x45 + x54 + 2.0*x59 - x60*x43/x45 + x61 + 2.0*x38*x10/x6 - x39*x26/x6
-    x63 = (
-        delta_x*x49 + delta_y_dot*(2.0*(x50 - y_dot*x26/x6) + x51) - delta_y*x62
-        - 2.0*x*delta_x_dot*(x_dot*x21 + y_dot*x1)/x6
-    )
-    x64 = c3*x23
-    x65 = x30*x32/x41 + (x5 - 2.0*x30)*x32/x41 - (x5 + 2.0*x28)*x55/x41 - x56*x46/x41
-    x66 = x61 + (x54 + x42*x64/x45 + 2.0*x65 - x47*x64/x45)
-    x67 = c3*x_dot
-    x68 = (
-        x28*x57*x0/x41 + (4.0*x4*x30 + 2.0*x4*x5 - x5*x30)*x20/x41 + 4.0*x25*x24/x41
-        + x53*x67/x45 - x20*x58/x41 - x60*x67/x45 - c1*(x16*x52/x12 - x9*x9)
-    )
-    x69 = delta_y*(x68 - g*x52/x12 + 2.0*x39*x29/x6 - x38*x26/x6)
-    x70 = (
-        delta_x*(x66 + x38*x31/x6 - 2.0*x39*x2/x6)
-        + delta_x_dot*(2.0*(x_dot*x31/x6 + x50) + x51)
-        + 2.0*y_*delta_y_dot*(y_dot*x28 + x23)/x6 - x69
-    )
-    x71 = m*(x63 - x70*x36/x5)/x37
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        x38,
-        -x39,
-        delta_x_dot,
-        delta_y_dot,
-        x71,
-        -(x70 - x71*x1/x5)*x35,
-    )
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (8, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y
-    m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
-    c4 = cos_latitude*c1
-    # intermediate terms
-    x0 = y_dot*y_dot
-    x1 = x*y_
-    x2 = y_*x1
-    x3 = x*x
-    x4 = y_*y_
-    x5 = x3 + x4 - c0
-    x6 = x5*x5
-    x7 = cos_latitude*y_
-    x8 = sqrt(-x5)
-    x9 = sin_latitude - x7/x8
-    x10 = x*x1
-    x11 = x8*x8
-    x12 = x8*x11
-    x13 = Omega*(x9 - cos_latitude*x10/x12)
-    x14 = cos_latitude*x8
-    x15 = sin_latitude*y_ + x14
-    x16 = cos_latitude*x15
-    x17 = c2 - x16/x8
-    x18 = x3 - x11
-    x19 = Omega*(sin_latitude + x7*x18/x12)
-    x20 = x_dot*x_dot
-    x21 = x3 - x5
-    x22 = x*x21
-    x23 = x_dot*x1
-    x24 = y_dot*x23
-    x25 = 2.0*x4 - x5
-    x26 = x*x25
-    x27 = (
-        x0*x2/x6 + y_dot*x13 + c1*x*x17 + y_dot*x19 - x20*x22/x6 - 2.0*x*x24/x6 - x0*x26/x6
-    )
-    x28 = x4 - x5
-    x29 = y_*x28
-    x30 = 2.0*x3 - x5
-    x31 = y_*x30
-    x32 = x_dot*x23
-    x33 = (
-        x_dot*x19 + x0*x29/x6 + x20*x31/x6 + 2.0*y_*x24/x6 + x_dot*x13 - x*x32/x6
-        - c1*x9*x15
-    )
-    x34 = x33 + g*y_/x8
-    x35 = m*(1.0/(m*(1.0 - x4/x5)))
-    x36 = x1*x35
-    x37 = m*(1.0 - x3/x5 - x*x35*x2/x6)
-    x38 = m*(x27 - g*x/x8 - x34*x36/x5)/x37
-    x39 = (x34 - x38*x1/x5)*x35
-    x40 = 4.0*x3 - x5
-    x41 = x5*x6
-    x42 = 4.0*x11 + 3.0*x18
-    x43 = c3*y_dot
-    x44 = x1*x43
-    x45 = x12*x11
-    x46 = x4*x40
-    x47 = x11 + (3.0*x3 + 2.0*x11)
-    x48 = (
-        x21*x40*x20/x41 + c1*(x17 + cos_latitude*x3*(x14 - x15)/x12) + 4.0*x30*x24/x41
-        + (4.0*x3*x25 + 2.0*x3*x5 - x5*x25)*x0/x41 + x42*x44/x45 - x0*x46/x41 - x47*x44/x45
-    )
-    x49 = x48 - g*(x3 + x11)/x12 + x39*x31/x6 - 2.0*x38*x22/x6
-    x50 = y_dot*x2/x6 - x*x23/x6
-    x51 = x13 + x19
-    x52 = x4 + x11
-    x53 = x11*x52 + x3*(3.0*x4 + x11)
-    x54 = c4*x*(y_*x15 + x9*x11)/x12
-    x55 = x1*x0
-    x56 = x_dot*y_dot
-    x57 = 4.0*x4 - x5
-    x58 = x3*x57
-    x59 = x25*x55/x41 + (x5 - 2.0*x25)*x55/x41 - (x5 + 2.0*x21)*x32/x41 - x56*x58/x41
-    x60 = 2.0*x4*x11 + x11*x18 + 3.0*x4*x18
-    x61 = g*x1/x12
-    x62 = x53*x43/x45 + x54 + 2.0*x59 - x60*x43/x45 + x61 + 2.0*x38*x10/x6 - x39*x26/x6
-    x63 = (
-        delta_x*x49 + delta_y_dot*(2.0*(x50 - y_dot*x26/x6) + x51) - delta_y*x62
-        - 2.0*x*delta_x_dot*(x_dot*x21 + y_dot*x1)/x6
-    )
-    x64 = c3*x23
-    x65 = x30*x32/x41 + (x5 - 2.0*x30)*x32/x41 - (x5 + 2.0*x28)*x55/x41 - x56*x46/x41
-    x66 = x61 + (x54 + x42*x64/x45 + 2.0*x65 - x47*x64/x45)
-    x67 = c3*x_dot
-    x68 = (
-        x28*x57*x0/x41 + (4.0*x4*x30 + 2.0*x4*x5 - x5*x30)*x20/x41 + 4.0*x25*x24/x41
-        + x53*x67/x45 - x20*x58/x41 - x60*x67/x45 - c1*(x16*x52/x12 - x9*x9)
-    )
-    x69 = delta_y*(x68 - g*x52/x12 + 2.0*x39*x29/x6 - x38*x26/x6)
-    x70 = (
-        delta_x*(x66 + x38*x31/x6 - 2.0*x39*x2/x6)
-        + delta_x_dot*(2.0*(x_dot*x31/x6 + x50) + x51)
-        + 2.0*y_*delta_y_dot*(y_dot*x28 + x23)/x6 - x69
-    )
-    x71 = m*(x63 - x70*x36/x5)/x37
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        x_dot,
-        y_dot,
-        x38,
-        -x39,
-        delta_x_dot,
-        delta_y_dot,
-        x71,
-        -(x70 - x71*x1/x5)*x35,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    495 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        x, y in m; x_dot, y_dot in m/s; delta_x, delta_y in m; delta_x_dot, delta_y_dot in
-        m/s.
-    params : iterable of 10 floats
-        delta_m in kg; delta_l in m; delta_g in m/s^2; delta_Omega in rad/s; delta_latitude
-        in rad; m in kg; l in m; g in m/s^2; Omega in rad/s; latitude in rad.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
-    c4 = Omega*delta_latitude
-    c5 = cos_latitude*c1
-    c6 = l*delta_l
-    # intermediate terms
-    x0 = x*y_
-    x1 = y_dot*y_dot
-    x2 = x0*x1
-    x3 = y_*x2
-    x4 = x*x
-    x5 = y_*y_
-    x6 = x4 + x5 - c0
-    x7 = x6*x6
-    x8 = cos_latitude*y_
-    x9 = sqrt(-x6)
-    x10 = sin_latitude - x8/x9
-    x11 = x*x0
-    x12 = x9*x9
-    x13 = x9*x12
-    x14 = x10 - cos_latitude*x11/x13
-    x15 = Omega*x14
-    x16 = sin_latitude*y_
-    x17 = cos_latitude*x9
-    x18 = x16 + x17
-    x19 = cos_latitude*x18
-    x20 = c2 - x19/x9
-    x21 = x4 - x12
-    x22 = sin_latitude + x8*x21/x13
-    x23 = Omega*x22
-    x24 = x_dot*x_dot
-    x25 = x4 - x6
-    x26 = x*x25
-    x27 = x_dot*x0
-    x28 = y_dot*x27
-    x29 = x*x28
-    x30 = 2.0*x5 - x6
-    x31 = x*x30
-    x32 = x3/x7 + y_dot*x15 + c1*x*x20 + y_dot*x23 - x24*x26/x7 - 2.0*x29/x7 - x1*x31/x7
-    x33 = g*x
-    x34 = x5 - x6
-    x35 = y_*x34
-    x36 = 2.0*x4 - x6
-    x37 = y_*x36
-    x38 = y_*x28
-    x39 = x_dot*x27
-    x40 = x*x39
-    x41 = x10*x18
-    x42 = x_dot*x23 + x1*x35/x7 + x24*x37/x7 + 2.0*x38/x7 + x_dot*x15 - x40/x7 - c1*x41
-    x43 = g*y_
-    x44 = x42 + x43/x9
-    x45 = m*(1.0/(m*(1.0 - x5/x6)))
-    x46 = x0*x45
-    x47 = m*(1.0 - x4/x6 - y_*x45*x11/x7)
-    x48 = m*(x32 - x33/x9 - x44*x46/x6)/x47
-    x49 = x48*x0
-    x50 = (x44 - x49/x6)*x45
-    x51 = 4.0*x4 - x6
-    x52 = x6*x7
-    x53 = x17 - x18
-    x54 = 4.0*x12 + 3.0*x21
-    x55 = c3*y_dot
-    x56 = x0*x55
-    x57 = x13*x12
-    x58 = x5*x51
-    x59 = x12 + (3.0*x4 + 2.0*x12)
-    x60 = (
-        x25*x51*x24/x52 + c1*(x20 + cos_latitude*x4*x53/x13) + 4.0*x36*x28/x52
-        + (4.0*x4*x30 + 2.0*x4*x6 - x6*x30)*x1/x52 + x54*x56/x57 - x1*x58/x52 - x59*x56/x57
-    )
-    x61 = x60 - g*(x4 + x12)/x13 + x50*x37/x7 - 2.0*x48*x26/x7
-    x62 = y_dot*x0
-    x63 = y_*x62/x7 - x*x27/x7
-    x64 = x15 + x23
-    x65 = Omega*x
-    x66 = delta_Omega*(y_dot*x14 + 2.0*x20*x65 + y_dot*x22)
-    x67 = cos_latitude + x16/x9
-    x68 = x67 + sin_latitude*x11/x13
-    x69 = x8 - sin_latitude*x9
-    x70 = cos_latitude - x16*x21/x13
-    x71 = y_dot*x68 + (sin_latitude*x18 - cos_latitude*x69)*x65/x9 + y_dot*x70
-    x72 = x5 + x12
-    x73 = x12*x72 + x4*(3.0*x5 + x12)
-    x74 = y_*x18 + x10*x12
-    x75 = c5*x
-    x76 = x74*x75/x13
-    x77 = x6 + 2.0*x25
-    x78 = x_dot*y_dot
-    x79 = 4.0*x5 - x6
-    x80 = x4*x79
-    x81 = x30*x2/x52 + (x6 - 2.0*x30)*x2/x52 - x77*x39/x52 - x78*x80/x52
-    x82 = 2.0*x5*x12 + x12*x21 + 3.0*x5*x21
-    x83 = g*x0/x13
-    x84 = x73*x55/x57 + x76 + 2.0*x81 - x82*x55/x57 + x83 + 2.0*x48*x11/x7 - x50*x31/x7
-    x85 = y_*(2.0*x12 + 3.0*x21)
-    x86 = y_*(3.0*x4 + x12)
-    x87 = (
-        x53*x75/x13 + 8.0*x29/x52 + x55*x85/x57
-        + 2.0*(x*x77*x24/x52 + x*(x6 + 2.0*x30)*x1/x52) - 4.0*x3/x52 - x55*x86/x57
-    )
-    x88 = x50*x0
-    x89 = (
-        delta_x*x61 + delta_y_dot*(2.0*(x63 - y_dot*x31/x7) + x64) + x66 + c4*x71
-        - delta_y*x84 - 2.0*x*delta_x_dot*(x_dot*x25 + x62)/x7
-        - c6*(x87 - x33/x13 + 2.0*(x88/x7 - x4*x48/x7)) - delta_g*x/x9
-    )
-    x90 = c3*x27
-    x91 = x6 + 2.0*x34
-    x92 = x36*x39/x52 + (x6 - 2.0*x36)*x39/x52 - x91*x2/x52 - x78*x58/x52
-    x93 = x83 + (x76 + x54*x90/x57 + 2.0*x92 - x59*x90/x57)
-    x94 = c3*x_dot
-    x95 = (
-        8.0*x38/x52 + x94*x86/x57 + 2.0*(y_*x91*x1/x52 + y_*(x6 + 2.0*x36)*x24/x52)
-        - 4.0*x40/x52 - x94*x85/x57 - c5*x74/x13
-    )
-    x96 = delta_Omega*(x_dot*x22 + x_dot*x14 - 2.0*Omega*x41)
-    x97 = x_dot*x70 + x_dot*x68 - Omega*(x18*x67 + x10*x69)
-    x98 = (
-        x34*x79*x1/x52 + (4.0*x5*x36 + 2.0*x5*x6 - x6*x36)*x24/x52 + 4.0*x30*x28/x52
-        + x73*x94/x57 - x24*x80/x52 - x82*x94/x57 - c1*(x19*x72/x13 - x10*x10)
-    )
-    x99 = delta_y*(x98 - g*x72/x13 + 2.0*x50*x35/x7 - x48*x31/x7)
-    x100 = (
-        delta_x*(x93 + x48*x37/x7 - 2.0*y_*x88/x7)
-        + delta_x_dot*(2.0*(x_dot*x37/x7 + x63) + x64)
-        + 2.0*y_*delta_y_dot*(y_dot*x34 + x27)/x7
-        + c6*(x95 - x43/x13 + 2.0*(x5*x50/x7 - x49/x7)) + delta_g*y_/x9 + x96 + c4*x97 - x99
-    )
-    x101 = m*(x89 - x100*x46/x6)/x47
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        x48,
-        -x50,
-        delta_x_dot,
-        delta_y_dot,
-        x101,
-        -(x100 - x101*x0/x6)*x45,
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (8, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y
-    _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params
-    # terms of the parameters alone
-    c0 = l*l
-    sin_latitude = sin(latitude)
-    cos_latitude = cos(latitude)
-    c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
-    c4 = Omega*delta_latitude
-    c5 = cos_latitude*c1
-    c6 = l*delta_l
-    # intermediate terms
-    x0 = x*y_
-    x1 = y_dot*y_dot
-    x2 = x0*x1
-    x3 = y_*x2
-    x4 = x*x
-    x5 = y_*y_
-    x6 = x4 + x5 - c0
-    x7 = x6*x6
-    x8 = cos_latitude*y_
-    x9 = sqrt(-x6)
-    x10 = sin_latitude - x8/x9
-    x11 = x*x0
-    x12 = x9*x9
-    x13 = x9*x12
-    x14 = x10 - cos_latitude*x11/x13
-    x15 = Omega*x14
-    x16 = sin_latitude*y_
-    x17 = cos_latitude*x9
-    x18 = x16 + x17
-    x19 = cos_latitude*x18
-    x20 = c2 - x19/x9
-    x21 = x4 - x12
-    x22 = sin_latitude + x8*x21/x13
-    x23 = Omega*x22
-    x24 = x_dot*x_dot
-    x25 = x4 - x6
-    x26 = x*x25
-    x27 = x_dot*x0
-    x28 = y_dot*x27
-    x29 = x*x28
-    x30 = 2.0*x5 - x6
-    x31 = x*x30
-    x32 = x3/x7 + y_dot*x15 + c1*x*x20 + y_dot*x23 - x24*x26/x7 - 2.0*x29/x7 - x1*x31/x7
-    x33 = g*x
-    x34 = x5 - x6
-    x35 = y_*x34
-    x36 = 2.0*x4 - x6
-    x37 = y_*x36
-    x38 = y_*x28
-    x39 = x_dot*x27
-    x40 = x*x39
-    x41 = x10*x18
-    x42 = x_dot*x23 + x1*x35/x7 + x24*x37/x7 + 2.0*x38/x7 + x_dot*x15 - x40/x7 - c1*x41
-    x43 = g*y_
-    x44 = x42 + x43/x9
-    x45 = m*(1.0/(m*(1.0 - x5/x6)))
-    x46 = x0*x45
-    x47 = m*(1.0 - x4/x6 - y_*x45*x11/x7)
-    x48 = m*(x32 - x33/x9 - x44*x46/x6)/x47
-    x49 = x48*x0
-    x50 = (x44 - x49/x6)*x45
-    x51 = 4.0*x4 - x6
-    x52 = x6*x7
-    x53 = x17 - x18
-    x54 = 4.0*x12 + 3.0*x21
-    x55 = c3*y_dot
-    x56 = x0*x55
-    x57 = x13*x12
-    x58 = x5*x51
-    x59 = x12 + (3.0*x4 + 2.0*x12)
-    x60 = (
-        x25*x51*x24/x52 + c1*(x20 + cos_latitude*x4*x53/x13) + 4.0*x36*x28/x52
-        + (4.0*x4*x30 + 2.0*x4*x6 - x6*x30)*x1/x52 + x54*x56/x57 - x1*x58/x52 - x59*x56/x57
-    )
-    x61 = x60 - g*(x4 + x12)/x13 + x50*x37/x7 - 2.0*x48*x26/x7
-    x62 = y_dot*x0
-    x63 = y_*x62/x7 - x*x27/x7
-    x64 = x15 + x23
-    x65 = Omega*x
-    x66 = delta_Omega*(y_dot*x14 + 2.0*x20*x65 + y_dot*x22)
-    x67 = cos_latitude + x16/x9
-    x68 = x67 + sin_latitude*x11/x13
-    x69 = x8 - sin_latitude*x9
-    x70 = cos_latitude - x16*x21/x13
-    x71 = y_dot*x68 + (sin_latitude*x18 - cos_latitude*x69)*x65/x9 + y_dot*x70
-    x72 = x5 + x12
-    x73 = x12*x72 + x4*(3.0*x5 + x12)
-    x74 = y_*x18 + x10*x12
-    x75 = c5*x
-    x76 = x74*x75/x13
-    x77 = x6 + 2.0*x25
-    x78 = x_dot*y_dot
-    x79 = 4.0*x5 - x6
-    x80 = x4*x79
-    x81 = x30*x2/x52 + (x6 - 2.0*x30)*x2/x52 - x77*x39/x52 - x78*x80/x52
-    x82 = 2.0*x5*x12 + x12*x21 + 3.0*x5*x21
-    x83 = g*x0/x13
-    x84 = x73*x55/x57 + x76 + 2.0*x81 - x82*x55/x57 + x83 + 2.0*x48*x11/x7 - x50*x31/x7
-    x85 = y_*(2.0*x12 + 3.0*x21)
-    x86 = y_*(3.0*x4 + x12)
-    x87 = (
-        x53*x75/x13 + 8.0*x29/x52 + x55*x85/x57
-        + 2.0*(x*x77*x24/x52 + x*(x6 + 2.0*x30)*x1/x52) - 4.0*x3/x52 - x55*x86/x57
-    )
-    x88 = x50*x0
-    x89 = (
-        delta_x*x61 + delta_y_dot*(2.0*(x63 - y_dot*x31/x7) + x64) + x66 + c4*x71
-        - delta_y*x84 - 2.0*x*delta_x_dot*(x_dot*x25 + x62)/x7
-        - c6*(x87 - x33/x13 + 2.0*(x88/x7 - x4*x48/x7)) - delta_g*x/x9
-    )
-    x90 = c3*x27
-    x91 = x6 + 2.0*x34
-    x92 = x36*x39/x52 + (x6 - 2.0*x36)*x39/x52 - x91*x2/x52 - x78*x58/x52
-    x93 = x83 + (x76 + x54*x90/x57 + 2.0*x92 - x59*x90/x57)
-    x94 = c3*x_dot
-    x95 = (
-        8.0*x38/x52 + x94*x86/x57 + 2.0*(y_*x91*x1/x52 + y_*(x6 + 2.0*x36)*x24/x52)
-        - 4.0*x40/x52 - x94*x85/x57 - c5*x74/x13
-    )
-    x96 = delta_Omega*(x_dot*x22 + x_dot*x14 - 2.0*Omega*x41)
-    x97 = x_dot*x70 + x_dot*x68 - Omega*(x18*x67 + x10*x69)
-    x98 = (
-        x34*x79*x1/x52 + (4.0*x5*x36 + 2.0*x5*x6 - x6*x36)*x24/x52 + 4.0*x30*x28/x52
-        + x73*x94/x57 - x24*x80/x52 - x82*x94/x57 - c1*(x19*x72/x13 - x10*x10)
-    )
-    x99 = delta_y*(x98 - g*x72/x13 + 2.0*x50*x35/x7 - x48*x31/x7)
-    x100 = (
-        delta_x*(x93 + x48*x37/x7 - 2.0*y_*x88/x7)
-        + delta_x_dot*(2.0*(x_dot*x37/x7 + x63) + x64)
-        + 2.0*y_*delta_y_dot*(y_dot*x34 + x27)/x7
-        + c6*(x95 - x43/x13 + 2.0*(x5*x50/x7 - x49/x7)) + delta_g*y_/x9 + x96 + c4*x97 - x99
-    )
-    x101 = m*(x89 - x100*x46/x6)/x47
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        x_dot,
-        y_dot,
-        x48,
-        -x50,
-        delta_x_dot,
-        delta_y_dot,
-        x101,
-        -(x100 - x101*x0/x6)*x45,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -26,40 +26,6 @@ State y in functions of the rational form:
     psi_dot [rad/s]
     chi_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_phi [1]
-    cos_phi [1]
-    sin_psi [1]
-    cos_psi [1]
-    sin_chi [1]
-    cos_chi [1]
-    phi_dot [rad/s]
-    psi_dot [rad/s]
-    chi_dot [rad/s]
-    delta_phi [rad]
-    delta_psi [rad]
-    delta_chi [rad]
-    delta_phi_dot [rad/s]
-    delta_psi_dot [rad/s]
-    delta_chi_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_phi [1]
-    cos_phi [1]
-    sin_psi [1]
-    cos_psi [1]
-    sin_chi [1]
-    cos_chi [1]
-    phi_dot [rad/s]
-    psi_dot [rad/s]
-    chi_dot [rad/s]
-    delta_phi [rad]
-    delta_psi [rad]
-    delta_chi [rad]
-    delta_phi_dot [rad/s]
-    delta_psi_dot [rad/s]
-    delta_chi_dot [rad/s]
-
 Parameters params:
     a [m] > 0, default 0.3: length of the crank
     b [m] > 0, default 0.8: length of the coupler
@@ -72,14 +38,16 @@ Parameters params:
 
 Masses and their positions:
     m1 at (a*cos(phi)/2, a*sin(phi)/2), moment of inertia a**2*m1/12, orientation phi
-    m2 at (a*cos(phi) + b*cos(psi)/2, a*sin(phi) + b*sin(psi)/2), moment of inertia b**2*m2/12, orientation psi
-    m3 at (c*cos(chi)/2 + d, c*sin(chi)/2), moment of inertia c**2*m3/12, orientation chi
+    m2 at (a*cos(phi) + b*cos(psi)/2, a*sin(phi) + b*sin(psi)/2),
+        moment of inertia b**2*m2/12, orientation psi
+    m3 at (c*cos(chi)/2 + d, c*sin(chi)/2), moment of inertia c**2*m3/12,
+        orientation chi
 
 Constraints, with their multipliers:
-    a*cos(phi) + b*cos(psi) - c*cos(chi)
-        - d = 0: B_x [N], force of B on the first point, along x
-    a*sin(phi) + b*sin(psi)
-        - c*sin(chi) = 0: B_y [N], force of B on the first point, along y
+    a*cos(phi) + b*cos(psi) - c*cos(chi) - d = 0: B_x [N],
+        force of B on the first point, along x
+    a*sin(phi) + b*sin(psi) - c*sin(chi) = 0: B_y [N], force of B on the first point,
+        along y
 
 Degrees of freedom:
     3 coordinates, 2 constraints, 1 degree of freedom
@@ -109,67 +77,35 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "5a8ccbd4e1a8378f"
+DIGEST = "811a22d693344522"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot"),
     "rational": (
-        "sin_phi",
-        "cos_phi",
-        "sin_psi",
-        "cos_psi",
-        "sin_chi",
-        "cos_chi",
-        "phi_dot",
-        "psi_dot",
+        "sin_phi", "cos_phi", "sin_psi", "cos_psi", "sin_chi", "cos_chi", "phi_dot", "psi_dot",
         "chi_dot",
     ),
     "variational": (
-        "sin_phi",
-        "cos_phi",
-        "sin_psi",
-        "cos_psi",
-        "sin_chi",
-        "cos_chi",
-        "phi_dot",
-        "psi_dot",
-        "chi_dot",
-        "delta_phi",
-        "delta_psi",
-        "delta_chi",
-        "delta_phi_dot",
-        "delta_psi_dot",
+        "sin_phi", "cos_phi", "sin_psi", "cos_psi", "sin_chi", "cos_chi", "phi_dot", "psi_dot",
+        "chi_dot", "delta_phi", "delta_psi", "delta_chi", "delta_phi_dot", "delta_psi_dot",
         "delta_chi_dot",
     ),
     "sensitivity": (
-        "sin_phi",
-        "cos_phi",
-        "sin_psi",
-        "cos_psi",
-        "sin_chi",
-        "cos_chi",
-        "phi_dot",
-        "psi_dot",
-        "chi_dot",
-        "delta_phi",
-        "delta_psi",
-        "delta_chi",
-        "delta_phi_dot",
-        "delta_psi_dot",
+        "sin_phi", "cos_phi", "sin_psi", "cos_psi", "sin_chi", "cos_chi", "phi_dot", "psi_dot",
+        "chi_dot", "delta_phi", "delta_psi", "delta_chi", "delta_phi_dot", "delta_psi_dot",
         "delta_chi_dot",
     ),
 }
@@ -181,68 +117,26 @@ RESIDUALS = ("B_x", "B_y", "B_x_dot", "B_y_dot")
 LINKS = (("rod", (0, 1)), ("rod", (1, 2)), ("rod", (3, 4)))
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "constraints",
-    "constraints_jacobian",
-    "multipliers",
-    "correction",
-    "mass_matrix",
-    "positions",
-    "points",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "constraints",
+    "constraints_jacobian", "multipliers", "correction", "mass_matrix", "positions",
+    "points", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (141, 11),
-    "jacobian": (430, 13),
-    "parameter_jacobian": (436, 11),
-    "energy": (40, 15),
-    "constraints": (29, 0),
-    "constraints_jacobian": (25, 0),
-    "multipliers": (118, 8),
-    "correction": (143, 7),
-    "correction_rational": (137, 7),
-    "correction_variational": (213, 7),
-    "correction_sensitivity": (238, 7),
-    "mass_matrix": (15, 11),
-    "positions": (21, 0),
-    "points": (15, 0),
-    "rational_state": (6, 0),
-    "rhs_rational": (144, 11),
-    "rhs_variational": (298, 13),
-    "rhs_sensitivity": (369, 20),
+    "rhs": (141, 11), "jacobian": (413, 13), "parameter_jacobian": (437, 12),
+    "energy": (40, 15), "constraints": (29, 0), "constraints_jacobian": (25, 0),
+    "multipliers": (118, 8), "correction": (143, 7), "correction_rational": (137, 7),
+    "correction_variational": (216, 7), "correction_sensitivity": (244, 7),
+    "mass_matrix": (15, 11), "positions": (21, 0), "points": (15, 0),
+    "rational_state": (6, 0), "rhs_rational": (144, 11), "rhs_variational": (290, 13),
+    "rhs_sensitivity": (394, 30),
 }
 UNITS = {
-    "a": "m",
-    "b": "m",
-    "c": "m",
-    "d": "m",
-    "g": "m/s^2",
-    "m1": "kg",
-    "m2": "kg",
-    "m3": "kg",
-    "phi": "rad",
-    "phi_dot": "rad/s",
-    "delta_phi": "rad",
-    "delta_phi_dot": "rad/s",
-    "sin_phi": "1",
-    "cos_phi": "1",
-    "psi": "rad",
-    "psi_dot": "rad/s",
-    "delta_psi": "rad",
-    "delta_psi_dot": "rad/s",
-    "sin_psi": "1",
-    "cos_psi": "1",
-    "chi": "rad",
-    "chi_dot": "rad/s",
-    "delta_chi": "rad",
-    "delta_chi_dot": "rad/s",
-    "sin_chi": "1",
-    "cos_chi": "1",
-    "B_x": "N",
-    "B_y": "N",
+    "a": "m", "b": "m", "c": "m", "d": "m", "g": "m/s^2", "m1": "kg", "m2": "kg",
+    "m3": "kg", "phi": "rad", "phi_dot": "rad/s", "delta_phi": "rad",
+    "delta_phi_dot": "rad/s", "sin_phi": "1", "cos_phi": "1", "psi": "rad",
+    "psi_dot": "rad/s", "delta_psi": "rad", "delta_psi_dot": "rad/s", "sin_psi": "1",
+    "cos_psi": "1", "chi": "rad", "chi_dot": "rad/s", "delta_chi": "rad",
+    "delta_chi_dot": "rad/s", "sin_chi": "1", "cos_chi": "1", "B_x": "N", "B_y": "N",
 }
 
 
@@ -345,78 +239,10 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2*b
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/m2
-    c5 = 1.0/m3
-    c6 = 1.0/b
-    c7 = 1.0/c
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    sin_psi = sin(psi)
-    x0 = cos_psi*sin_phi - cos_phi*sin_psi
-    x1 = psi_dot*psi_dot
-    x2 = a*(phi_dot*phi_dot)
-    x3 = x0*x2 - g*cos_psi
-    x4 = cos_phi*cos_psi + sin_phi*sin_psi
-    x5 = m2*x4
-    x6 = 2.0*c3 - 1.5*x4*x5
-    x7 = (c1*x0*x1 + 2.0*c2*cos_phi + 1.5*x3*x5)/x6
-    x8 = (2.0*sin_phi - 3.0*sin_psi*x4)/x6
-    x9 = b*x1
-    cos_chi = cos(chi)
-    x10 = c*(chi_dot*chi_dot)
-    x11 = x3 + x4*x7
-    sin_chi = sin(chi)
-    x12 = g*cos_chi
-    x13 = (
-        cos_phi*x2 + cos_psi*x9 - cos_chi*x10
-        + (1.5*(sin_psi*x11 + sin_chi*x12) - sin_phi*x7)
-    )
-    x14 = (
-        sin_phi*x2 + sin_psi*x9 - sin_chi*x10
-        - (1.5*(cos_psi*x11 + cos_chi*x12) - cos_phi*x7)
-    )
-    x15 = (2.0*cos_phi - 3.0*cos_psi*x4)/x6
-    x16 = c4*cos_psi - 0.5*x4*x15
-    x17 = c5*cos_chi
-    x18 = sin_phi*x15 + 3.0*(sin_psi*x16 + sin_chi*x17)
-    x19 = 1.0/(cos_phi*x15 + 3.0*(cos_psi*x16 + cos_chi*x17))
-    x20 = x18*x19
-    x21 = c4*sin_psi - 0.5*x4*x8
-    x22 = c5*sin_chi
-    x23 = sin_phi*x8 + 3.0*(sin_psi*x21 + sin_chi*x22) - x18*x20
-    x24 = (x13 + x14*x20)/x23
-    x25 = x19*(x14 + x18*x24)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        phi_dot,
-        psi_dot,
-        chi_dot,
-        -c0*(x7 + x8*x24 - x15*x25),
-        3.0*c6*(0.5*x11 + x16*x25 - x21*x24),
-        -3.0*c7*(0.5*x12 + x17*x25 - x22*x24),
-    )
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    430 operations, 13 of them on parameters alone.
+    413 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -442,10 +268,10 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c3 = g*(m2 + 0.5*m1)
     c4 = 1.0/m2
     c5 = 1.0/m3
-    c6 = 1.0/b
+    c6 = g*m3
     c7 = a*m2
-    c8 = 1.0/c
-    c9 = g*m3
+    c8 = 1.0/b
+    c9 = 1.0/c
     # intermediate terms
     sin_phi = sin(phi)
     sin_psi = sin(psi)
@@ -455,555 +281,108 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x1 = m2*x0
     x2 = 2.0*c1 - 1.5*x0*x1
     x3 = (2.0*sin_phi - 3.0*sin_psi*x0)/x2
-    x4 = phi_dot*phi_dot
-    x5 = psi_dot*psi_dot
-    x6 = cos_psi*sin_phi - cos_phi*sin_psi
-    x7 = c2*x6
-    x8 = a*phi_dot
-    x9 = phi_dot*x8
-    x10 = x6*x9 - g*cos_psi
-    x11 = (x5*x7 + 2.0*c3*cos_phi + 1.5*x10*x1)/x2
-    x12 = b*cos_psi
+    x4 = a*phi_dot
+    x5 = phi_dot*x4
+    x6 = sin_phi*x5
+    x7 = psi_dot*psi_dot
+    x8 = cos_psi*sin_phi - cos_phi*sin_psi
+    x9 = c2*x8
+    x10 = x8*x5 - g*cos_psi
+    x11 = (x7*x9 + 2.0*c3*cos_phi + 1.5*x10*x1)/x2
+    x12 = cos_phi*x5
+    x13 = b*x7
+    x14 = cos_psi*x13
     cos_chi = cos(chi)
-    x13 = chi_dot*chi_dot
-    x14 = cos_chi*x13
-    x15 = x10 + x0*x11
+    x15 = c*chi_dot
+    x16 = cos_chi*chi_dot*x15
+    x17 = x10 + x0*x11
     sin_chi = sin(chi)
-    x16 = g*cos_chi
-    x17 = cos_phi*x9 + x5*x12 - c*x14 + (1.5*(sin_psi*x15 + sin_chi*x16) - sin_phi*x11)
-    x18 = b*sin_psi
-    x19 = c*sin_chi
-    x20 = sin_phi*x9 + x5*x18 - x13*x19 - (1.5*(cos_psi*x15 + cos_chi*x16) - cos_phi*x11)
-    x21 = (2.0*cos_phi - 3.0*cos_psi*x0)/x2
-    x22 = c4*cos_psi - 0.5*x0*x21
-    x23 = c5*cos_chi
-    x24 = sin_phi*x21 + 3.0*(sin_psi*x22 + sin_chi*x23)
-    x25 = 1.0/(cos_phi*x21 + 3.0*(cos_psi*x22 + cos_chi*x23))
-    x26 = x24*x25
-    x27 = c4*sin_psi - 0.5*x0*x3
-    x28 = c5*sin_chi
-    x29 = sin_phi*x3 + 3.0*(sin_psi*x27 + sin_chi*x28) - x24*x26
-    x30 = (x17 + x20*x26)/x29
-    x31 = x25*(x20 + x24*x30)
-    x32 = c0*(x11 + x3*x30 - x21*x31)
-    x33 = x0*x5
-    x34 = 0.5*c2*x33 - c3*sin_phi + cos_phi*x30 + sin_phi*x31
-    x35 = c6*(0.5*x15 + x22*x31 - x27*x30)
-    x36 = x6*x32
-    x37 = x0*x4 - x36
-    x38 = c7*x0
-    x39 = (2.0*x34 - 3.0*x35*x7 + 1.5*x37*x38)/x2
-    x40 = a*x37 + x0*x39
-    x41 = a*(sin_phi*x4 + cos_phi*x32) + (sin_phi*x39 - 1.5*sin_psi*x40)
-    x42 = a*(cos_phi*x4 - sin_phi*x32) + (cos_phi*x39 - 1.5*cos_psi*x40)
-    x43 = (x41 - x42*x26)/x29
-    x44 = x25*(x42 - x24*x43)
-    x45 = m2*(x0*x9 - g*sin_psi) + 2.0*(cos_psi*x30 + sin_psi*x31) - c7*x36
-    x46 = (c2*(x33 - 3.0*x6*x35) + 1.5*x0*x45)/x2
-    x47 = c4*x45 + x0*x46
-    x48 = b*(sin_psi*x5 - 3.0*cos_psi*x35) - (sin_phi*x46 - 1.5*sin_psi*x47)
-    x49 = b*(cos_psi*x5 + 3.0*sin_psi*x35) - (cos_phi*x46 - 1.5*cos_psi*x47)
-    x50 = (x48 - x49*x26)/x29
-    x51 = x25*(x49 - x24*x50)
-    x52 = c8*(0.5*x16 + x23*x31 - x28*x30)
-    x53 = c5*(c9*sin_chi + 2.0*(cos_chi*x30 + sin_chi*x31))
-    x54 = c*(sin_chi*x13 + 3.0*cos_chi*x52) - 1.5*sin_chi*x53
-    x55 = c*(x14 - 3.0*sin_chi*x52) - 1.5*cos_chi*x53
-    x56 = (x54 - x55*x26)/x29
-    x57 = x25*(x55 - x24*x56)
-    x58 = x6*phi_dot*x38/x2
-    x59 = x6*x8 + 1.5*x0*x58
-    x60 = 2.0*sin_phi*x8 + 3.0*(cos_phi*x58 - cos_psi*x59)
-    x61 = 2.0*cos_phi*x8 - 3.0*(sin_phi*x58 - sin_psi*x59) + x60*x26
-    x62 = x61/x29
-    x63 = x25*(x60 + x24*x62)
-    x64 = psi_dot*x7/x2
-    x65 = x0*x64
-    x66 = 2.0*psi_dot*x12 - (2.0*sin_phi*x64 - 3.0*sin_psi*x65)
-    x67 = 2.0*psi_dot*x18 + (2.0*cos_phi*x64 - 3.0*cos_psi*x65)
-    x68 = (x66 + x67*x26)/x29
-    x69 = x25*(x67 + x24*x68)
-    x70 = c*chi_dot*(cos_chi + sin_chi*x26)/x29
-    x71 = x25*(chi_dot*x19 + x24*x70)
+    x18 = g*cos_chi
+    x19 = x12 + x14 - x16 + (1.5*(sin_psi*x17 + sin_chi*x18) - sin_phi*x11)
+    x20 = sin_psi*x13
+    x21 = sin_chi*x15
+    x22 = chi_dot*x21
+    x23 = x6 + x20 - x22 - (1.5*(cos_psi*x17 + cos_chi*x18) - cos_phi*x11)
+    x24 = (2.0*cos_phi - 3.0*cos_psi*x0)/x2
+    x25 = c4*cos_psi - 0.5*x0*x24
+    x26 = c5*cos_chi
+    x27 = sin_phi*x24 + 3.0*(sin_psi*x25 + sin_chi*x26)
+    x28 = 1.0/(cos_phi*x24 + 3.0*(cos_psi*x25 + cos_chi*x26))
+    x29 = x27*x28
+    x30 = c4*sin_psi - 0.5*x0*x3
+    x31 = c5*sin_chi
+    x32 = sin_phi*x3 + 3.0*(sin_psi*x30 + sin_chi*x31) - x27*x29
+    x33 = (x19 + x23*x29)/x32
+    x34 = x28*(x23 + x27*x33)
+    x35 = x11 + x3*x33 - x24*x34
+    x36 = 0.5*c2*x0*x7 - c3*sin_phi + cos_phi*x33 + sin_phi*x34
+    x37 = 0.5*x17 + x25*x34 - x30*x33
+    x38 = m2*x8
+    x39 = x0*x5
+    x40 = x39 - x8*x35
+    x41 = (2.0*x36 - 3.0*x37*x38 + 1.5*x40*x1)/x2
+    x42 = x40 + x0*x41
+    x43 = x6 + cos_phi*x35 + (sin_phi*x41 - 1.5*sin_psi*x42)
+    x44 = x12 - sin_phi*x35 + (cos_phi*x41 - 1.5*cos_psi*x42)
+    x45 = (x43 - x44*x29)/x32
+    x46 = x28*(x44 - x27*x45)
+    x47 = m2*(x39 - g*sin_psi) + 2.0*(cos_psi*x33 + sin_psi*x34) - x35*x38
+    x48 = (m2*(x0*x13 - 3.0*x8*x37) + 1.5*x0*x47)/x2
+    x49 = c4*x47 + x0*x48
+    x50 = x20 - 3.0*cos_psi*x37 - (sin_phi*x48 - 1.5*sin_psi*x49)
+    x51 = x14 + 3.0*sin_psi*x37 - (cos_phi*x48 - 1.5*cos_psi*x49)
+    x52 = (x50 - x51*x29)/x32
+    x53 = x28*(x51 - x27*x52)
+    x54 = 0.5*x18 + x26*x34 - x31*x33
+    x55 = c5*(c6*sin_chi + 2.0*(cos_chi*x33 + sin_chi*x34))
+    x56 = x16 - 3.0*sin_chi*x54 - 1.5*cos_chi*x55
+    x57 = x22 + 3.0*cos_chi*x54 - 1.5*sin_chi*x55 - x56*x29
+    x58 = x57/x32
+    x59 = x28*(x56 - x27*x58)
+    x60 = c7*x0*x8*phi_dot/x2
+    x61 = x8*x4 + 1.5*x0*x60
+    x62 = 2.0*sin_phi*x4 + 3.0*(cos_phi*x60 - cos_psi*x61)
+    x63 = 2.0*cos_phi*x4 - 3.0*(sin_phi*x60 - sin_psi*x61) + x62*x29
+    x64 = x63/x32
+    x65 = x28*(x62 + x27*x64)
+    x66 = psi_dot*x9/x2
+    x67 = b*psi_dot
+    x68 = x0*x66
+    x69 = 2.0*cos_psi*x67 - (2.0*sin_phi*x66 - 3.0*sin_psi*x68)
+    x70 = 2.0*sin_psi*x67 + (2.0*cos_phi*x66 - 3.0*cos_psi*x68)
+    x71 = (x69 + x70*x29)/x32
+    x72 = x28*(x70 + x27*x71)
+    x73 = (cos_chi + sin_chi*x29)*x15/x32
+    x74 = x28*(x21 + x27*x73)
     # outputs
     return (
         (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
         (
-            c0*(x3*x43 + x21*x44 - x39),
-            c0*(x46 + x3*x50 + x21*x51),
-            -c0*(x3*x56 + x21*x57),
-            -c0*(3.0*x58 + x3*x62 - x21*x63),
-            -c0*(2.0*x64 + x3*x68 - x21*x69),
-            2.0*c0*(x3*x70 - x21*x71),
+            c0*(x3*x45 + x24*x46 - x41),
+            c0*(x48 + x3*x52 + x24*x53),
+            -c0*(x3*x58 + x24*x59),
+            -c0*(3.0*x60 + x3*x64 - x24*x65),
+            -c0*(2.0*x66 + x3*x71 - x24*x72),
+            2.0*c0*(x3*x73 - x24*x74),
         ),
         (
-            3.0*c6*(0.5*x40 + x27*x43 + x22*x44),
-            3.0*c6*(x27*x50 + x22*x51 - 0.5*x47),
-            -3.0*c6*(x27*x56 + x22*x57),
-            3.0*c6*(x59 + x22*x63 - x27*x62),
-            3.0*c6*(x65 + x22*x69 - x27*x68),
-            6.0*c6*(x27*x70 - x22*x71),
+            3.0*c8*(0.5*x42 + x30*x45 + x25*x46),
+            3.0*c8*(x30*x52 + x25*x53 - 0.5*x49),
+            -3.0*c8*(x30*x58 + x25*x59),
+            3.0*c8*(x61 + x25*x65 - x30*x64),
+            3.0*c8*(x68 + x25*x72 - x30*x71),
+            6.0*c8*(x30*x73 - x25*x74),
         ),
         (
-            -3.0*c8*(x28*x43 + x23*x44),
-            -3.0*c8*(x28*x50 + x23*x51),
-            3.0*c8*(0.5*x53 + x28*x56 + x23*x57),
-            3.0*c8*(x28*x62 - x23*x63),
-            3.0*c8*(x28*x68 - x23*x69),
-            -6.0*c8*(x28*x70 - x23*x71),
+            -3.0*c9*(x31*x45 + x26*x46),
+            -3.0*c9*(x31*x52 + x26*x53),
+            3.0*c9*(0.5*x55 + x31*x58 + x26*x59),
+            3.0*c9*(x31*x64 - x26*x65),
+            3.0*c9*(x31*x71 - x26*x72),
+            -6.0*c9*(x31*x73 - x26*x74),
         ),
-    )
-
-
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = m2*b
-    c3 = g*(m2 + 0.5*m1)
-    c4 = 1.0/m2
-    c5 = 1.0/m3
-    c6 = 1.0/b
-    c7 = a*m2
-    c8 = 1.0/c
-    c9 = g*m3
-    # intermediate terms
-    sin_phi = sin(phi)
-    sin_psi = sin(psi)
-    cos_phi = cos(phi)
-    cos_psi = cos(psi)
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = m2*x0
-    x2 = 2.0*c1 - 1.5*x0*x1
-    x3 = (2.0*sin_phi - 3.0*sin_psi*x0)/x2
-    x4 = phi_dot*phi_dot
-    x5 = psi_dot*psi_dot
-    x6 = cos_psi*sin_phi - cos_phi*sin_psi
-    x7 = c2*x6
-    x8 = a*phi_dot
-    x9 = phi_dot*x8
-    x10 = x6*x9 - g*cos_psi
-    x11 = (x5*x7 + 2.0*c3*cos_phi + 1.5*x10*x1)/x2
-    x12 = b*cos_psi
-    cos_chi = cos(chi)
-    x13 = chi_dot*chi_dot
-    x14 = cos_chi*x13
-    x15 = x10 + x0*x11
-    sin_chi = sin(chi)
-    x16 = g*cos_chi
-    x17 = cos_phi*x9 + x5*x12 - c*x14 + (1.5*(sin_psi*x15 + sin_chi*x16) - sin_phi*x11)
-    x18 = b*sin_psi
-    x19 = c*sin_chi
-    x20 = sin_phi*x9 + x5*x18 - x13*x19 - (1.5*(cos_psi*x15 + cos_chi*x16) - cos_phi*x11)
-    x21 = (2.0*cos_phi - 3.0*cos_psi*x0)/x2
-    x22 = c4*cos_psi - 0.5*x0*x21
-    x23 = c5*cos_chi
-    x24 = sin_phi*x21 + 3.0*(sin_psi*x22 + sin_chi*x23)
-    x25 = 1.0/(cos_phi*x21 + 3.0*(cos_psi*x22 + cos_chi*x23))
-    x26 = x24*x25
-    x27 = c4*sin_psi - 0.5*x0*x3
-    x28 = c5*sin_chi
-    x29 = sin_phi*x3 + 3.0*(sin_psi*x27 + sin_chi*x28) - x24*x26
-    x30 = (x17 + x20*x26)/x29
-    x31 = x25*(x20 + x24*x30)
-    x32 = c0*(x11 + x3*x30 - x21*x31)
-    x33 = x0*x5
-    x34 = 0.5*c2*x33 - c3*sin_phi + cos_phi*x30 + sin_phi*x31
-    x35 = c6*(0.5*x15 + x22*x31 - x27*x30)
-    x36 = x6*x32
-    x37 = x0*x4 - x36
-    x38 = c7*x0
-    x39 = (2.0*x34 - 3.0*x35*x7 + 1.5*x37*x38)/x2
-    x40 = a*x37 + x0*x39
-    x41 = a*(sin_phi*x4 + cos_phi*x32) + (sin_phi*x39 - 1.5*sin_psi*x40)
-    x42 = a*(cos_phi*x4 - sin_phi*x32) + (cos_phi*x39 - 1.5*cos_psi*x40)
-    x43 = (x41 - x42*x26)/x29
-    x44 = x25*(x42 - x24*x43)
-    x45 = m2*(x0*x9 - g*sin_psi) + 2.0*(cos_psi*x30 + sin_psi*x31) - c7*x36
-    x46 = (c2*(x33 - 3.0*x6*x35) + 1.5*x0*x45)/x2
-    x47 = c4*x45 + x0*x46
-    x48 = b*(sin_psi*x5 - 3.0*cos_psi*x35) - (sin_phi*x46 - 1.5*sin_psi*x47)
-    x49 = b*(cos_psi*x5 + 3.0*sin_psi*x35) - (cos_phi*x46 - 1.5*cos_psi*x47)
-    x50 = (x48 - x49*x26)/x29
-    x51 = x25*(x49 - x24*x50)
-    x52 = c8*(0.5*x16 + x23*x31 - x28*x30)
-    x53 = c5*(c9*sin_chi + 2.0*(cos_chi*x30 + sin_chi*x31))
-    x54 = c*(sin_chi*x13 + 3.0*cos_chi*x52) - 1.5*sin_chi*x53
-    x55 = c*(x14 - 3.0*sin_chi*x52) - 1.5*cos_chi*x53
-    x56 = (x54 - x55*x26)/x29
-    x57 = x25*(x55 - x24*x56)
-    x58 = x6*phi_dot*x38/x2
-    x59 = x6*x8 + 1.5*x0*x58
-    x60 = 2.0*sin_phi*x8 + 3.0*(cos_phi*x58 - cos_psi*x59)
-    x61 = 2.0*cos_phi*x8 - 3.0*(sin_phi*x58 - sin_psi*x59) + x60*x26
-    x62 = x61/x29
-    x63 = x25*(x60 + x24*x62)
-    x64 = psi_dot*x7/x2
-    x65 = x0*x64
-    x66 = 2.0*psi_dot*x12 - (2.0*sin_phi*x64 - 3.0*sin_psi*x65)
-    x67 = 2.0*psi_dot*x18 + (2.0*cos_phi*x64 - 3.0*cos_psi*x65)
-    x68 = (x66 + x67*x26)/x29
-    x69 = x25*(x67 + x24*x68)
-    x70 = c*chi_dot*(cos_chi + sin_chi*x26)/x29
-    x71 = x25*(chi_dot*x19 + x24*x70)
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        c0*(x3*x43 + x21*x44 - x39),
-        c0*(x46 + x3*x50 + x21*x51),
-        -c0*(x3*x56 + x21*x57),
-        -c0*(3.0*x58 + x3*x62 - x21*x63),
-        -c0*(2.0*x64 + x3*x68 - x21*x69),
-        2.0*c0*(x3*x70 - x21*x71),
-        3.0*c6*(0.5*x40 + x27*x43 + x22*x44),
-        3.0*c6*(x27*x50 + x22*x51 - 0.5*x47),
-        -3.0*c6*(x27*x56 + x22*x57),
-        3.0*c6*(x59 + x22*x63 - x27*x62),
-        3.0*c6*(x65 + x22*x69 - x27*x68),
-        6.0*c6*(x27*x70 - x22*x71),
-        -3.0*c8*(x28*x43 + x23*x44),
-        -3.0*c8*(x28*x50 + x23*x51),
-        3.0*c8*(0.5*x53 + x28*x56 + x23*x57),
-        3.0*c8*(x28*x62 - x23*x63),
-        3.0*c8*(x28*x68 - x23*x69),
-        -6.0*c8*(x28*x70 - x23*x71),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    436 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        phi, psi, chi in rad; phi_dot, psi_dot, chi_dot in rad/s.
-    params : iterable of 8 floats
-        a, b, c, d in m; g in m/s^2; m1, m2, m3 in kg.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    a, b, c, _, g, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = m2*b
-    c3 = m2 + 0.5*m1
-    c4 = g*c3
-    c5 = 1.0/m2
-    c6 = 1.0/m3
-    c7 = 1.0/b
-    c8 = 1.0/c
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    sin_psi = sin(psi)
-    x0 = cos_psi*sin_phi - cos_phi*sin_psi
-    x1 = psi_dot*psi_dot
-    x2 = x0*x1
-    x3 = phi_dot*phi_dot
-    x4 = a*x3
-    x5 = x0*x4 - g*cos_psi
-    x6 = cos_phi*cos_psi + sin_phi*sin_psi
-    x7 = m2*x6
-    x8 = 2.0*c1 - 1.5*x6*x7
-    x9 = (c2*x2 + 2.0*c4*cos_phi + 1.5*x5*x7)/x8
-    x10 = (2.0*sin_phi - 3.0*sin_psi*x6)/x8
-    x11 = cos_psi*x1
-    cos_chi = cos(chi)
-    x12 = chi_dot*chi_dot
-    x13 = cos_chi*x12
-    x14 = x5 + x6*x9
-    sin_chi = sin(chi)
-    x15 = g*cos_chi
-    x16 = cos_phi*x4 + b*x11 - c*x13 + (1.5*(sin_psi*x14 + sin_chi*x15) - sin_phi*x9)
-    x17 = sin_psi*x1
-    x18 = sin_chi*x12
-    x19 = sin_phi*x4 + b*x17 - c*x18 - (1.5*(cos_psi*x14 + cos_chi*x15) - cos_phi*x9)
-    x20 = (2.0*cos_phi - 3.0*cos_psi*x6)/x8
-    x21 = c5*cos_psi - 0.5*x6*x20
-    x22 = c6*cos_chi
-    x23 = sin_phi*x20 + 3.0*(sin_psi*x21 + sin_chi*x22)
-    x24 = 1.0/(cos_phi*x20 + 3.0*(cos_psi*x21 + cos_chi*x22))
-    x25 = x23*x24
-    x26 = c5*sin_psi - 0.5*x6*x10
-    x27 = c6*sin_chi
-    x28 = sin_phi*x10 + 3.0*(sin_psi*x26 + sin_chi*x27) - x23*x25
-    x29 = (x16 + x19*x25)/x28
-    x30 = x24*(x19 + x23*x29)
-    x31 = c0*(x9 + x10*x29 - x20*x30)
-    x32 = x0*x3 + x6*x31
-    x33 = (2.0*c1*x31 - 1.5*x32*x7)/x8
-    x34 = x32 - x6*x33
-    x35 = sin_phi*x31 - cos_phi*x3 - (sin_phi*x33 + 1.5*sin_psi*x34)
-    x36 = cos_phi*x31 + sin_phi*x3 - (cos_phi*x33 + 1.5*cos_psi*x34)
-    x37 = (x35 - x36*x25)/x28
-    x38 = x24*(x36 - x23*x37)
-    x39 = c7*(0.5*x14 + x21*x30 - x26*x29)
-    x40 = x6*x39
-    x41 = m2*(3.0*x40 - (3.0*x40 + x2))/x8
-    x42 = x39 + 0.5*x6*x41
-    x43 = 3.0*sin_psi*x39 + x11 + (sin_phi*x41 - 3.0*sin_psi*x42)
-    x44 = 3.0*cos_psi*x39 - x17 + (cos_phi*x41 - 3.0*cos_psi*x42)
-    x45 = (x43 - x44*x25)/x28
-    x46 = x24*(x44 - x23*x45)
-    x47 = c8*(0.5*x15 + x22*x30 - x27*x29)
-    x48 = sin_chi*x47
-    x49 = cos_chi*x47
-    x50 = 3.0*x49 - (3.0*x49 + x18)
-    x51 = (3.0*x48 - (3.0*x48 - x13) - x50*x25)/x28
-    x52 = x24*(x50 - x23*x51)
-    x53 = (2.0*c3*cos_phi - 1.5*cos_psi*x7)/x8
-    x54 = cos_psi - x6*x53
-    x55 = sin_phi*x53 + 1.5*(sin_psi*x54 - sin_chi*cos_chi)
-    x56 = cos_phi*x53 + 1.5*(cos_psi*x54 - cos_chi*cos_chi)
-    x57 = (x55 - x56*x25)/x28
-    x58 = x24*(x56 - x23*x57)
-    x59 = g*cos_phi
-    x60 = a*x31
-    x61 = (3.0*x59 - 2.0*x60)/x8
-    x62 = x6*x61
-    x63 = (1.0/3.0)*cos_phi*x61 - 0.5*cos_psi*x62
-    x64 = (1.0/3.0)*sin_phi*x61 - 0.5*sin_psi*x62 - x63*x25
-    x65 = x64/x28
-    x66 = x24*(x63 - x23*x65)
-    x67 = x5 + x6*x60 - 2.0*b*x39
-    x68 = 3.0*b*x40 + 2.0*(x59 + 0.5*b*x2 - x60) + 1.5*x6*x67
-    x69 = x68/x8
-    x70 = c5*x67 + x6*x69
-    x71 = cos_phi*x69 - 1.5*cos_psi*x70
-    x72 = (sin_phi*x69 - 1.5*sin_psi*x70 - x71*x25)/x28
-    x73 = x24*(x71 - x23*x72)
-    x74 = c6*(x15 - 2.0*c*x47)
-    x75 = x74*(sin_chi - cos_chi*x25)/x28
-    x76 = x24*(cos_chi*x74 - x23*x75)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            c0*(x33 + x10*x37 + x20*x38),
-            -c0*(x10*x45 + x20*x46 - x41),
-            c0*(x10*x51 + x20*x52),
-            0.0,
-            c0*(x10*x57 + x20*x58 - x53),
-            c0*(x10*x65 + x20*x66 - (1.0/3.0)*x61),
-            c0*(x10*x72 + x20*x73 - x69),
-            -1.5*c0*(x10*x75 + x20*x76),
-        ),
-        (
-            3.0*c7*(0.5*x34 + x26*x37 + x21*x38),
-            -3.0*c7*(x42 + x26*x45 + x21*x46),
-            3.0*c7*(x26*x51 + x21*x52),
-            0.0,
-            3.0*c7*(x26*x57 + x21*x58 - 0.5*x54),
-            c7*(0.5*x62 + 3.0*(x26*x65 + x21*x66)),
-            3.0*c7*(0.5*x70 + x26*x72 + x21*x73),
-            -4.5*c7*(x26*x75 + x21*x76),
-        ),
-        (
-            -3.0*c8*(x27*x37 + x22*x38),
-            3.0*c8*(x27*x45 + x22*x46),
-            -3.0*c8*(x27*x51 + x22*x52 - x47),
-            0.0,
-            -3.0*c8*(0.5*cos_chi + x27*x57 + x22*x58),
-            -3.0*c8*(x27*x65 + x22*x66),
-            -3.0*c8*(x27*x72 + x22*x73),
-            1.5*c8*(3.0*(x27*x75 + x22*x76) - x74),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (6, 8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = m2*b
-    c3 = m2 + 0.5*m1
-    c4 = g*c3
-    c5 = 1.0/m2
-    c6 = 1.0/m3
-    c7 = 1.0/b
-    c8 = 1.0/c
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    sin_psi = sin(psi)
-    x0 = cos_psi*sin_phi - cos_phi*sin_psi
-    x1 = psi_dot*psi_dot
-    x2 = x0*x1
-    x3 = phi_dot*phi_dot
-    x4 = a*x3
-    x5 = x0*x4 - g*cos_psi
-    x6 = cos_phi*cos_psi + sin_phi*sin_psi
-    x7 = m2*x6
-    x8 = 2.0*c1 - 1.5*x6*x7
-    x9 = (c2*x2 + 2.0*c4*cos_phi + 1.5*x5*x7)/x8
-    x10 = (2.0*sin_phi - 3.0*sin_psi*x6)/x8
-    x11 = cos_psi*x1
-    cos_chi = cos(chi)
-    x12 = chi_dot*chi_dot
-    x13 = cos_chi*x12
-    x14 = x5 + x6*x9
-    sin_chi = sin(chi)
-    x15 = g*cos_chi
-    x16 = cos_phi*x4 + b*x11 - c*x13 + (1.5*(sin_psi*x14 + sin_chi*x15) - sin_phi*x9)
-    x17 = sin_psi*x1
-    x18 = sin_chi*x12
-    x19 = sin_phi*x4 + b*x17 - c*x18 - (1.5*(cos_psi*x14 + cos_chi*x15) - cos_phi*x9)
-    x20 = (2.0*cos_phi - 3.0*cos_psi*x6)/x8
-    x21 = c5*cos_psi - 0.5*x6*x20
-    x22 = c6*cos_chi
-    x23 = sin_phi*x20 + 3.0*(sin_psi*x21 + sin_chi*x22)
-    x24 = 1.0/(cos_phi*x20 + 3.0*(cos_psi*x21 + cos_chi*x22))
-    x25 = x23*x24
-    x26 = c5*sin_psi - 0.5*x6*x10
-    x27 = c6*sin_chi
-    x28 = sin_phi*x10 + 3.0*(sin_psi*x26 + sin_chi*x27) - x23*x25
-    x29 = (x16 + x19*x25)/x28
-    x30 = x24*(x19 + x23*x29)
-    x31 = c0*(x9 + x10*x29 - x20*x30)
-    x32 = x0*x3 + x6*x31
-    x33 = (2.0*c1*x31 - 1.5*x32*x7)/x8
-    x34 = x32 - x6*x33
-    x35 = sin_phi*x31 - cos_phi*x3 - (sin_phi*x33 + 1.5*sin_psi*x34)
-    x36 = cos_phi*x31 + sin_phi*x3 - (cos_phi*x33 + 1.5*cos_psi*x34)
-    x37 = (x35 - x36*x25)/x28
-    x38 = x24*(x36 - x23*x37)
-    x39 = c7*(0.5*x14 + x21*x30 - x26*x29)
-    x40 = x6*x39
-    x41 = m2*(3.0*x40 - (3.0*x40 + x2))/x8
-    x42 = x39 + 0.5*x6*x41
-    x43 = 3.0*sin_psi*x39 + x11 + (sin_phi*x41 - 3.0*sin_psi*x42)
-    x44 = 3.0*cos_psi*x39 - x17 + (cos_phi*x41 - 3.0*cos_psi*x42)
-    x45 = (x43 - x44*x25)/x28
-    x46 = x24*(x44 - x23*x45)
-    x47 = c8*(0.5*x15 + x22*x30 - x27*x29)
-    x48 = sin_chi*x47
-    x49 = cos_chi*x47
-    x50 = 3.0*x49 - (3.0*x49 + x18)
-    x51 = (3.0*x48 - (3.0*x48 - x13) - x50*x25)/x28
-    x52 = x24*(x50 - x23*x51)
-    x53 = (2.0*c3*cos_phi - 1.5*cos_psi*x7)/x8
-    x54 = cos_psi - x6*x53
-    x55 = sin_phi*x53 + 1.5*(sin_psi*x54 - sin_chi*cos_chi)
-    x56 = cos_phi*x53 + 1.5*(cos_psi*x54 - cos_chi*cos_chi)
-    x57 = (x55 - x56*x25)/x28
-    x58 = x24*(x56 - x23*x57)
-    x59 = g*cos_phi
-    x60 = a*x31
-    x61 = (3.0*x59 - 2.0*x60)/x8
-    x62 = x6*x61
-    x63 = (1.0/3.0)*cos_phi*x61 - 0.5*cos_psi*x62
-    x64 = (1.0/3.0)*sin_phi*x61 - 0.5*sin_psi*x62 - x63*x25
-    x65 = x64/x28
-    x66 = x24*(x63 - x23*x65)
-    x67 = x5 + x6*x60 - 2.0*b*x39
-    x68 = 3.0*b*x40 + 2.0*(x59 + 0.5*b*x2 - x60) + 1.5*x6*x67
-    x69 = x68/x8
-    x70 = c5*x67 + x6*x69
-    x71 = cos_phi*x69 - 1.5*cos_psi*x70
-    x72 = (sin_phi*x69 - 1.5*sin_psi*x70 - x71*x25)/x28
-    x73 = x24*(x71 - x23*x72)
-    x74 = c6*(x15 - 2.0*c*x47)
-    x75 = x74*(sin_chi - cos_chi*x25)/x28
-    x76 = x24*(cos_chi*x74 - x23*x75)
-    # outputs
-    return _stacked(
-        (6, 8),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c0*(x33 + x10*x37 + x20*x38),
-        -c0*(x10*x45 + x20*x46 - x41),
-        c0*(x10*x51 + x20*x52),
-        0.0,
-        c0*(x10*x57 + x20*x58 - x53),
-        c0*(x10*x65 + x20*x66 - (1.0/3.0)*x61),
-        c0*(x10*x72 + x20*x73 - x69),
-        -1.5*c0*(x10*x75 + x20*x76),
-        3.0*c7*(0.5*x34 + x26*x37 + x21*x38),
-        -3.0*c7*(x42 + x26*x45 + x21*x46),
-        3.0*c7*(x26*x51 + x21*x52),
-        0.0,
-        3.0*c7*(x26*x57 + x21*x58 - 0.5*x54),
-        c7*(0.5*x62 + 3.0*(x26*x65 + x21*x66)),
-        3.0*c7*(0.5*x70 + x26*x72 + x21*x73),
-        -4.5*c7*(x26*x75 + x21*x76),
-        -3.0*c8*(x27*x37 + x22*x38),
-        3.0*c8*(x27*x45 + x22*x46),
-        -3.0*c8*(x27*x51 + x22*x52 - x47),
-        0.0,
-        -3.0*c8*(0.5*cos_chi + x27*x57 + x22*x58),
-        -3.0*c8*(x27*x65 + x22*x66),
-        -3.0*c8*(x27*x72 + x22*x73),
-        1.5*c8*(3.0*(x27*x75 + x22*x76) - x74),
     )
 
 
@@ -1029,30 +408,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     phi, psi, chi, phi_dot, psi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
     a, b, c, _, g, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = a*g*(m2 + 0.5*m1)
-    c1 = a*a*(m2 + (1.0/3.0)*m1)
-    c2 = m2*b
-    c3 = g*c2
-    c4 = m3*c
-    c5 = g*c4
-    c6 = a*c2
-    c7 = b*c2
-    c8 = c*c4
-    # intermediate terms
-    x0 = c1*phi_dot*phi_dot + c3*sin(psi) + c5*sin(chi) + c6*phi_dot*psi_dot*cos(phi - psi)
-    x1 = c0*sin(phi) + 0.5*x0 + (1.0/6.0)*(c7*psi_dot*psi_dot + c8*chi_dot*chi_dot)
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
     # terms of the parameters alone
     c0 = a*g*(m2 + 0.5*m1)
     c1 = a*a*(m2 + (1.0/3.0)*m1)
@@ -1105,120 +460,6 @@ def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
         x3 + x4 - x5,
         -(x3*phi_dot + x4*psi_dot - x5*chi_dot),
         x1*phi_dot + x2*psi_dot - x0*chi_dot,
-    )
-
-
-def constraints_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, d, _, _, _, _ = params
-    # intermediate terms
-    x0 = c*cos(chi)
-    x1 = a*cos(phi)
-    x2 = b*cos(psi)
-    x3 = a*sin(phi)
-    x4 = b*sin(psi)
-    x5 = c*sin(chi)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        -(d + x0 - x1 - x2),
-        x3 + x4 - x5,
-        -(x3*phi_dot + x4*psi_dot - x5*chi_dot),
-        x1*phi_dot + x2*psi_dot - x0*chi_dot,
-    )
-
-
-def constraints_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `constraints` with respect to the state.
-
-    25 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        phi, psi, chi in rad; phi_dot, psi_dot, chi_dot in rad/s.
-    params : iterable of 8 floats
-        a, b, c, d in m; g in m/s^2; m1, m2, m3 in kg.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of residual i with respect to y[j].
-    """
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    a, b, c, _, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # intermediate terms
-    x0 = a*sin(phi)
-    x1 = -x0
-    x2 = b*sin(psi)
-    x3 = -x2
-    x4 = c*sin(chi)
-    x5 = a*cos(phi)
-    x6 = b*cos(psi)
-    x7 = c*cos(chi)
-    x8 = -x7
-    # outputs
-    return (
-        (x1, x3, x4, 0.0, 0.0, 0.0),
-        (x5, x6, x8, 0.0, 0.0, 0.0),
-        (-x5*phi_dot, -x6*psi_dot, x7*chi_dot, x1, x3, x4),
-        (-x0*phi_dot, -x2*psi_dot, x4*chi_dot, x5, x6, x8),
-    )
-
-
-def constraints_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints_jacobian` over arrays: the result has shape (4, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, _, _, _, _ = params
-    # intermediate terms
-    x0 = a*sin(phi)
-    x1 = -x0
-    x2 = b*sin(psi)
-    x3 = -x2
-    x4 = c*sin(chi)
-    x5 = a*cos(phi)
-    x6 = b*cos(psi)
-    x7 = c*cos(chi)
-    x8 = -x7
-    # outputs
-    return _stacked(
-        (4, 6),
-        y[0],
-        x1,
-        x3,
-        x4,
-        0.0,
-        0.0,
-        0.0,
-        x5,
-        x6,
-        x8,
-        0.0,
-        0.0,
-        0.0,
-        -x5*phi_dot,
-        -x6*psi_dot,
-        x7*chi_dot,
-        x1,
-        x3,
-        x4,
-        -x0*phi_dot,
-        -x2*psi_dot,
-        x4*chi_dot,
-        x5,
-        x6,
-        x8,
     )
 
 
@@ -1290,59 +531,6 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x22, x18*(x13 + x17*x22))
 
 
-def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`multipliers` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = m2*b
-    c1 = g*(m2 + 0.5*m1)
-    c2 = m2 + (1.0/3.0)*m1
-    c3 = 1.0/m2
-    c4 = 1.0/m3
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = a*(phi_dot*phi_dot)
-    cos_psi = cos(psi)
-    x1 = psi_dot*psi_dot
-    x2 = b*x1
-    cos_chi = cos(chi)
-    x3 = c*(chi_dot*chi_dot)
-    sin_psi = sin(psi)
-    sin_phi = sin(phi)
-    x4 = sin_phi*cos_psi - cos_phi*sin_psi
-    x5 = x4*x0 - g*cos_psi
-    x6 = cos_phi*cos_psi + sin_phi*sin_psi
-    x7 = m2*x6
-    x8 = 2.0*c2 - 1.5*x6*x7
-    x9 = (c0*x4*x1 + 2.0*c1*cos_phi + 1.5*x5*x7)/x8
-    x10 = x5 + x6*x9
-    sin_chi = sin(chi)
-    x11 = g*cos_chi
-    x12 = (
-        cos_phi*x0 + cos_psi*x2 - cos_chi*x3
-        + (1.5*(sin_psi*x10 + sin_chi*x11) - sin_phi*x9)
-    )
-    x13 = (
-        sin_phi*x0 + sin_psi*x2 - sin_chi*x3
-        - (1.5*(cos_psi*x10 + cos_chi*x11) - cos_phi*x9)
-    )
-    x14 = (2.0*cos_phi - 3.0*cos_psi*x6)/x8
-    x15 = c3*cos_psi - 0.5*x6*x14
-    x16 = c4*cos_chi
-    x17 = sin_phi*x14 + 3.0*(sin_psi*x15 + sin_chi*x16)
-    x18 = 1.0/(cos_phi*x14 + 3.0*(cos_psi*x15 + cos_chi*x16))
-    x19 = x17*x18
-    x20 = (2.0*sin_phi - 3.0*sin_psi*x6)/x8
-    x21 = sin_psi*(c3*sin_psi - 0.5*x6*x20) + sin_chi*(c4*sin_chi)
-    x22 = (x12 + x13*x19)/(sin_phi*x20 + 3.0*x21 - x17*x19)
-    # outputs
-    return _stacked((2,), y[0], x22, x18*(x13 + x17*x22))
-
-
 def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     """Changes of y that remove small residuals of the constraints, by one step of Newton's method.
 
@@ -1381,108 +569,49 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     x1 = 2.0*c1 - 1.5*m2*x0*x0
     x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
     cos_chi = cos(chi)
+    x3 = c*cos_chi
+    x4 = a*cos_phi
+    x5 = b*cos_psi
+    x6 = a*sin_phi
+    x7 = b*sin_psi
     sin_chi = sin(chi)
-    x3 = a*sin_phi + b*sin_psi - c*sin_chi
-    x4 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x5 = c2*cos_psi - 0.5*x0*x4
-    x6 = c3*cos_chi
-    x7 = sin_phi*x4 + 3.0*(sin_psi*x5 + sin_chi*x6)
-    x8 = 1.0/(cos_phi*x4 + 3.0*(cos_psi*x5 + cos_chi*x6))
-    x9 = x7*x8
-    x10 = c2*sin_psi - 0.5*x0*x2
-    x11 = c3*sin_chi
-    x12 = sin_phi*x2 + 3.0*(sin_psi*x10 + sin_chi*x11) - x7*x9
-    x13 = (d + c*cos_chi - a*cos_phi - b*cos_psi - x3*x9)/x12
-    x14 = x8*(x3 - x7*x13)
-    x15 = c0*(x2*x13 + x4*x14)
-    x16 = c4*(x10*x13 + x5*x14)
-    x17 = c5*(x11*x13 + x6*x14)
-    x18 = a*phi_dot
-    x19 = sin_phi*x18
-    x20 = b*psi_dot
-    x21 = sin_psi*x20
-    x22 = c*chi_dot
-    x23 = sin_chi*x22
-    x24 = cos_phi*x18
-    x25 = cos_psi*x20
-    x26 = cos_chi*x22
-    x27 = x19 + x21 - x23 - (x15*x24 + 3.0*(x16*x25 + x17*x26))
-    x28 = x24 + x25 - x26 + (x15*x19 + 3.0*(x16*x21 + x17*x23))
-    x29 = (x27 - x28*x9)/x12
-    x30 = x8*(x28 - x7*x29)
+    x8 = c*sin_chi
+    x9 = x6 + x7 - x8
+    x10 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
+    x11 = c2*cos_psi - 0.5*x0*x10
+    x12 = c3*cos_chi
+    x13 = sin_phi*x10 + 3.0*(sin_psi*x11 + sin_chi*x12)
+    x14 = 1.0/(cos_phi*x10 + 3.0*(cos_psi*x11 + cos_chi*x12))
+    x15 = x13*x14
+    x16 = c2*sin_psi - 0.5*x0*x2
+    x17 = c3*sin_chi
+    x18 = sin_phi*x2 + 3.0*(sin_psi*x16 + sin_chi*x17) - x13*x15
+    x19 = (d + x3 - x4 - x5 - x9*x15)/x18
+    x20 = x14*(x9 - x13*x19)
+    x21 = x2*x19 + x10*x20
+    x22 = x16*x19 + x11*x20
+    x23 = x17*x19 + x12*x20
+    x24 = x21*phi_dot
+    x25 = x22*psi_dot
+    x26 = x23*chi_dot
+    x27 = (
+        x6*phi_dot + x7*psi_dot - x8*chi_dot
+        - (cos_phi*x24 + 3.0*(cos_psi*x25 + cos_chi*x26))
+    )
+    x28 = (
+        x4*phi_dot + x5*psi_dot - x3*chi_dot
+        + (sin_phi*x24 + 3.0*(sin_psi*x25 + sin_chi*x26))
+    )
+    x29 = (x27 - x28*x15)/x18
+    x30 = x14*(x28 - x13*x29)
     # outputs
     return (
-        -x15,
-        -3.0*x16,
-        3.0*x17,
-        -c0*(x2*x29 + x4*x30),
-        -3.0*c4*(x10*x29 + x5*x30),
-        3.0*c5*(x11*x29 + x6*x30),
-    )
-
-
-def correction_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, d, _, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = 1.0/m2
-    c3 = 1.0/m3
-    c4 = 1.0/b
-    c5 = 1.0/c
-    # intermediate terms
-    sin_phi = sin(phi)
-    sin_psi = sin(psi)
-    cos_phi = cos(phi)
-    cos_psi = cos(psi)
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = 2.0*c1 - 1.5*m2*x0*x0
-    x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
-    cos_chi = cos(chi)
-    sin_chi = sin(chi)
-    x3 = a*sin_phi + b*sin_psi - c*sin_chi
-    x4 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x5 = c2*cos_psi - 0.5*x0*x4
-    x6 = c3*cos_chi
-    x7 = sin_phi*x4 + 3.0*(sin_psi*x5 + sin_chi*x6)
-    x8 = 1.0/(cos_phi*x4 + 3.0*(cos_psi*x5 + cos_chi*x6))
-    x9 = x7*x8
-    x10 = c2*sin_psi - 0.5*x0*x2
-    x11 = c3*sin_chi
-    x12 = sin_phi*x2 + 3.0*(sin_psi*x10 + sin_chi*x11) - x7*x9
-    x13 = (d + c*cos_chi - a*cos_phi - b*cos_psi - x3*x9)/x12
-    x14 = x8*(x3 - x7*x13)
-    x15 = c0*(x2*x13 + x4*x14)
-    x16 = c4*(x10*x13 + x5*x14)
-    x17 = c5*(x11*x13 + x6*x14)
-    x18 = a*phi_dot
-    x19 = sin_phi*x18
-    x20 = b*psi_dot
-    x21 = sin_psi*x20
-    x22 = c*chi_dot
-    x23 = sin_chi*x22
-    x24 = cos_phi*x18
-    x25 = cos_psi*x20
-    x26 = cos_chi*x22
-    x27 = x19 + x21 - x23 - (x15*x24 + 3.0*(x16*x25 + x17*x26))
-    x28 = x24 + x25 - x26 + (x15*x19 + 3.0*(x16*x21 + x17*x23))
-    x29 = (x27 - x28*x9)/x12
-    x30 = x8*(x28 - x7*x29)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        -x15,
-        -3.0*x16,
-        3.0*x17,
-        -c0*(x2*x29 + x4*x30),
-        -3.0*c4*(x10*x29 + x5*x30),
-        3.0*c5*(x11*x29 + x6*x30),
+        -c0*x21,
+        -3.0*c4*x22,
+        3.0*c5*x23,
+        -c0*(x2*x29 + x10*x30),
+        -3.0*c4*(x16*x29 + x11*x30),
+        3.0*c5*(x17*x29 + x12*x30),
     )
 
 
@@ -1507,138 +636,8 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Changes of coordinates, angles among them, and of velocities.
     """
     # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    a, b, c, d, _, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = 1.0/m2
-    c3 = 1.0/m3
-    c4 = 1.0/b
-    c5 = 1.0/c
-    # intermediate terms
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = 2.0*c1 - 1.5*m2*x0*x0
-    x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
-    x3 = a*sin_phi + b*sin_psi - c*sin_chi
-    x4 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x5 = c2*cos_psi - 0.5*x0*x4
-    x6 = c3*cos_chi
-    x7 = sin_phi*x4 + 3.0*(sin_psi*x5 + sin_chi*x6)
-    x8 = 1.0/(cos_phi*x4 + 3.0*(cos_psi*x5 + cos_chi*x6))
-    x9 = x7*x8
-    x10 = c2*sin_psi - 0.5*x0*x2
-    x11 = c3*sin_chi
-    x12 = sin_phi*x2 + 3.0*(sin_psi*x10 + sin_chi*x11) - x7*x9
-    x13 = (d + c*cos_chi - a*cos_phi - b*cos_psi - x3*x9)/x12
-    x14 = x8*(x3 - x7*x13)
-    x15 = c0*(x2*x13 + x4*x14)
-    x16 = c4*(x10*x13 + x5*x14)
-    x17 = c5*(x11*x13 + x6*x14)
-    x18 = a*phi_dot
-    x19 = sin_phi*x18
-    x20 = b*psi_dot
-    x21 = sin_psi*x20
-    x22 = c*chi_dot
-    x23 = sin_chi*x22
-    x24 = cos_phi*x18
-    x25 = cos_psi*x20
-    x26 = cos_chi*x22
-    x27 = x19 + x21 - x23 - (x15*x24 + 3.0*(x16*x25 + x17*x26))
-    x28 = x24 + x25 - x26 + (x15*x19 + 3.0*(x16*x21 + x17*x23))
-    x29 = (x27 - x28*x9)/x12
-    x30 = x8*(x28 - x7*x29)
-    # outputs
-    return (
-        -x15,
-        -3.0*x16,
-        3.0*x17,
-        -c0*(x2*x29 + x4*x30),
-        -3.0*c4*(x10*x29 + x5*x30),
-        3.0*c5*(x11*x29 + x6*x30),
-    )
-
-
-def correction_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, d, _, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = 1.0/m2
-    c3 = 1.0/m3
-    c4 = 1.0/b
-    c5 = 1.0/c
-    # intermediate terms
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = 2.0*c1 - 1.5*m2*x0*x0
-    x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
-    x3 = a*sin_phi + b*sin_psi - c*sin_chi
-    x4 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x5 = c2*cos_psi - 0.5*x0*x4
-    x6 = c3*cos_chi
-    x7 = sin_phi*x4 + 3.0*(sin_psi*x5 + sin_chi*x6)
-    x8 = 1.0/(cos_phi*x4 + 3.0*(cos_psi*x5 + cos_chi*x6))
-    x9 = x7*x8
-    x10 = c2*sin_psi - 0.5*x0*x2
-    x11 = c3*sin_chi
-    x12 = sin_phi*x2 + 3.0*(sin_psi*x10 + sin_chi*x11) - x7*x9
-    x13 = (d + c*cos_chi - a*cos_phi - b*cos_psi - x3*x9)/x12
-    x14 = x8*(x3 - x7*x13)
-    x15 = c0*(x2*x13 + x4*x14)
-    x16 = c4*(x10*x13 + x5*x14)
-    x17 = c5*(x11*x13 + x6*x14)
-    x18 = a*phi_dot
-    x19 = sin_phi*x18
-    x20 = b*psi_dot
-    x21 = sin_psi*x20
-    x22 = c*chi_dot
-    x23 = sin_chi*x22
-    x24 = cos_phi*x18
-    x25 = cos_psi*x20
-    x26 = cos_chi*x22
-    x27 = x19 + x21 - x23 - (x15*x24 + 3.0*(x16*x25 + x17*x26))
-    x28 = x24 + x25 - x26 + (x15*x19 + 3.0*(x16*x21 + x17*x23))
-    x29 = (x27 - x28*x9)/x12
-    x30 = x8*(x28 - x7*x29)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        -x15,
-        -3.0*x16,
-        3.0*x17,
-        -c0*(x2*x29 + x4*x30),
-        -3.0*c4*(x10*x29 + x5*x30),
-        3.0*c5*(x11*x29 + x6*x30),
-    )
-
-
-def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction` of the motion, and changes that make its perturbation tangent to the constraints.
-
-    213 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 15 floats
-        sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi in 1; phi_dot, psi_dot, chi_dot
-        in rad/s; delta_phi, delta_psi, delta_chi in rad; delta_phi_dot, delta_psi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 8 floats
-        a, b, c, d in m; g in m/s^2; m1, m2, m3 in kg.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
     a, b, c, d, _, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/a
@@ -1669,337 +668,30 @@ def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
     x18 = sin_phi*x2 + 3.0*(sin_psi*x16 + sin_chi*x17) - x13*x15
     x19 = (d + x3 - x4 - x5 - x9*x15)/x18
     x20 = x14*(x9 - x13*x19)
-    x21 = c0*(x2*x19 + x10*x20)
-    x22 = c4*(x16*x19 + x11*x20)
-    x23 = c5*(x17*x19 + x12*x20)
-    x24 = x6*phi_dot
-    x25 = x7*psi_dot
-    x26 = x8*chi_dot
-    x27 = x4*phi_dot
-    x28 = x5*psi_dot
-    x29 = x3*chi_dot
-    x30 = x24 + x25 - x26 - (x21*x27 + 3.0*(x22*x28 + x23*x29))
-    x31 = x27 + x28 - x29 + (x21*x24 + 3.0*(x22*x25 + x23*x26))
-    x32 = (x30 - x31*x15)/x18
-    x33 = x14*(x31 - x13*x32)
-    x34 = x4*delta_phi + x5*delta_psi - x3*delta_chi
-    x35 = x6*delta_phi + x7*delta_psi - x8*delta_chi - x34*x15
-    x36 = x35/x18
-    x37 = x14*(x34 - x13*x36)
-    x38 = c0*(x2*x36 + x10*x37)
-    x39 = c4*(x16*x36 + x11*x37)
-    x40 = c5*(x17*x36 + x12*x37)
-    x41 = delta_phi - x38
-    x42 = delta_psi - 3.0*x39
-    x43 = delta_chi + 3.0*x40
-    x44 = (
-        x27*x41 + x28*x42 + x6*delta_phi_dot + x7*delta_psi_dot - x29*x43 - x8*delta_chi_dot
+    x21 = x2*x19 + x10*x20
+    x22 = x16*x19 + x11*x20
+    x23 = x17*x19 + x12*x20
+    x24 = x21*phi_dot
+    x25 = x22*psi_dot
+    x26 = x23*chi_dot
+    x27 = (
+        x6*phi_dot + x7*psi_dot - x8*chi_dot
+        - (cos_phi*x24 + 3.0*(cos_psi*x25 + cos_chi*x26))
     )
-    x45 = (
-        x24*x41 + x25*x42 + x3*delta_chi_dot - x26*x43 - x4*delta_phi_dot - x5*delta_psi_dot
+    x28 = (
+        x4*phi_dot + x5*psi_dot - x3*chi_dot
+        + (sin_phi*x24 + 3.0*(sin_psi*x25 + sin_chi*x26))
     )
-    x46 = (x44 + x45*x15)/x18
-    x47 = x14*(x45 + x13*x46)
+    x29 = (x27 - x28*x15)/x18
+    x30 = x14*(x28 - x13*x29)
     # outputs
     return (
-        (-x21, -3.0*x22, 3.0*x23),
-        (
-            -c0*(x2*x32 + x10*x33),
-            -3.0*c4*(x16*x32 + x11*x33),
-            3.0*c5*(x17*x32 + x12*x33),
-        ),
-        (-x38, -3.0*x39, 3.0*x40),
-        (
-            -c0*(x2*x46 - x10*x47),
-            -3.0*c4*(x16*x46 - x11*x47),
-            3.0*c5*(x17*x46 - x12*x47),
-        ),
-    )
-
-
-def correction_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_variational` over arrays: the result has shape (4, 3, ...)."""
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y
-    a, b, c, d, _, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = 1.0/m2
-    c3 = 1.0/m3
-    c4 = 1.0/b
-    c5 = 1.0/c
-    # intermediate terms
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = 2.0*c1 - 1.5*m2*x0*x0
-    x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
-    x3 = c*cos_chi
-    x4 = a*cos_phi
-    x5 = b*cos_psi
-    x6 = a*sin_phi
-    x7 = b*sin_psi
-    x8 = c*sin_chi
-    x9 = x6 + x7 - x8
-    x10 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x11 = c2*cos_psi - 0.5*x0*x10
-    x12 = c3*cos_chi
-    x13 = sin_phi*x10 + 3.0*(sin_psi*x11 + sin_chi*x12)
-    x14 = 1.0/(cos_phi*x10 + 3.0*(cos_psi*x11 + cos_chi*x12))
-    x15 = x13*x14
-    x16 = c2*sin_psi - 0.5*x0*x2
-    x17 = c3*sin_chi
-    x18 = sin_phi*x2 + 3.0*(sin_psi*x16 + sin_chi*x17) - x13*x15
-    x19 = (d + x3 - x4 - x5 - x9*x15)/x18
-    x20 = x14*(x9 - x13*x19)
-    x21 = c0*(x2*x19 + x10*x20)
-    x22 = c4*(x16*x19 + x11*x20)
-    x23 = c5*(x17*x19 + x12*x20)
-    x24 = x6*phi_dot
-    x25 = x7*psi_dot
-    x26 = x8*chi_dot
-    x27 = x4*phi_dot
-    x28 = x5*psi_dot
-    x29 = x3*chi_dot
-    x30 = x24 + x25 - x26 - (x21*x27 + 3.0*(x22*x28 + x23*x29))
-    x31 = x27 + x28 - x29 + (x21*x24 + 3.0*(x22*x25 + x23*x26))
-    x32 = (x30 - x31*x15)/x18
-    x33 = x14*(x31 - x13*x32)
-    x34 = x4*delta_phi + x5*delta_psi - x3*delta_chi
-    x35 = x6*delta_phi + x7*delta_psi - x8*delta_chi - x34*x15
-    x36 = x35/x18
-    x37 = x14*(x34 - x13*x36)
-    x38 = c0*(x2*x36 + x10*x37)
-    x39 = c4*(x16*x36 + x11*x37)
-    x40 = c5*(x17*x36 + x12*x37)
-    x41 = delta_phi - x38
-    x42 = delta_psi - 3.0*x39
-    x43 = delta_chi + 3.0*x40
-    x44 = (
-        x27*x41 + x28*x42 + x6*delta_phi_dot + x7*delta_psi_dot - x29*x43 - x8*delta_chi_dot
-    )
-    x45 = (
-        x24*x41 + x25*x42 + x3*delta_chi_dot - x26*x43 - x4*delta_phi_dot - x5*delta_psi_dot
-    )
-    x46 = (x44 + x45*x15)/x18
-    x47 = x14*(x45 + x13*x46)
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        -x21,
-        -3.0*x22,
-        3.0*x23,
-        -c0*(x2*x32 + x10*x33),
-        -3.0*c4*(x16*x32 + x11*x33),
-        3.0*c5*(x17*x32 + x12*x33),
-        -x38,
-        -3.0*x39,
-        3.0*x40,
-        -c0*(x2*x46 - x10*x47),
-        -3.0*c4*(x16*x46 - x11*x47),
-        3.0*c5*(x17*x46 - x12*x47),
-    )
-
-
-def correction_sensitivity(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction_variational` with perturbed parameters, whose perturbations precede them.
-
-    238 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 15 floats
-        sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi in 1; phi_dot, psi_dot, chi_dot
-        in rad/s; delta_phi, delta_psi, delta_chi in rad; delta_phi_dot, delta_psi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 16 floats
-        delta_a, delta_b, delta_c, delta_d in m; delta_g in m/s^2; delta_m1, delta_m2,
-        delta_m3 in kg; a, b, c, d in m; g in m/s^2; m1, m2, m3 in kg.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_a, delta_b, delta_c, delta_d, _, _, _, _, a, b, c, d, _, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = 1.0/m2
-    c3 = 1.0/m3
-    c4 = 1.0/b
-    c5 = 1.0/c
-    # intermediate terms
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = 2.0*c1 - 1.5*m2*x0*x0
-    x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
-    x3 = c*cos_chi
-    x4 = a*cos_phi
-    x5 = b*cos_psi
-    x6 = a*sin_phi
-    x7 = b*sin_psi
-    x8 = c*sin_chi
-    x9 = x6 + x7 - x8
-    x10 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x11 = c2*cos_psi - 0.5*x0*x10
-    x12 = c3*cos_chi
-    x13 = sin_phi*x10 + 3.0*(sin_psi*x11 + sin_chi*x12)
-    x14 = 1.0/(cos_phi*x10 + 3.0*(cos_psi*x11 + cos_chi*x12))
-    x15 = x13*x14
-    x16 = c2*sin_psi - 0.5*x0*x2
-    x17 = c3*sin_chi
-    x18 = sin_phi*x2 + 3.0*(sin_psi*x16 + sin_chi*x17) - x13*x15
-    x19 = (d + x3 - x4 - x5 - x9*x15)/x18
-    x20 = x14*(x9 - x13*x19)
-    x21 = c0*(x2*x19 + x10*x20)
-    x22 = c4*(x16*x19 + x11*x20)
-    x23 = c5*(x17*x19 + x12*x20)
-    x24 = x6*phi_dot
-    x25 = x7*psi_dot
-    x26 = x8*chi_dot
-    x27 = x4*phi_dot
-    x28 = x5*psi_dot
-    x29 = x3*chi_dot
-    x30 = x24 + x25 - x26 - (x21*x27 + 3.0*(x22*x28 + x23*x29))
-    x31 = x27 + x28 - x29 + (x21*x24 + 3.0*(x22*x25 + x23*x26))
-    x32 = (x30 - x31*x15)/x18
-    x33 = x14*(x31 - x13*x32)
-    x34 = delta_c*cos_chi
-    x35 = delta_a*cos_phi
-    x36 = delta_b*cos_psi
-    x37 = delta_d + x6*delta_phi + x7*delta_psi + x34 - x8*delta_chi - x35 - x36
-    x38 = delta_a*sin_phi
-    x39 = delta_b*sin_psi
-    x40 = delta_c*sin_chi
-    x41 = x4*delta_phi + x5*delta_psi + x38 + x39 - x3*delta_chi - x40
-    x42 = (x37 - x41*x15)/x18
-    x43 = x14*(x41 - x13*x42)
-    x44 = c0*(x2*x42 + x10*x43)
-    x45 = c4*(x16*x42 + x11*x43)
-    x46 = c5*(x17*x42 + x12*x43)
-    x47 = delta_phi - x44
-    x48 = delta_psi - 3.0*x45
-    x49 = delta_chi + 3.0*x46
-    x50 = (
-        x27*x47 + x28*x48 + x6*delta_phi_dot + x7*delta_psi_dot + phi_dot*x38 + psi_dot*x39
-        - x29*x49 - x8*delta_chi_dot - chi_dot*x40
-    )
-    x51 = (
-        x26*x49 + x4*delta_phi_dot + x5*delta_psi_dot + phi_dot*x35 + psi_dot*x36 - x24*x47
-        - x25*x48 - x3*delta_chi_dot - chi_dot*x34
-    )
-    x52 = (x50 - x51*x15)/x18
-    x53 = x14*(x51 - x13*x52)
-    # outputs
-    return (
-        (-x21, -3.0*x22, 3.0*x23),
-        (
-            -c0*(x2*x32 + x10*x33),
-            -3.0*c4*(x16*x32 + x11*x33),
-            3.0*c5*(x17*x32 + x12*x33),
-        ),
-        (-x44, -3.0*x45, 3.0*x46),
-        (
-            -c0*(x2*x52 + x10*x53),
-            -3.0*c4*(x16*x52 + x11*x53),
-            3.0*c5*(x17*x52 + x12*x53),
-        ),
-    )
-
-
-def correction_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_sensitivity` over arrays: the result has shape (4, 3, ...)."""
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y
-    delta_a, delta_b, delta_c, delta_d, _, _, _, _, a, b, c, d, _, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2 + (1.0/3.0)*m1
-    c2 = 1.0/m2
-    c3 = 1.0/m3
-    c4 = 1.0/b
-    c5 = 1.0/c
-    # intermediate terms
-    x0 = cos_phi*cos_psi + sin_phi*sin_psi
-    x1 = 2.0*c1 - 1.5*m2*x0*x0
-    x2 = (2.0*sin_phi - 3.0*sin_psi*x0)/x1
-    x3 = c*cos_chi
-    x4 = a*cos_phi
-    x5 = b*cos_psi
-    x6 = a*sin_phi
-    x7 = b*sin_psi
-    x8 = c*sin_chi
-    x9 = x6 + x7 - x8
-    x10 = (2.0*cos_phi - 3.0*cos_psi*x0)/x1
-    x11 = c2*cos_psi - 0.5*x0*x10
-    x12 = c3*cos_chi
-    x13 = sin_phi*x10 + 3.0*(sin_psi*x11 + sin_chi*x12)
-    x14 = 1.0/(cos_phi*x10 + 3.0*(cos_psi*x11 + cos_chi*x12))
-    x15 = x13*x14
-    x16 = c2*sin_psi - 0.5*x0*x2
-    x17 = c3*sin_chi
-    x18 = sin_phi*x2 + 3.0*(sin_psi*x16 + sin_chi*x17) - x13*x15
-    x19 = (d + x3 - x4 - x5 - x9*x15)/x18
-    x20 = x14*(x9 - x13*x19)
-    x21 = c0*(x2*x19 + x10*x20)
-    x22 = c4*(x16*x19 + x11*x20)
-    x23 = c5*(x17*x19 + x12*x20)
-    x24 = x6*phi_dot
-    x25 = x7*psi_dot
-    x26 = x8*chi_dot
-    x27 = x4*phi_dot
-    x28 = x5*psi_dot
-    x29 = x3*chi_dot
-    x30 = x24 + x25 - x26 - (x21*x27 + 3.0*(x22*x28 + x23*x29))
-    x31 = x27 + x28 - x29 + (x21*x24 + 3.0*(x22*x25 + x23*x26))
-    x32 = (x30 - x31*x15)/x18
-    x33 = x14*(x31 - x13*x32)
-    x34 = delta_c*cos_chi
-    x35 = delta_a*cos_phi
-    x36 = delta_b*cos_psi
-    x37 = delta_d + x6*delta_phi + x7*delta_psi + x34 - x8*delta_chi - x35 - x36
-    x38 = delta_a*sin_phi
-    x39 = delta_b*sin_psi
-    x40 = delta_c*sin_chi
-    x41 = x4*delta_phi + x5*delta_psi + x38 + x39 - x3*delta_chi - x40
-    x42 = (x37 - x41*x15)/x18
-    x43 = x14*(x41 - x13*x42)
-    x44 = c0*(x2*x42 + x10*x43)
-    x45 = c4*(x16*x42 + x11*x43)
-    x46 = c5*(x17*x42 + x12*x43)
-    x47 = delta_phi - x44
-    x48 = delta_psi - 3.0*x45
-    x49 = delta_chi + 3.0*x46
-    x50 = (
-        x27*x47 + x28*x48 + x6*delta_phi_dot + x7*delta_psi_dot + phi_dot*x38 + psi_dot*x39
-        - x29*x49 - x8*delta_chi_dot - chi_dot*x40
-    )
-    x51 = (
-        x26*x49 + x4*delta_phi_dot + x5*delta_psi_dot + phi_dot*x35 + psi_dot*x36 - x24*x47
-        - x25*x48 - x3*delta_chi_dot - chi_dot*x34
-    )
-    x52 = (x50 - x51*x15)/x18
-    x53 = x14*(x51 - x13*x52)
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        -x21,
-        -3.0*x22,
-        3.0*x23,
-        -c0*(x2*x32 + x10*x33),
-        -3.0*c4*(x16*x32 + x11*x33),
-        3.0*c5*(x17*x32 + x12*x33),
-        -x44,
-        -3.0*x45,
-        3.0*x46,
-        -c0*(x2*x52 + x10*x53),
-        -3.0*c4*(x16*x52 + x11*x53),
-        3.0*c5*(x17*x52 + x12*x53),
+        -c0*x21,
+        -3.0*c4*x22,
+        3.0*c5*x23,
+        -c0*(x2*x29 + x10*x30),
+        -3.0*c4*(x16*x29 + x11*x30),
+        3.0*c5*(x17*x29 + x12*x30),
     )
 
 
@@ -2038,34 +730,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos
-
-    # inputs
-    phi, psi, _, _, _, _ = y
-    a, b, c, _, _, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = m2*b
-    c1 = a*c0
-    # intermediate terms
-    x0 = 0.5*c1*cos(phi - psi)
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        a*a*(m2 + (1.0/3.0)*m1),
-        x0,
-        0.0,
-        x0,
-        (1.0/3.0)*b*c0,
-        0.0,
-        0.0,
-        0.0,
-        (1.0/3.0)*m3*c*c,
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -2096,29 +760,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
         (0.5*x0, 0.5*x1),
         (x0 + 0.5*b*cos(psi), x1 + 0.5*b*sin(psi)),
         (d + 0.5*c*cos(chi), 0.5*c*sin(chi)),
-    )
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (3, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, _, _, _ = y
-    a, b, c, d, _, _, _, _ = params
-    # intermediate terms
-    x0 = a*cos(phi)
-    x1 = a*sin(phi)
-    # outputs
-    return _stacked(
-        (3, 2),
-        y[0],
-        0.5*x0,
-        0.5*x1,
-        x0 + 0.5*b*cos(psi),
-        x1 + 0.5*b*sin(psi),
-        d + 0.5*c*cos(chi),
-        0.5*c*sin(chi),
     )
 
 
@@ -2157,33 +798,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (5, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, _, _, _ = y
-    a, b, c, d, _, _, _, _ = params
-    # intermediate terms
-    x0 = a*cos(phi)
-    x1 = a*sin(phi)
-    # outputs
-    return _stacked(
-        (5, 2),
-        y[0],
-        0.0,
-        0.0,
-        x0,
-        x1,
-        x0 + b*cos(psi),
-        x1 + b*sin(psi),
-        d,
-        0.0,
-        d + c*cos(chi),
-        c*sin(chi),
-    )
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -2219,28 +833,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (9, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, chi, phi_dot, psi_dot, chi_dot = y
-    # outputs
-    return _stacked(
-        (9,),
-        y[0],
-        sin(phi),
-        cos(phi),
-        sin(psi),
-        cos(psi),
-        sin(chi),
-        cos(chi),
-        phi_dot,
-        psi_dot,
-        chi_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -2262,69 +854,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    a, b, c, _, g, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2*b
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/m2
-    c5 = 1.0/m3
-    c6 = 1.0/b
-    c7 = 1.0/c
-    # intermediate terms
-    x0 = sin_phi*cos_psi - cos_phi*sin_psi
-    x1 = psi_dot*psi_dot
-    x2 = a*(phi_dot*phi_dot)
-    x3 = x0*x2 - g*cos_psi
-    x4 = cos_phi*cos_psi + sin_phi*sin_psi
-    x5 = m2*x4
-    x6 = 2.0*c3 - 1.5*x4*x5
-    x7 = (c1*x0*x1 + 2.0*c2*cos_phi + 1.5*x3*x5)/x6
-    x8 = (2.0*sin_phi - 3.0*sin_psi*x4)/x6
-    x9 = b*x1
-    x10 = c*(chi_dot*chi_dot)
-    x11 = x3 + x4*x7
-    x12 = g*cos_chi
-    x13 = (
-        cos_phi*x2 + cos_psi*x9 - cos_chi*x10
-        + (1.5*(sin_psi*x11 + sin_chi*x12) - sin_phi*x7)
-    )
-    x14 = (
-        sin_phi*x2 + sin_psi*x9 - sin_chi*x10
-        - (1.5*(cos_psi*x11 + cos_chi*x12) - cos_phi*x7)
-    )
-    x15 = (2.0*cos_phi - 3.0*cos_psi*x4)/x6
-    x16 = c4*cos_psi - 0.5*x4*x15
-    x17 = c5*cos_chi
-    x18 = sin_phi*x15 + 3.0*(sin_psi*x16 + sin_chi*x17)
-    x19 = 1.0/(cos_phi*x15 + 3.0*(cos_psi*x16 + cos_chi*x17))
-    x20 = x18*x19
-    x21 = c4*sin_psi - 0.5*x4*x8
-    x22 = c5*sin_chi
-    x23 = sin_phi*x8 + 3.0*(sin_psi*x21 + sin_chi*x22) - x18*x20
-    x24 = (x13 + x14*x20)/x23
-    x25 = x19*(x14 + x18*x24)
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
-        chi_dot*cos_chi,
-        -chi_dot*sin_chi,
-        -c0*(x7 + x8*x24 - x15*x25),
-        3.0*c6*(0.5*x11 + x16*x25 - x21*x24),
-        -3.0*c7*(0.5*x12 + x17*x25 - x22*x24),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (9, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
+    a, b, c, _, g, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/a
     c1 = m2*b
@@ -2368,9 +900,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x24 = (x13 + x14*x20)/x23
     x25 = x19*(x14 + x18*x24)
     # outputs
-    return _stacked(
-        (9,),
-        y[0],
+    return (
         phi_dot*cos_phi,
         -phi_dot*sin_phi,
         psi_dot*cos_psi,
@@ -2383,504 +913,70 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    298 operations, 13 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 15 floats
-        sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi in 1; phi_dot, psi_dot, chi_dot
-        in rad/s; delta_phi, delta_psi, delta_chi in rad; delta_phi_dot, delta_psi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 8 floats
-        a, b, c, d in m; g in m/s^2; m1, m2, m3 in kg.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    a, b, c, _, g, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2*b
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/m2
-    c5 = 1.0/m3
-    c6 = 1.0/b
-    c7 = 1.0/c
-    c8 = a*m2
-    c9 = g*m3
-    # intermediate terms
-    x0 = chi_dot*cos_chi
-    x1 = chi_dot*sin_chi
-    x2 = psi_dot*psi_dot
-    x3 = sin_phi*cos_psi - cos_phi*sin_psi
-    x4 = c1*x3
-    x5 = phi_dot*phi_dot
-    x6 = a*x5
-    x7 = x3*x6 - g*cos_psi
-    x8 = cos_phi*cos_psi + sin_phi*sin_psi
-    x9 = m2*x8
-    x10 = 2.0*c3 - 1.5*x8*x9
-    x11 = (x2*x4 + 2.0*c2*cos_phi + 1.5*x7*x9)/x10
-    x12 = (2.0*sin_phi - 3.0*sin_psi*x8)/x10
-    x13 = b*cos_psi
-    x14 = chi_dot*chi_dot
-    x15 = cos_chi*x14
-    x16 = x7 + x8*x11
-    x17 = g*cos_chi
-    x18 = cos_phi*x6 + x2*x13 - c*x15 + (1.5*(sin_psi*x16 + sin_chi*x17) - sin_phi*x11)
-    x19 = b*sin_psi
-    x20 = sin_chi*x14
-    x21 = sin_phi*x6 + x2*x19 - c*x20 - (1.5*(cos_psi*x16 + cos_chi*x17) - cos_phi*x11)
-    x22 = (2.0*cos_phi - 3.0*cos_psi*x8)/x10
-    x23 = c4*cos_psi - 0.5*x8*x22
-    x24 = c5*cos_chi
-    x25 = sin_phi*x22 + 3.0*(sin_psi*x23 + sin_chi*x24)
-    x26 = 1.0/(cos_phi*x22 + 3.0*(cos_psi*x23 + cos_chi*x24))
-    x27 = x25*x26
-    x28 = c4*sin_psi - 0.5*x8*x12
-    x29 = c5*sin_chi
-    x30 = sin_phi*x12 + 3.0*(sin_psi*x28 + sin_chi*x29) - x25*x27
-    x31 = (x18 + x21*x27)/x30
-    x32 = x26*(x21 + x25*x31)
-    x33 = c0*(x11 + x12*x31 - x22*x32)
-    x34 = c6*(0.5*x16 + x23*x32 - x28*x31)
-    x35 = c7*(0.5*x17 + x24*x32 - x29*x31)
-    x36 = a*delta_phi
-    x37 = b*delta_psi
-    x38 = c*delta_chi_dot
-    x39 = phi_dot*delta_phi_dot
-    x40 = a*x39
-    x41 = psi_dot*delta_psi_dot
-    x42 = c*delta_chi
-    x43 = (
-        (sin_phi*x5 + cos_phi*x33)*x36 + (sin_psi*x2 - 3.0*cos_psi*x34)*x37
-        + 2.0*(x0*x38 - cos_phi*x40 - x41*x13) - (x20 + 3.0*cos_chi*x35)*x42
-    )
-    x44 = x8*x2
-    x45 = 0.5*c1*x44 - c2*sin_phi + cos_phi*x31 + sin_phi*x32 - 1.5*x34*x4
-    x46 = 2.0*(delta_phi*x45 + x41*x4) - c1*delta_psi*(x44 - 3.0*x3*x34)
-    x47 = x3*x33
-    x48 = cos_psi*x31 + sin_psi*x32 + 0.5*(m2*(x8*x6 - g*sin_psi) - c8*x47)
-    x49 = c8*delta_phi*(x8*x5 - x47) + 2.0*(c8*x3*x39 - delta_psi*x48)
-    x50 = (x46 + 1.5*x8*x49)/x10
-    x51 = c5*delta_chi*(0.5*c9*sin_chi + cos_chi*x31 + sin_chi*x32)
-    x52 = c4*x49 + x8*x50
-    x53 = x43 + (sin_phi*x50 + 3.0*sin_chi*x51 - 1.5*sin_psi*x52)
-    x54 = (
-        (cos_phi*x5 - sin_phi*x33)*x36 + (cos_psi*x2 + 3.0*sin_psi*x34)*x37
-        + 2.0*(sin_phi*x40 + x41*x19 - x1*x38) - (x15 - 3.0*sin_chi*x35)*x42
-    )
-    x55 = x54 + (cos_phi*x50 + 3.0*cos_chi*x51 - 1.5*cos_psi*x52)
-    x56 = (x53 - x55*x27)/x30
-    x57 = x26*(x55 - x25*x56)
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
-        x0,
-        -x1,
-        -x33,
-        3.0*x34,
-        -3.0*x35,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_chi_dot,
-        c0*(x12*x56 + x22*x57 - x50),
-        3.0*c6*(0.5*x52 + x28*x56 + x23*x57),
-        -3.0*c7*(x29*x56 + x24*x57 - x51),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (15, ...)."""
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y
-    a, b, c, _, g, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2*b
-    c2 = g*(m2 + 0.5*m1)
-    c3 = m2 + (1.0/3.0)*m1
-    c4 = 1.0/m2
-    c5 = 1.0/m3
-    c6 = 1.0/b
-    c7 = 1.0/c
-    c8 = a*m2
-    c9 = g*m3
-    # intermediate terms
-    x0 = chi_dot*cos_chi
-    x1 = chi_dot*sin_chi
-    x2 = psi_dot*psi_dot
-    x3 = sin_phi*cos_psi - cos_phi*sin_psi
-    x4 = c1*x3
-    x5 = phi_dot*phi_dot
-    x6 = a*x5
-    x7 = x3*x6 - g*cos_psi
-    x8 = cos_phi*cos_psi + sin_phi*sin_psi
-    x9 = m2*x8
-    x10 = 2.0*c3 - 1.5*x8*x9
-    x11 = (x2*x4 + 2.0*c2*cos_phi + 1.5*x7*x9)/x10
-    x12 = (2.0*sin_phi - 3.0*sin_psi*x8)/x10
-    x13 = b*cos_psi
-    x14 = chi_dot*chi_dot
-    x15 = cos_chi*x14
-    x16 = x7 + x8*x11
-    x17 = g*cos_chi
-    x18 = cos_phi*x6 + x2*x13 - c*x15 + (1.5*(sin_psi*x16 + sin_chi*x17) - sin_phi*x11)
-    x19 = b*sin_psi
-    x20 = sin_chi*x14
-    x21 = sin_phi*x6 + x2*x19 - c*x20 - (1.5*(cos_psi*x16 + cos_chi*x17) - cos_phi*x11)
-    x22 = (2.0*cos_phi - 3.0*cos_psi*x8)/x10
-    x23 = c4*cos_psi - 0.5*x8*x22
-    x24 = c5*cos_chi
-    x25 = sin_phi*x22 + 3.0*(sin_psi*x23 + sin_chi*x24)
-    x26 = 1.0/(cos_phi*x22 + 3.0*(cos_psi*x23 + cos_chi*x24))
-    x27 = x25*x26
-    x28 = c4*sin_psi - 0.5*x8*x12
-    x29 = c5*sin_chi
-    x30 = sin_phi*x12 + 3.0*(sin_psi*x28 + sin_chi*x29) - x25*x27
-    x31 = (x18 + x21*x27)/x30
-    x32 = x26*(x21 + x25*x31)
-    x33 = c0*(x11 + x12*x31 - x22*x32)
-    x34 = c6*(0.5*x16 + x23*x32 - x28*x31)
-    x35 = c7*(0.5*x17 + x24*x32 - x29*x31)
-    x36 = a*delta_phi
-    x37 = b*delta_psi
-    x38 = c*delta_chi_dot
-    x39 = phi_dot*delta_phi_dot
-    x40 = a*x39
-    x41 = psi_dot*delta_psi_dot
-    x42 = c*delta_chi
-    x43 = (
-        (sin_phi*x5 + cos_phi*x33)*x36 + (sin_psi*x2 - 3.0*cos_psi*x34)*x37
-        + 2.0*(x0*x38 - cos_phi*x40 - x41*x13) - (x20 + 3.0*cos_chi*x35)*x42
-    )
-    x44 = x8*x2
-    x45 = 0.5*c1*x44 - c2*sin_phi + cos_phi*x31 + sin_phi*x32 - 1.5*x34*x4
-    x46 = 2.0*(delta_phi*x45 + x41*x4) - c1*delta_psi*(x44 - 3.0*x3*x34)
-    x47 = x3*x33
-    x48 = cos_psi*x31 + sin_psi*x32 + 0.5*(m2*(x8*x6 - g*sin_psi) - c8*x47)
-    x49 = c8*delta_phi*(x8*x5 - x47) + 2.0*(c8*x3*x39 - delta_psi*x48)
-    x50 = (x46 + 1.5*x8*x49)/x10
-    x51 = c5*delta_chi*(0.5*c9*sin_chi + cos_chi*x31 + sin_chi*x32)
-    x52 = c4*x49 + x8*x50
-    x53 = x43 + (sin_phi*x50 + 3.0*sin_chi*x51 - 1.5*sin_psi*x52)
-    x54 = (
-        (cos_phi*x5 - sin_phi*x33)*x36 + (cos_psi*x2 + 3.0*sin_psi*x34)*x37
-        + 2.0*(sin_phi*x40 + x41*x19 - x1*x38) - (x15 - 3.0*sin_chi*x35)*x42
-    )
-    x55 = x54 + (cos_phi*x50 + 3.0*cos_chi*x51 - 1.5*cos_psi*x52)
-    x56 = (x53 - x55*x27)/x30
-    x57 = x26*(x55 - x25*x56)
-    # outputs
-    return _stacked(
-        (15,),
-        y[0],
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
-        x0,
-        -x1,
-        -x33,
-        3.0*x34,
-        -3.0*x35,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_chi_dot,
-        c0*(x12*x56 + x22*x57 - x50),
-        3.0*c6*(0.5*x52 + x28*x56 + x23*x57),
-        -3.0*c7*(x29*x56 + x24*x57 - x51),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+constraints_many = _over_arrays(constraints)
+multipliers_many = _over_arrays(multipliers)
+correction_many = _over_arrays(correction)
+correction_rational_many = _over_arrays(correction_rational)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    369 operations, 20 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 15 floats
-        sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi in 1; phi_dot, psi_dot, chi_dot
-        in rad/s; delta_phi, delta_psi, delta_chi in rad; delta_phi_dot, delta_psi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 16 floats
-        delta_a, delta_b, delta_c, delta_d in m; delta_g in m/s^2; delta_m1, delta_m2,
-        delta_m3 in kg; a, b, c, d in m; g in m/s^2; m1, m2, m3 in kg.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_a, delta_b, delta_c, _, delta_g, delta_m1, delta_m2, delta_m3, a, b, c, _, g, m1, m2, m3 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2*b
-    c2 = m2 + 0.5*m1
-    c3 = g*c2
-    c4 = m2 + (1.0/3.0)*m1
-    c5 = 1.0/m2
-    c6 = 1.0/m3
-    c7 = 1.0/b
-    c8 = 1.0/c
-    c9 = m2*delta_b
-    c10 = c2*delta_g
-    c11 = c4*delta_a
-    c12 = a*m2
-    c13 = m2*delta_a
-    c14 = m2*delta_g
-    c15 = g*m3
-    c16 = m3*delta_c
-    c17 = m3*delta_g
-    # intermediate terms
-    x0 = chi_dot*cos_chi
-    x1 = chi_dot*sin_chi
-    x2 = psi_dot*psi_dot
-    x3 = sin_phi*cos_psi - cos_phi*sin_psi
-    x4 = c1*x3
-    x5 = phi_dot*phi_dot
-    x6 = a*x5
-    x7 = x3*x6 - g*cos_psi
-    x8 = cos_phi*cos_psi + sin_phi*sin_psi
-    x9 = m2*x8
-    x10 = 2.0*c4 - 1.5*x8*x9
-    x11 = (x2*x4 + 2.0*c3*cos_phi + 1.5*x7*x9)/x10
-    x12 = (2.0*sin_phi - 3.0*sin_psi*x8)/x10
-    x13 = b*x2
-    x14 = chi_dot*chi_dot
-    x15 = cos_chi*x14
-    x16 = x7 + x8*x11
-    x17 = g*cos_chi
-    x18 = cos_phi*x6 + cos_psi*x13 - c*x15 + (1.5*(sin_psi*x16 + sin_chi*x17) - sin_phi*x11)
-    x19 = sin_chi*x14
-    x20 = sin_phi*x6 + sin_psi*x13 - c*x19 - (1.5*(cos_psi*x16 + cos_chi*x17) - cos_phi*x11)
-    x21 = (2.0*cos_phi - 3.0*cos_psi*x8)/x10
-    x22 = c5*cos_psi - 0.5*x8*x21
-    x23 = c6*cos_chi
-    x24 = sin_phi*x21 + 3.0*(sin_psi*x22 + sin_chi*x23)
-    x25 = 1.0/(cos_phi*x21 + 3.0*(cos_psi*x22 + cos_chi*x23))
-    x26 = x24*x25
-    x27 = c5*sin_psi - 0.5*x8*x12
-    x28 = c6*sin_chi
-    x29 = sin_phi*x12 + 3.0*(sin_psi*x27 + sin_chi*x28) - x24*x26
-    x30 = (x18 + x20*x26)/x29
-    x31 = x25*(x20 + x24*x30)
-    x32 = c0*(x11 + x12*x30 - x21*x31)
-    x33 = c7*(0.5*x16 + x22*x31 - x27*x30)
-    x34 = c8*(0.5*x17 + x23*x31 - x28*x30)
-    x35 = x8*x33
-    x36 = x8*x2
-    x37 = 0.5*c1*x36 - c3*sin_phi + cos_phi*x30 + sin_phi*x31 - 1.5*x33*x4
-    x38 = psi_dot*delta_psi_dot
-    x39 = g*cos_phi
-    x40 = a*x32
-    x41 = (
-        delta_phi*x37 + x38*x4 + c10*cos_phi + delta_m1*(0.5*x39 - (1.0/3.0)*x40)
-        + delta_m2*(x39 + 0.5*x3*x13 + 1.5*b*x35 - x40) - c11*x32
-    )
-    x42 = c9*(x3*x2 + 3.0*x35) + 2.0*x41 - c1*delta_psi*(x36 - 3.0*x3*x33)
-    x43 = x3*x32
-    x44 = phi_dot*delta_phi_dot
-    x45 = cos_psi*x30 + sin_psi*x31 + 0.5*(m2*(x8*x6 - g*sin_psi) - c12*x43)
-    x46 = c12*x3*x44 + delta_m2*(0.5*(x7 + x8*x40) - b*x33) - delta_psi*x45 - c9*x33
-    x47 = c12*delta_phi*(x8*x5 - x43) + c13*(x3*x5 + x8*x32) + 2.0*x46 - c14*cos_psi
-    x48 = (x42 + 1.5*x8*x47)/x10
-    x49 = x19 + 3.0*cos_chi*x34
-    x50 = c*delta_chi
-    x51 = 3.0*sin_psi*x33 + cos_psi*x2
-    x52 = 3.0*sin_chi*x34 - x15
-    x53 = a*x44
-    x54 = b*x38
-    x55 = c*delta_chi_dot
-    x56 = sin_phi*x5 + cos_phi*x32
-    x57 = a*delta_phi
-    x58 = sin_psi*x2 - 3.0*cos_psi*x33
-    x59 = b*delta_psi
-    x60 = sin_phi*x32 - cos_phi*x5
-    x61 = (
-        x49*x50 + delta_b*x51 + delta_c*x52 + 2.0*(cos_phi*x53 + cos_psi*x54 - x0*x55)
-        - x56*x57 - x58*x59 - delta_a*x60
-    )
-    x62 = delta_chi*(0.5*c15*sin_chi + cos_chi*x30 + sin_chi*x31)
-    x63 = 2.0*(x62 + c16*x34 - delta_m3*(0.5*x17 - c*x34)) - c17*cos_chi
-    x64 = c6*x63
-    x65 = c5*x47 + x8*x48
-    x66 = x61 - (sin_phi*x48 + 1.5*(sin_chi*x64 - sin_psi*x65))
-    x67 = (
-        x51*x59 + x52*x50 + delta_a*x56 + delta_b*x58
-        + 2.0*(sin_phi*x53 + sin_psi*x54 - x1*x55) - x60*x57 - delta_c*x49
-    )
-    x68 = x67 + (cos_phi*x48 + 1.5*(cos_chi*x64 - cos_psi*x65))
-    x69 = (x66 + x68*x26)/x29
-    x70 = x25*(x68 + x24*x69)
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
-        x0,
-        -x1,
-        -x32,
-        3.0*x33,
-        -3.0*x34,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_chi_dot,
-        -c0*(x48 + x12*x69 - x21*x70),
-        3.0*c7*(0.5*x65 + x22*x70 - x27*x69),
-        3.0*c8*(0.5*x64 + x28*x69 - x23*x70),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (15, ...)."""
-    # inputs
-    sin_phi, cos_phi, sin_psi, cos_psi, sin_chi, cos_chi, phi_dot, psi_dot, chi_dot, delta_phi, delta_psi, delta_chi, delta_phi_dot, delta_psi_dot, delta_chi_dot = y
-    delta_a, delta_b, delta_c, _, delta_g, delta_m1, delta_m2, delta_m3, a, b, c, _, g, m1, m2, m3 = params
-    # terms of the parameters alone
-    c0 = 1.0/a
-    c1 = m2*b
-    c2 = m2 + 0.5*m1
-    c3 = g*c2
-    c4 = m2 + (1.0/3.0)*m1
-    c5 = 1.0/m2
-    c6 = 1.0/m3
-    c7 = 1.0/b
-    c8 = 1.0/c
-    c9 = m2*delta_b
-    c10 = c2*delta_g
-    c11 = c4*delta_a
-    c12 = a*m2
-    c13 = m2*delta_a
-    c14 = m2*delta_g
-    c15 = g*m3
-    c16 = m3*delta_c
-    c17 = m3*delta_g
-    # intermediate terms
-    x0 = chi_dot*cos_chi
-    x1 = chi_dot*sin_chi
-    x2 = psi_dot*psi_dot
-    x3 = sin_phi*cos_psi - cos_phi*sin_psi
-    x4 = c1*x3
-    x5 = phi_dot*phi_dot
-    x6 = a*x5
-    x7 = x3*x6 - g*cos_psi
-    x8 = cos_phi*cos_psi + sin_phi*sin_psi
-    x9 = m2*x8
-    x10 = 2.0*c4 - 1.5*x8*x9
-    x11 = (x2*x4 + 2.0*c3*cos_phi + 1.5*x7*x9)/x10
-    x12 = (2.0*sin_phi - 3.0*sin_psi*x8)/x10
-    x13 = b*x2
-    x14 = chi_dot*chi_dot
-    x15 = cos_chi*x14
-    x16 = x7 + x8*x11
-    x17 = g*cos_chi
-    x18 = cos_phi*x6 + cos_psi*x13 - c*x15 + (1.5*(sin_psi*x16 + sin_chi*x17) - sin_phi*x11)
-    x19 = sin_chi*x14
-    x20 = sin_phi*x6 + sin_psi*x13 - c*x19 - (1.5*(cos_psi*x16 + cos_chi*x17) - cos_phi*x11)
-    x21 = (2.0*cos_phi - 3.0*cos_psi*x8)/x10
-    x22 = c5*cos_psi - 0.5*x8*x21
-    x23 = c6*cos_chi
-    x24 = sin_phi*x21 + 3.0*(sin_psi*x22 + sin_chi*x23)
-    x25 = 1.0/(cos_phi*x21 + 3.0*(cos_psi*x22 + cos_chi*x23))
-    x26 = x24*x25
-    x27 = c5*sin_psi - 0.5*x8*x12
-    x28 = c6*sin_chi
-    x29 = sin_phi*x12 + 3.0*(sin_psi*x27 + sin_chi*x28) - x24*x26
-    x30 = (x18 + x20*x26)/x29
-    x31 = x25*(x20 + x24*x30)
-    x32 = c0*(x11 + x12*x30 - x21*x31)
-    x33 = c7*(0.5*x16 + x22*x31 - x27*x30)
-    x34 = c8*(0.5*x17 + x23*x31 - x28*x30)
-    x35 = x8*x33
-    x36 = x8*x2
-    x37 = 0.5*c1*x36 - c3*sin_phi + cos_phi*x30 + sin_phi*x31 - 1.5*x33*x4
-    x38 = psi_dot*delta_psi_dot
-    x39 = g*cos_phi
-    x40 = a*x32
-    x41 = (
-        delta_phi*x37 + x38*x4 + c10*cos_phi + delta_m1*(0.5*x39 - (1.0/3.0)*x40)
-        + delta_m2*(x39 + 0.5*x3*x13 + 1.5*b*x35 - x40) - c11*x32
-    )
-    x42 = c9*(x3*x2 + 3.0*x35) + 2.0*x41 - c1*delta_psi*(x36 - 3.0*x3*x33)
-    x43 = x3*x32
-    x44 = phi_dot*delta_phi_dot
-    x45 = cos_psi*x30 + sin_psi*x31 + 0.5*(m2*(x8*x6 - g*sin_psi) - c12*x43)
-    x46 = c12*x3*x44 + delta_m2*(0.5*(x7 + x8*x40) - b*x33) - delta_psi*x45 - c9*x33
-    x47 = c12*delta_phi*(x8*x5 - x43) + c13*(x3*x5 + x8*x32) + 2.0*x46 - c14*cos_psi
-    x48 = (x42 + 1.5*x8*x47)/x10
-    x49 = x19 + 3.0*cos_chi*x34
-    x50 = c*delta_chi
-    x51 = 3.0*sin_psi*x33 + cos_psi*x2
-    x52 = 3.0*sin_chi*x34 - x15
-    x53 = a*x44
-    x54 = b*x38
-    x55 = c*delta_chi_dot
-    x56 = sin_phi*x5 + cos_phi*x32
-    x57 = a*delta_phi
-    x58 = sin_psi*x2 - 3.0*cos_psi*x33
-    x59 = b*delta_psi
-    x60 = sin_phi*x32 - cos_phi*x5
-    x61 = (
-        x49*x50 + delta_b*x51 + delta_c*x52 + 2.0*(cos_phi*x53 + cos_psi*x54 - x0*x55)
-        - x56*x57 - x58*x59 - delta_a*x60
-    )
-    x62 = delta_chi*(0.5*c15*sin_chi + cos_chi*x30 + sin_chi*x31)
-    x63 = 2.0*(x62 + c16*x34 - delta_m3*(0.5*x17 - c*x34)) - c17*cos_chi
-    x64 = c6*x63
-    x65 = c5*x47 + x8*x48
-    x66 = x61 - (sin_phi*x48 + 1.5*(sin_chi*x64 - sin_psi*x65))
-    x67 = (
-        x51*x59 + x52*x50 + delta_a*x56 + delta_b*x58
-        + 2.0*(sin_phi*x53 + sin_psi*x54 - x1*x55) - x60*x57 - delta_c*x49
-    )
-    x68 = x67 + (cos_phi*x48 + 1.5*(cos_chi*x64 - cos_psi*x65))
-    x69 = (x66 + x68*x26)/x29
-    x70 = x25*(x68 + x24*x69)
-    # outputs
-    return _stacked(
-        (15,),
-        y[0],
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot*cos_psi,
-        -psi_dot*sin_psi,
-        x0,
-        -x1,
-        -x32,
-        3.0*x33,
-        -3.0*x34,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_chi_dot,
-        -c0*(x48 + x12*x69 - x21*x70),
-        3.0*c7*(0.5*x65 + x22*x70 - x27*x69),
-        3.0*c8*(0.5*x64 + x28*x69 - x23*x70),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

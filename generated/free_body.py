@@ -18,42 +18,6 @@ State y = (q, qdot):
     y_dot [1/s]
     z_dot [1/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    w [1]
-    x [1]
-    y [1]
-    z [1]
-    w_dot [1/s]
-    x_dot [1/s]
-    y_dot [1/s]
-    z_dot [1/s]
-    delta_w [1]
-    delta_x [1]
-    delta_y [1]
-    delta_z [1]
-    delta_w_dot [1/s]
-    delta_x_dot [1/s]
-    delta_y_dot [1/s]
-    delta_z_dot [1/s]
-
-State y of `rhs_sensitivity`: the same:
-    w [1]
-    x [1]
-    y [1]
-    z [1]
-    w_dot [1/s]
-    x_dot [1/s]
-    y_dot [1/s]
-    z_dot [1/s]
-    delta_w [1]
-    delta_x [1]
-    delta_y [1]
-    delta_z [1]
-    delta_w_dot [1/s]
-    delta_x_dot [1/s]
-    delta_y_dot [1/s]
-    delta_z_dot [1/s]
-
 Parameters params:
     A [kg m^2] > 0, default 1.0: moment of inertia about the first axis
     B [kg m^2] > 0, default 2.0: moment of inertia about the second axis
@@ -63,8 +27,8 @@ Masses and their positions:
     12 at (0, 0, 0), principal moments A, B, C, orientation: unit quaternion w, x, y, z
 
 Constraints, with their multipliers:
-    w**2/2 + x**2/2 + y**2/2 + z**2/2
-        - 1/2 = 0: rigid_1 [J], keeps the coordinates of a body those of an orientation
+    w**2/2 + x**2/2 + y**2/2 + z**2/2 - 1/2 = 0: rigid_1 [J],
+        keeps the coordinates of a body those of an orientation
 
 Degrees of freedom:
     4 coordinates, 1 constraint, 3 degrees of freedom
@@ -118,59 +82,30 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "free_body"
-DIGEST = "09c451bfb3f9fd4b"
+DIGEST = "fc7c0b033f6b2ea4"
 COORDINATES = ("w", "x", "y", "z")
 STATE = ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot")
 FORMS = ("lagrangian", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot"),
     "variational": (
-        "w",
-        "x",
-        "y",
-        "z",
-        "w_dot",
-        "x_dot",
-        "y_dot",
-        "z_dot",
-        "delta_w",
-        "delta_x",
-        "delta_y",
-        "delta_z",
-        "delta_w_dot",
-        "delta_x_dot",
-        "delta_y_dot",
-        "delta_z_dot",
+        "w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot", "delta_w", "delta_x", "delta_y",
+        "delta_z", "delta_w_dot", "delta_x_dot", "delta_y_dot", "delta_z_dot",
     ),
     "sensitivity": (
-        "w",
-        "x",
-        "y",
-        "z",
-        "w_dot",
-        "x_dot",
-        "y_dot",
-        "z_dot",
-        "delta_w",
-        "delta_x",
-        "delta_y",
-        "delta_z",
-        "delta_w_dot",
-        "delta_x_dot",
-        "delta_y_dot",
-        "delta_z_dot",
+        "w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot", "delta_w", "delta_x", "delta_y",
+        "delta_z", "delta_w_dot", "delta_x_dot", "delta_y_dot", "delta_z_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("A", "B", "C")
@@ -189,44 +124,18 @@ LINKS = (
 TIMED = ()
 CALLS_FUNCTIONS = ("points",)
 OPERATIONS = {
-    "rhs": (76, 9),
-    "jacobian": (395, 9),
-    "parameter_jacobian": (105, 15),
-    "energy": (30, 0),
-    "constraints": (16, 0),
-    "constraints_jacobian": (0, 0),
-    "multipliers": (364, 6),
-    "correction": (36, 0),
-    "correction_variational": (80, 0),
-    "correction_sensitivity": (80, 0),
-    "mass_matrix": (69, 0),
-    "positions": (0, 0),
-    "points": (85, 11),
-    "angular_momentum": (68, 0),
-    "rhs_variational": (467, 9),
+    "rhs": (76, 9), "jacobian": (395, 9), "parameter_jacobian": (105, 15),
+    "energy": (30, 0), "constraints": (16, 0), "constraints_jacobian": (0, 0),
+    "multipliers": (364, 6), "correction": (36, 0), "correction_variational": (80, 0),
+    "correction_sensitivity": (80, 0), "mass_matrix": (69, 0), "positions": (0, 0),
+    "points": (85, 11), "angular_momentum": (68, 0), "rhs_variational": (467, 9),
     "rhs_sensitivity": (554, 18),
 }
 UNITS = {
-    "A": "kg m^2",
-    "B": "kg m^2",
-    "C": "kg m^2",
-    "w": "1",
-    "w_dot": "1/s",
-    "delta_w": "1",
-    "delta_w_dot": "1/s",
-    "x": "1",
-    "x_dot": "1/s",
-    "delta_x": "1",
-    "delta_x_dot": "1/s",
-    "y": "1",
-    "y_dot": "1/s",
-    "delta_y": "1",
-    "delta_y_dot": "1/s",
-    "z": "1",
-    "z_dot": "1/s",
-    "delta_z": "1",
-    "delta_z_dot": "1/s",
-    "rigid_1": "J",
+    "A": "kg m^2", "B": "kg m^2", "C": "kg m^2", "w": "1", "w_dot": "1/s", "delta_w": "1",
+    "delta_w_dot": "1/s", "x": "1", "x_dot": "1/s", "delta_x": "1", "delta_x_dot": "1/s",
+    "y": "1", "y_dot": "1/s", "delta_y": "1", "delta_y_dot": "1/s", "z": "1",
+    "z_dot": "1/s", "delta_z": "1", "delta_z_dot": "1/s", "rigid_1": "J",
 }
 
 
@@ -284,38 +193,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = x3*x3 + x0*x0 + x1*x1
     # outputs
     return (
-        w_dot,
-        x_dot,
-        y_dot,
-        z_dot,
-        -(2.0*(x*x2 + y_*x4 - z*x5) + w*x6),
-        -(2.0*(z*x4 + y_*x5 - w*x2) + x*x6),
-        2.0*(z*x2 + w*x4 + x*x5) - y_*x6,
-        -(2.0*(y_*x2 + w*x5 - x*x4) + z*x6),
-    )
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (8, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    A, B, C = params
-    # terms of the parameters alone
-    c0 = (B - C)*(1.0/A)
-    c1 = (C - A)*(1.0/B)
-    c2 = (B - A)*(1.0/C)
-    # intermediate terms
-    x0 = w_dot*y_ + x_dot*z - y_dot*w - z_dot*x
-    x1 = w_dot*z + y_dot*x - x_dot*y_ - z_dot*w
-    x2 = c0*x0*x1
-    x3 = w_dot*x + z_dot*y_ - x_dot*w - y_dot*z
-    x4 = c1*x1*x3
-    x5 = c2*x0*x3
-    x6 = x3*x3 + x0*x0 + x1*x1
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
         w_dot,
         x_dot,
         y_dot,
@@ -489,324 +366,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (8, 8, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    A, B, C = params
-    # terms of the parameters alone
-    c0 = (B - C)*(1.0/A)
-    c1 = (C - A)*(1.0/B)
-    c2 = (B - A)*(1.0/C)
-    # intermediate terms
-    x0 = z*w_dot + x*y_dot - y_*x_dot - w*z_dot
-    x1 = y_dot*x0
-    x2 = w_dot*y_ + z*x_dot - y_dot*w - x*z_dot
-    x3 = z_dot*x2
-    x4 = x1 + x3
-    x5 = c0*x
-    x6 = x_dot*x0
-    x7 = x*w_dot + y_*z_dot - x_dot*w - y_dot*z
-    x8 = z_dot*x7
-    x9 = x6 + x8
-    x10 = c1*y_
-    x11 = x_dot*x2
-    x12 = y_dot*x7
-    x13 = x11 + x12
-    x14 = c2*z
-    x15 = x7*x7 + x2*x2 + x0*x0
-    x16 = x_dot*x7
-    x17 = y_dot*x2
-    x18 = z_dot*x0
-    x19 = x16 + x17 + x18
-    x20 = 2.0*(x4*x5 + x9*x10 - x13*x14) - (x15 - 2.0*w*x19)
-    x21 = c0*x0*x2
-    x22 = x18 - x17
-    x23 = w_dot*x0
-    x24 = x12 + x23
-    x25 = w_dot*x2
-    x26 = x25 - x8
-    x27 = w_dot*x7
-    x28 = x1 + x27 - x3
-    x29 = x23 - x11
-    x30 = c1*x0*x7
-    x31 = x18 - x16
-    x32 = x3 + x27
-    x33 = x8 + x25 - x6
-    x34 = -2.0*(x29*x5 + (x30 + x31*x10) - x32*x14 + w*x33)
-    x35 = x1 - x27
-    x36 = c2*x2*x7
-    x37 = x17 - x16
-    x38 = x6 + x25
-    x39 = x11 + x23 - x12
-    x40 = y_*x0
-    x41 = z*x2
-    x42 = x40 + x41
-    x43 = x*x0
-    x44 = z*x7
-    x45 = x43 + x44
-    x46 = x*x2
-    x47 = y_*x7
-    x48 = x46 + x47
-    x49 = x*x7
-    x50 = y_*x2
-    x51 = z*x0
-    x52 = x49 + x50 + x51
-    x53 = x51 - x50
-    x54 = w*x2
-    x55 = x54 - x44
-    x56 = w*x0
-    x57 = x47 + x56
-    x58 = w*x7
-    x59 = x40 + x58 - x41
-    x60 = x56 - x46
-    x61 = x51 - x49
-    x62 = x41 + x58
-    x63 = x44 + x54 - x43
-    x64 = x43 + x54
-    x65 = x50 - x49
-    x66 = x40 - x58
-    x67 = x46 + x56 - x47
-    x68 = c0*w
-    x69 = c1*z
-    x70 = c2*y_
-    x71 = 2.0*(x22*x68 + x24*x69 + x26*x70) + (x15 + 2.0*x*x28)
-    x72 = -2.0*(x31*x69 + (x36 + x32*x70) - x29*x68 + x*x33)
-    x73 = 2.0*(x38*x68 + x37*x70 - (x30 - x35*x69) - x*x39)
-    x74 = c0*z
-    x75 = c2*x
-    x76 = c1*w
-    x77 = -2.0*(x4*x74 + x13*x75 - (x30 - x9*x76) - y_*x19)
-    x78 = 2.0*(x24*x76 + (x36 + x26*x75) - x22*x74 - y_*x28)
-    x79 = 2.0*(x29*x74 + x31*x76 + x32*x75) - (x15 + 2.0*y_*x33)
-    x80 = -2.0*(x35*x76 + x37*x75 - (x21 + x38*x74) + y_*x39)
-    x81 = c1*x
-    x82 = c2*w
-    x83 = c0*y_
-    x84 = 2.0*(x22*x83 + (x30 + x24*x81) - x26*x82 - z*x28)
-    x85 = 2.0*(x38*x83 + x35*x81 - x37*x82) + (x15 + 2.0*z*x39)
-    # outputs
-    return _stacked(
-        (8, 8),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        x20,
-        -2.0*(x21 - x22*x5 + x24*x10 - x26*x14 + w*x28),
-        x34,
-        2.0*(x35*x10 + (x36 - x37*x14) - x38*x5 - w*x39),
-        -2.0*(x42*x5 + x45*x10 - x48*x14 + w*x52),
-        -2.0*(x53*x5 + x55*x14 - x57*x10 - w*x59),
-        2.0*(x60*x5 + x61*x10 - x62*x14 + w*x63),
-        2.0*(x64*x5 + x65*x14 - x66*x10 + w*x67),
-        2.0*(x21 - x4*x68 + x9*x69 + x13*x70 + x*x19),
-        -x71,
-        x72,
-        x73,
-        -2.0*(x45*x69 + x48*x70 - x42*x68 + x*x52),
-        2.0*(x53*x68 + x57*x69 + x55*x70 + x*x59),
-        2.0*(x61*x69 + x62*x70 - x60*x68 + x*x63),
-        -2.0*(x64*x68 + x66*x69 + x65*x70 - x*x67),
-        x77,
-        x78,
-        x79,
-        x80,
-        2.0*(x42*x74 + x45*x76 + x48*x75 - y_*x52),
-        -2.0*(x57*x76 + x55*x75 - x53*x74 - y_*x59),
-        -2.0*(x60*x74 + x61*x76 + x62*x75 - y_*x63),
-        2.0*(x66*x76 + x65*x75 - x64*x74 + y_*x67),
-        -2.0*(x9*x81 + (x36 - x13*x82) - x4*x83 - z*x19),
-        x84,
-        -2.0*(x21 + x29*x83 + x32*x82 - x31*x81 + z*x33),
-        -x85,
-        -2.0*(x42*x83 + x48*x82 - x45*x81 + z*x52),
-        -2.0*(x53*x83 + x57*x81 - x55*x82 - z*x59),
-        2.0*(x60*x83 + x62*x82 - x61*x81 + z*x63),
-        2.0*(x64*x83 + x66*x81 - x65*x82 + z*x67),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    105 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        w, x, y, z in 1; w_dot, x_dot, y_dot, z_dot in 1/s.
-    params : iterable of 3 floats
-        A, B, C in kg m^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y.tolist() if hasattr(y, "tolist") else y
-    A, B, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = (B - C)*(1.0/(A*A))
-    c1 = 1.0/B
-    c2 = 1.0/C
-    c3 = (C - A)*(1.0/(B*B))
-    c4 = 1.0/A
-    c5 = (B - A)*(1.0/(C*C))
-    # intermediate terms
-    x0 = y_*w_dot + z*x_dot - w*y_dot - x*z_dot
-    x1 = w_dot*z + x*y_dot - y_*x_dot - w*z_dot
-    x2 = x0*x1
-    x3 = c0*x2
-    x4 = x*w_dot + y_*z_dot - x_dot*w - z*y_dot
-    x5 = x1*x4
-    x6 = c1*x5
-    x7 = y_*x6
-    x8 = x0*x4
-    x9 = c2*x8
-    x10 = z*x9
-    x11 = c3*x5
-    x12 = c4*x2
-    x13 = x*x12
-    x14 = c5*x8
-    x15 = z*x6
-    x16 = y_*x9
-    x17 = w*x12
-    x18 = w*x6
-    x19 = x*x9
-    x20 = z*x12
-    x21 = w*x9
-    x22 = x*x6
-    x23 = y_*x12
-    # outputs
-    return (
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (
-            2.0*(x*x3 + x7 - x10),
-            2.0*(x10 + y_*x11 - x13),
-            -2.0*(x7 + z*x14 - x13),
-        ),
-        (
-            2.0*(x15 + x16 - w*x3),
-            2.0*(x17 + z*x11 - x16),
-            -2.0*(x15 + x17 - y_*x14),
-        ),
-        (
-            -2.0*(z*x3 + x18 + x19),
-            2.0*(x19 + x20 - w*x11),
-            -2.0*(x20 + x*x14 - x18),
-        ),
-        (
-            2.0*(y_*x3 + x21 - x22),
-            -2.0*(x21 + x23 + x*x11),
-            2.0*(x22 + x23 + w*x14),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (8, 3, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    A, B, C = params
-    # terms of the parameters alone
-    c0 = (B - C)*(1.0/(A*A))
-    c1 = 1.0/B
-    c2 = 1.0/C
-    c3 = (C - A)*(1.0/(B*B))
-    c4 = 1.0/A
-    c5 = (B - A)*(1.0/(C*C))
-    # intermediate terms
-    x0 = y_*w_dot + z*x_dot - w*y_dot - x*z_dot
-    x1 = w_dot*z + x*y_dot - y_*x_dot - w*z_dot
-    x2 = x0*x1
-    x3 = c0*x2
-    x4 = x*w_dot + y_*z_dot - x_dot*w - z*y_dot
-    x5 = x1*x4
-    x6 = c1*x5
-    x7 = y_*x6
-    x8 = x0*x4
-    x9 = c2*x8
-    x10 = z*x9
-    x11 = c3*x5
-    x12 = c4*x2
-    x13 = x*x12
-    x14 = c5*x8
-    x15 = z*x6
-    x16 = y_*x9
-    x17 = w*x12
-    x18 = w*x6
-    x19 = x*x9
-    x20 = z*x12
-    x21 = w*x9
-    x22 = x*x6
-    x23 = y_*x12
-    # outputs
-    return _stacked(
-        (8, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        2.0*(x*x3 + x7 - x10),
-        2.0*(x10 + y_*x11 - x13),
-        -2.0*(x7 + z*x14 - x13),
-        2.0*(x15 + x16 - w*x3),
-        2.0*(x17 + z*x11 - x16),
-        -2.0*(x15 + x17 - y_*x14),
-        -2.0*(z*x3 + x18 + x19),
-        2.0*(x19 + x20 - w*x11),
-        -2.0*(x20 + x*x14 - x18),
-        2.0*(y_*x3 + x21 - x22),
-        -2.0*(x21 + x23 + x*x11),
-        2.0*(x22 + x23 + w*x14),
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -829,19 +388,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y.tolist() if hasattr(y, "tolist") else y
     A, B, C = params.tolist() if hasattr(params, "tolist") else params
-    # intermediate terms
-    x0 = x*w_dot + y_*z_dot - w*x_dot - z*y_dot
-    x1 = w_dot*y_ + x_dot*z - w*y_dot - x*z_dot
-    x2 = w_dot*z + x*y_dot - x_dot*y_ - w*z_dot
-    # outputs
-    return 2.0*(A*x0*x0 + B*x1*x1 + C*x2*x2)
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    A, B, C = params
     # intermediate terms
     x0 = x*w_dot + y_*z_dot - w*x_dot - z*y_dot
     x1 = w_dot*y_ + x_dot*z - w*y_dot - x*z_dot
@@ -875,74 +421,6 @@ def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
     return (
         0.5*(w*w + x*x + y_*y_ + z*z - 1.0),
         w*w_dot + x*x_dot + y_*y_dot + z*z_dot,
-    )
-
-
-def constraints_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints` over arrays: the result has shape (2, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    # outputs
-    return _stacked(
-        (2,),
-        y[0],
-        0.5*(w*w + x*x + y_*y_ + z*z - 1.0),
-        w*w_dot + x*x_dot + y_*y_dot + z*z_dot,
-    )
-
-
-def constraints_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `constraints` with respect to the state.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        w, x, y, z in 1; w_dot, x_dot, y_dot, z_dot in 1/s.
-    params : iterable of 3 floats
-        A, B, C in kg m^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of residual i with respect to y[j].
-    """
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y.tolist() if hasattr(y, "tolist") else y
-    # outputs
-    return (
-        (w, x, y_, z, 0.0, 0.0, 0.0, 0.0),
-        (w_dot, x_dot, y_dot, z_dot, w, x, y_, z),
-    )
-
-
-def constraints_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints_jacobian` over arrays: the result has shape (2, 8, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    # outputs
-    return _stacked(
-        (2, 8),
-        y[0],
-        w,
-        x,
-        y_,
-        z,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        w_dot,
-        x_dot,
-        y_dot,
-        z_dot,
-        w,
-        x,
-        y_,
-        z,
     )
 
 
@@ -1069,112 +547,6 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     return (-(x2 - x73)/x79,)
 
 
-def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`multipliers` over arrays: the result has shape (1, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    A, B, C = params
-    # terms of the parameters alone
-    c0 = A - B
-    c1 = -c0
-    c2 = A - C
-    c3 = B - C
-    c4 = -c3
-    c5 = -c2
-    # intermediate terms
-    x0 = y_dot*y_dot
-    x1 = z_dot*z_dot
-    x2 = w_dot*w_dot + x_dot*x_dot + x0 + x1
-    x3 = z*x_dot
-    x4 = c1*y_dot
-    x5 = y_*x_dot
-    x6 = c2*z_dot
-    x7 = y_dot*z_dot
-    x8 = x*x7
-    x9 = c3*z_dot
-    x10 = c5*y_dot
-    x11 = x*w_dot
-    x12 = A*x_dot
-    x13 = y_*w_dot
-    x14 = B*x13
-    x15 = z*w_dot
-    x16 = C*x15
-    x17 = w*x_dot
-    x18 = B*w
-    x19 = C*w
-    x20 = x11*x12 + y_dot*x14 + z_dot*x16 - x17*x12 - x0*x18 - x1*x19
-    x21 = c4*y_dot
-    x22 = c1*z_dot
-    x23 = x3*x4 + x5*x6 + c4*x8 + x5*x9 + x3*x10 + c0*x8 + 2.0*x20 - x3*x21 - c2*x8 - x5*x22
-    x24 = x_dot*x13
-    x25 = y_dot*x17
-    x26 = B*x3
-    x27 = A*z
-    x28 = B*x
-    x29 = A*y_
-    x30 = w_dot*x16 + x_dot*x26 + x0*x27 - w_dot*z_dot*x19 - x_dot*z_dot*x28 - x7*x29
-    x31 = y_dot*x11
-    x32 = (
-        c3*x24 + c0*x25 + c1*x24 + c2*x24 + c2*x25 + x11*x21 + 2.0*x30 - c2*x31 - c0*x31
-        - c3*x25
-    )
-    x33 = 4.0*x32 - z*x2
-    x34 = 4.0*(z*x19 + y_*x28 - x*x29) - w*z
-    x35 = z*z
-    x36 = 1.0/(x35 + 4.0*(y_*x29 + x*x28 + w*x19))
-    x37 = x34*x36
-    x38 = x_dot*x15
-    x39 = c0*z_dot
-    x40 = C*x
-    x41 = C*x5
-    x42 = w_dot*y_dot*x18 + x_dot*y_dot*x40 + x7*x27 - w_dot*x14 - x_dot*x41 - x1*x29
-    x43 = (
-        c4*x38 + x17*x6 + c5*x38 + x17*x39 + x17*x9 + 2.0*x42 - x11*x39 - x11*x6 - c1*x38
-        - c4*z_dot*x11
-    )
-    x44 = y_*z
-    x45 = 4.0*(x*x19 + z*x29 - x*x18) - x44
-    x46 = x36*x45
-    x47 = 4.0*x43 + y_*x2 - x33*x46
-    x48 = 4.0*(y_*x18 + x*x27 - z*x40) - w*y_ + x45*x37
-    x49 = y_*y_
-    x50 = 1.0/(x49 + 4.0*(z*x27 + w*x18 + x*x40) - x45*x46)
-    x51 = x48*x50
-    x52 = w*x7
-    x53 = A*w_dot
-    x54 = x11*x53 + x0*x40 + x1*x28 - x17*x53 - y_dot*x41 - z_dot*x26
-    x55 = (
-        x15*x10 + c3*x52 + x15*x21 + x15*x4 + x13*x6 + c2*x52 + 2.0*x54 - x13*x22 - x13*x9
-        - c0*x52
-    )
-    x56 = 4.0*(w*x29 + z*x28 - y_*x19) - x*z
-    x57 = x36*x56
-    x58 = 4.0*(z*x18 + y_*x40 - w*x27) - x*y_ + x56*x46
-    x59 = x50*x58
-    x60 = 4.0*x55 - x*x2 + x33*x57 - x47*x59
-    x61 = w*x
-    x62 = 4.0*(A*x61 + C*x44 - B*x44) - x61 + x56*x37 + x58*x51
-    x63 = x*x
-    x64 = w*w
-    x65 = x63 + 4.0*(A*x64 + B*x35 + C*x49) - x56*x57 - x58*x59
-    x66 = 1.0/x65
-    x67 = x62*x66
-    x68 = 4.0*(A*x63 + B*x49 + C*x35) + x64 - x34*x37 - x48*x51
-    x69 = x68 - x62*x67
-    x70 = (4.0*x23 + w*x2 - x33*x37 + x47*x51 - x60*x67)/x69
-    x71 = x66*(x60 - x62*x70)
-    x72 = x50*(x47 + x48*x70 - x58*x71)
-    x73 = w*x70 + y_*x72 - x*x71 - z*(x36*(x33 + x56*x71 - x34*x70 - x45*x72))
-    x74 = y_ + z*x46
-    x75 = x + z*x57 + x74*x59
-    x76 = (w + z*x37 + x74*x51 + x75*x67)/x69
-    x77 = x66*(x75 + x62*x76)
-    x78 = x50*(x74 + x48*x76 + x58*x77)
-    x79 = w*x76 + x*x77 + y_*x78 + z*(x36*(z + x34*x76 + x56*x77 + x45*x78))
-    # outputs
-    return _stacked((1,), y[0], -(x2 - x73)/x79)
-
-
 def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     """Changes of y that remove small residuals of the constraints, by one step of Newton's method.
 
@@ -1211,210 +583,6 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
         -x*x3,
         -y_*x3,
         -z*x3,
-    )
-
-
-def correction_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction` over arrays: the result has shape (8, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    # intermediate terms
-    x0 = w*w + x*x + (y_*y_ + z*z)
-    x1 = (x0 - 1.0)/x0
-    x2 = (w*w_dot + x*x_dot + y_*y_dot + z*z_dot)*(1.0 - 0.5*x1)
-    x3 = x2/x0
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        -0.5*w*x1,
-        -0.5*x*x1,
-        -0.5*y_*x1,
-        -0.5*z*x1,
-        -w*x3,
-        -x*x3,
-        -y_*x3,
-        -z*x3,
-    )
-
-
-def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction` of the motion, and changes that make its perturbation tangent to the constraints.
-
-    80 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 16 floats
-        w, x, y, z in 1; w_dot, x_dot, y_dot, z_dot in 1/s; delta_w, delta_x, delta_y,
-        delta_z in 1; delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot in 1/s.
-    params : iterable of 3 floats
-        A, B, C in kg m^2.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = w*w + x*x + (y_*y_ + z*z)
-    x1 = (x0 - 1.0)/x0
-    x2 = (w*w_dot + x*x_dot + y_*y_dot + z*z_dot)*(1.0 - 0.5*x1)
-    x3 = x2/x0
-    x4 = (w*delta_w + x*delta_x + y_*delta_y + z*delta_z)/x0
-    x5 = w*x4
-    x6 = x*x4
-    x7 = y_*x4
-    x8 = z*x4
-    x9 = (
-        w_dot*(delta_w - x5) + x_dot*(delta_x - x6) + y_dot*(delta_y - x7)
-        + z_dot*(delta_z - x8) + w*delta_w_dot + x*delta_x_dot + y_*delta_y_dot
-        + z*delta_z_dot
-    )
-    x10 = x9/x0
-    # outputs
-    return (
-        (-0.5*w*x1, -0.5*x*x1, -0.5*y_*x1, -0.5*z*x1),
-        (-w*x3, -x*x3, -y_*x3, -z*x3),
-        (-x5, -x6, -x7, -x8),
-        (-w*x10, -x*x10, -y_*x10, -z*x10),
-    )
-
-
-def correction_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_variational` over arrays: the result has shape (4, 4, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y
-    # intermediate terms
-    x0 = w*w + x*x + (y_*y_ + z*z)
-    x1 = (x0 - 1.0)/x0
-    x2 = (w*w_dot + x*x_dot + y_*y_dot + z*z_dot)*(1.0 - 0.5*x1)
-    x3 = x2/x0
-    x4 = (w*delta_w + x*delta_x + y_*delta_y + z*delta_z)/x0
-    x5 = w*x4
-    x6 = x*x4
-    x7 = y_*x4
-    x8 = z*x4
-    x9 = (
-        w_dot*(delta_w - x5) + x_dot*(delta_x - x6) + y_dot*(delta_y - x7)
-        + z_dot*(delta_z - x8) + w*delta_w_dot + x*delta_x_dot + y_*delta_y_dot
-        + z*delta_z_dot
-    )
-    x10 = x9/x0
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        -0.5*w*x1,
-        -0.5*x*x1,
-        -0.5*y_*x1,
-        -0.5*z*x1,
-        -w*x3,
-        -x*x3,
-        -y_*x3,
-        -z*x3,
-        -x5,
-        -x6,
-        -x7,
-        -x8,
-        -w*x10,
-        -x*x10,
-        -y_*x10,
-        -z*x10,
-    )
-
-
-def correction_sensitivity(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction_variational` with perturbed parameters, whose perturbations precede them.
-
-    80 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 16 floats
-        w, x, y, z in 1; w_dot, x_dot, y_dot, z_dot in 1/s; delta_w, delta_x, delta_y,
-        delta_z in 1; delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot in 1/s.
-    params : iterable of 6 floats
-        delta_A, delta_B, delta_C, A, B, C in kg m^2.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = w*w + x*x + (y_*y_ + z*z)
-    x1 = (x0 - 1.0)/x0
-    x2 = (w*w_dot + x*x_dot + y_*y_dot + z*z_dot)*(1.0 - 0.5*x1)
-    x3 = x2/x0
-    x4 = (w*delta_w + x*delta_x + y_*delta_y + z*delta_z)/x0
-    x5 = w*x4
-    x6 = x*x4
-    x7 = y_*x4
-    x8 = z*x4
-    x9 = (
-        w_dot*(delta_w - x5) + x_dot*(delta_x - x6) + y_dot*(delta_y - x7)
-        + z_dot*(delta_z - x8) + w*delta_w_dot + x*delta_x_dot + y_*delta_y_dot
-        + z*delta_z_dot
-    )
-    x10 = x9/x0
-    # outputs
-    return (
-        (-0.5*w*x1, -0.5*x*x1, -0.5*y_*x1, -0.5*z*x1),
-        (-w*x3, -x*x3, -y_*x3, -z*x3),
-        (-x5, -x6, -x7, -x8),
-        (-w*x10, -x*x10, -y_*x10, -z*x10),
-    )
-
-
-def correction_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_sensitivity` over arrays: the result has shape (4, 4, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y
-    # intermediate terms
-    x0 = w*w + x*x + (y_*y_ + z*z)
-    x1 = (x0 - 1.0)/x0
-    x2 = (w*w_dot + x*x_dot + y_*y_dot + z*z_dot)*(1.0 - 0.5*x1)
-    x3 = x2/x0
-    x4 = (w*delta_w + x*delta_x + y_*delta_y + z*delta_z)/x0
-    x5 = w*x4
-    x6 = x*x4
-    x7 = y_*x4
-    x8 = z*x4
-    x9 = (
-        w_dot*(delta_w - x5) + x_dot*(delta_x - x6) + y_dot*(delta_y - x7)
-        + z_dot*(delta_z - x8) + w*delta_w_dot + x*delta_x_dot + y_*delta_y_dot
-        + z*delta_z_dot
-    )
-    x10 = x9/x0
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        -0.5*w*x1,
-        -0.5*x*x1,
-        -0.5*y_*x1,
-        -0.5*z*x1,
-        -w*x3,
-        -x*x3,
-        -y_*x3,
-        -z*x3,
-        -x5,
-        -x6,
-        -x7,
-        -x8,
-        -w*x10,
-        -x*x10,
-        -y_*x10,
-        -z*x10,
     )
 
 
@@ -1465,50 +633,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (4, 4, ...)."""
-    # inputs
-    w, x, y_, z, _, _, _, _ = y
-    A, B, C = params
-    # intermediate terms
-    x0 = A*x
-    x1 = B*y_
-    x2 = z*z
-    x3 = C*y_
-    x4 = -4.0*(w*x0 + z*x3 - z*x1)
-    x5 = C*x
-    x6 = -4.0*(w*x1 + z*x0 - z*x5)
-    x7 = z*w
-    x8 = B*x
-    x9 = -4.0*(C*x7 + y_*x8 - y_*x0)
-    x10 = w*w
-    x11 = -4.0*(B*x7 + y_*x5 - A*x7)
-    x12 = A*y_
-    x13 = -4.0*(w*x12 + z*x8 - w*x3)
-    x14 = -4.0*(w*x5 + z*x12 - w*x8)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        4.0*(x*x0 + y_*x1 + C*x2),
-        x4,
-        x6,
-        x9,
-        x4,
-        4.0*(A*x10 + B*x2 + y_*x3),
-        x11,
-        x13,
-        x6,
-        x11,
-        4.0*(A*x2 + B*x10 + x*x5),
-        x14,
-        x9,
-        x13,
-        x14,
-        4.0*(y_*x12 + x*x8 + C*x10),
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -1531,13 +655,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     # inputs
     # outputs
     return ((0.0, 0.0, 0.0),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 3, ...)."""
-    # inputs
-    # outputs
-    return _stacked((1, 3), y[0], 0.0, 0.0, 0.0)
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -1620,89 +737,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (8, 3, ...)."""
-    from numpy import sqrt
-
-    # inputs
-    w, x, y_, z, _, _, _, _ = y
-    A, B, C = params
-    # terms of the parameters alone
-    c0 = A - B
-    c1 = sqrt(0.5*(C - c0))
-    c2 = sqrt(0.5*(A + B - C))
-    c3 = sqrt(0.5*(C + c0))
-    # intermediate terms
-    x0 = w*w
-    x1 = x*x
-    x2 = y_*y_
-    x3 = z*z
-    x4 = c1*(x0 + x1 - x2 - x3)
-    x5 = w*y_
-    x6 = x*z
-    x7 = c2*(x5 + x6)
-    x8 = w*z
-    x9 = y_*x
-    x10 = c3*(x8 - x9)
-    x11 = x7 - x10
-    x12 = 0.5*x4 + x11
-    x13 = c1*(x8 + x9)
-    x14 = w*x
-    x15 = y_*z
-    x16 = c2*(x14 - x15)
-    x17 = x0 - x1
-    x18 = x2 - x3
-    x19 = c3*(x17 + x18)
-    x20 = x16 - 0.5*x19
-    x21 = x13 - x20
-    x22 = c2*(x17 - x18)
-    x23 = c3*(x14 + x15)
-    x24 = x22 + 2.0*x23
-    x25 = c1*(x5 - x6)
-    x26 = 0.5*x24 - x25
-    x27 = x7 + x10
-    x28 = 0.5*x4 + x27
-    x29 = x16 + 0.5*x19
-    x30 = x29 - x13
-    x31 = x22 - 2.0*x23
-    x32 = x25 - 0.5*x31
-    x33 = 0.5*x4 - x11
-    x34 = x13 + x20
-    x35 = x25 + 0.5*x24
-    x36 = x27 - 0.5*x4
-    x37 = x13 + x29
-    x38 = x25 + 0.5*x31
-    # outputs
-    return _stacked(
-        (8, 3),
-        y[0],
-        -x12,
-        -x21,
-        -x26,
-        -x28,
-        x30,
-        x32,
-        -x33,
-        -x34,
-        x35,
-        x36,
-        -x37,
-        x38,
-        x33,
-        x34,
-        -x35,
-        -x36,
-        x37,
-        -x38,
-        x12,
-        x21,
-        x26,
-        x28,
-        -x30,
-        -x32,
-    )
-
-
 def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     """Angular momentum about the origin.
 
@@ -1748,729 +782,68 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     return (-2.0*x11, -2.0*x16, -2.0*x17)
 
 
-def angular_momentum_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`angular_momentum` over arrays: the result has shape (3, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot = y
-    A, B, C = params
-    # intermediate terms
-    x0 = w*w
-    x1 = x*x
-    x2 = y_*y_
-    x3 = z*z
-    x4 = A*(x*w_dot + y_*z_dot - w*x_dot - z*y_dot)
-    x5 = w*y_
-    x6 = x*z
-    x7 = C*(x*y_dot + z*w_dot - w*z_dot - y_*x_dot)
-    x8 = w*z
-    x9 = x*y_
-    x10 = B*(y_*w_dot + z*x_dot - w*y_dot - x*z_dot)
-    x11 = (x0 + x1 - x2 - x3)*x4 + 2.0*((x5 + x6)*x7 - (x8 - x9)*x10)
-    x12 = x0 - x1
-    x13 = x2 - x3
-    x14 = w*x
-    x15 = y_*z
-    x16 = (x12 + x13)*x10 + 2.0*((x8 + x9)*x4 - (x14 - x15)*x7)
-    x17 = (x12 - x13)*x7 + 2.0*((x14 + x15)*x10 - (x5 - x6)*x4)
-    # outputs
-    return _stacked((3,), y[0], -2.0*x11, -2.0*x16, -2.0*x17)
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"sqrt": numpy.sqrt}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    467 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 16 floats
-        w, x, y, z in 1; w_dot, x_dot, y_dot, z_dot in 1/s; delta_w, delta_x, delta_y,
-        delta_z in 1; delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot in 1/s.
-    params : iterable of 3 floats
-        A, B, C in kg m^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y.tolist() if hasattr(y, "tolist") else y
-    A, B, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = (B - C)*(1.0/A)
-    c1 = (C - A)*(1.0/B)
-    c2 = (B - A)*(1.0/C)
-    # intermediate terms
-    x0 = w_dot*y_ + x_dot*z - y_dot*w - z_dot*x
-    x1 = w_dot*z + y_dot*x - x_dot*y_ - z_dot*w
-    x2 = c0*x0*x1
-    x3 = w_dot*x + z_dot*y_ - x_dot*w - y_dot*z
-    x4 = c1*x1*x3
-    x5 = c2*x0*x3
-    x6 = x3*x3 + x0*x0 + x1*x1
-    x7 = y_dot*x1
-    x8 = z_dot*x0
-    x9 = x7 + x8
-    x10 = c0*x
-    x11 = x_dot*x1
-    x12 = z_dot*x3
-    x13 = x11 + x12
-    x14 = c1*y_
-    x15 = x_dot*x0
-    x16 = y_dot*x3
-    x17 = x15 + x16
-    x18 = c2*z
-    x19 = x_dot*x3
-    x20 = y_dot*x0
-    x21 = z_dot*x1
-    x22 = x19 + x20 + x21
-    x23 = 2.0*(x9*x10 + x13*x14 - x17*x18) - (x6 - 2.0*w*x22)
-    x24 = w_dot*x1
-    x25 = x15 - x24
-    x26 = w_dot*x3
-    x27 = x8 + x26
-    x28 = x19 - x21
-    x29 = w_dot*x0
-    x30 = x12 + x29 - x11
-    x31 = delta_y*(x25*x10 + x27*x18 - (x4 - x28*x14) - w*x30)
-    x32 = x7 - x26
-    x33 = x19 - x20
-    x34 = x11 + x29
-    x35 = x15 + x24 - x16
-    x36 = delta_z*(x32*x14 + (x5 + x33*x18) - x34*x10 - w*x35)
-    x37 = y_*x0
-    x38 = z*x1
-    x39 = x37 - x38
-    x40 = y_*x3
-    x41 = w*x1
-    x42 = x40 + x41
-    x43 = z*x3
-    x44 = w*x0
-    x45 = x43 - x44
-    x46 = y_*x1
-    x47 = w*x3
-    x48 = z*x0
-    x49 = x46 + x47 - x48
-    x50 = delta_x_dot*(x39*x10 + x42*x14 + x45*x18 + w*x49)
-    x51 = x20 - x21
-    x52 = x16 + x24
-    x53 = x12 - x29
-    x54 = x7 + x26 - x8
-    x55 = delta_x*(x2 + x51*x10 + x52*x14 + x53*x18 + w*x54)
-    x56 = x46 + x48
-    x57 = x*x1
-    x58 = x57 + x43
-    x59 = x*x0
-    x60 = x59 + x40
-    x61 = x*x3
-    x62 = x61 + x37 + x38
-    x63 = delta_w_dot*(x56*x10 + x58*x14 - x60*x18 + w*x62)
-    x64 = x59 - x41
-    x65 = x61 - x38
-    x66 = x48 + x47
-    x67 = x43 + x44 - x57
-    x68 = delta_y_dot*(x64*x10 + x65*x14 + x66*x18 - w*x67)
-    x69 = x46 - x47
-    x70 = x61 - x37
-    x71 = x57 + x44
-    x72 = x59 + x41 - x40
-    x73 = delta_z_dot*(x69*x14 + x70*x18 - x71*x10 - w*x72)
-    x74 = delta_w*x23 + 2.0*(x31 + x36 + x50 - x55 - x63 - x68 - x73)
-    x75 = c0*w
-    x76 = c2*y_
-    x77 = c1*z
-    x78 = delta_y*(x25*x75 + (x5 + x27*x76) - x28*x77 + x*x30)
-    x79 = delta_z*(x4 - x32*x77 + x33*x76 - x34*x75 + x*x35)
-    x80 = delta_w_dot*(x58*x77 + x60*x76 - x56*x75 + x*x62)
-    x81 = delta_x_dot*(x39*x75 + x45*x76 - x42*x77 - x*x49)
-    x82 = delta_z_dot*(x71*x75 + x69*x77 - x70*x76 - x*x72)
-    x83 = delta_w*(x2 - x9*x75 + x13*x77 + x17*x76 + x*x22)
-    x84 = delta_y_dot*(x64*x75 + x66*x76 - x65*x77 + x*x67)
-    x85 = 2.0*(x51*x75 + x53*x76 - x52*x77) - (x6 + 2.0*x*x54)
-    x86 = 2.0*(x78 + x79 + x80 + x81 + x82 - x83 - x84) - delta_x*x85
-    x87 = c0*z
-    x88 = c1*w
-    x89 = c2*x
-    x90 = 2.0*(x25*x87 + x28*x88 - x27*x89) + (x6 + 2.0*y_*x30)
-    x91 = delta_w*(x9*x87 + x17*x89 - (x4 - x13*x88) - y_*x22)
-    x92 = delta_x_dot*(x39*x87 + x42*x88 - x45*x89 - y_*x49)
-    x93 = delta_z_dot*(x71*x87 + x70*x89 - x69*x88 - y_*x72)
-    x94 = delta_x*(x51*x87 + x52*x88 + (x5 - x53*x89) - y_*x54)
-    x95 = delta_z*(x2 + x34*x87 + x33*x89 - x32*x88 - y_*x35)
-    x96 = delta_w_dot*(x56*x87 + x58*x88 + x60*x89 - y_*x62)
-    x97 = delta_y_dot*(x64*x87 + x65*x88 - x66*x89 + y_*x67)
-    x98 = delta_y*x90 + 2.0*(x91 + x92 + x93 - x94 - x95 - x96 - x97)
-    x99 = c0*y_
-    x100 = c1*x
-    x101 = c2*w
-    x102 = 2.0*(x34*x99 + x32*x100 + x33*x101) + (x6 + 2.0*z*x35)
-    x103 = delta_w*(x13*x100 + (x5 - x17*x101) - x9*x99 - z*x22)
-    x104 = delta_y*(x2 - x25*x99 + x28*x100 + x27*x101 + z*x30)
-    x105 = delta_w_dot*(x56*x99 + x60*x101 - x58*x100 + z*x62)
-    x106 = delta_x_dot*(x42*x100 + x45*x101 - x39*x99 - z*x49)
-    x107 = delta_x*(x4 + x52*x100 + x53*x101 - x51*x99 - z*x54)
-    x108 = delta_y_dot*(x65*x100 + x66*x101 - x64*x99 + z*x67)
-    x109 = delta_z_dot*(x71*x99 + x69*x100 + x70*x101 + z*x72)
-    x110 = delta_z*x102 + 2.0*(x103 + x104 + x105 + x106 - x107 - x108 - x109)
-    # outputs
-    return (
-        w_dot,
-        x_dot,
-        y_dot,
-        z_dot,
-        -(2.0*(x*x2 + y_*x4 - z*x5) + w*x6),
-        -(2.0*(z*x4 + y_*x5 - w*x2) + x*x6),
-        2.0*(z*x2 + w*x4 + x*x5) - y_*x6,
-        -(2.0*(y_*x2 + w*x5 - x*x4) + z*x6),
-        delta_w_dot,
-        delta_x_dot,
-        delta_y_dot,
-        delta_z_dot,
-        x74,
-        -x86,
-        -x98,
-        -x110,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+constraints_many = _over_arrays(constraints)
+multipliers_many = _over_arrays(multipliers)
+correction_many = _over_arrays(correction)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+angular_momentum_many = _over_arrays(angular_momentum)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (16, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y
-    A, B, C = params
-    # terms of the parameters alone
-    c0 = (B - C)*(1.0/A)
-    c1 = (C - A)*(1.0/B)
-    c2 = (B - A)*(1.0/C)
-    # intermediate terms
-    x0 = w_dot*y_ + x_dot*z - y_dot*w - z_dot*x
-    x1 = w_dot*z + y_dot*x - x_dot*y_ - z_dot*w
-    x2 = c0*x0*x1
-    x3 = w_dot*x + z_dot*y_ - x_dot*w - y_dot*z
-    x4 = c1*x1*x3
-    x5 = c2*x0*x3
-    x6 = x3*x3 + x0*x0 + x1*x1
-    x7 = y_dot*x1
-    x8 = z_dot*x0
-    x9 = x7 + x8
-    x10 = c0*x
-    x11 = x_dot*x1
-    x12 = z_dot*x3
-    x13 = x11 + x12
-    x14 = c1*y_
-    x15 = x_dot*x0
-    x16 = y_dot*x3
-    x17 = x15 + x16
-    x18 = c2*z
-    x19 = x_dot*x3
-    x20 = y_dot*x0
-    x21 = z_dot*x1
-    x22 = x19 + x20 + x21
-    x23 = 2.0*(x9*x10 + x13*x14 - x17*x18) - (x6 - 2.0*w*x22)
-    x24 = w_dot*x1
-    x25 = x15 - x24
-    x26 = w_dot*x3
-    x27 = x8 + x26
-    x28 = x19 - x21
-    x29 = w_dot*x0
-    x30 = x12 + x29 - x11
-    x31 = delta_y*(x25*x10 + x27*x18 - (x4 - x28*x14) - w*x30)
-    x32 = x7 - x26
-    x33 = x19 - x20
-    x34 = x11 + x29
-    x35 = x15 + x24 - x16
-    x36 = delta_z*(x32*x14 + (x5 + x33*x18) - x34*x10 - w*x35)
-    x37 = y_*x0
-    x38 = z*x1
-    x39 = x37 - x38
-    x40 = y_*x3
-    x41 = w*x1
-    x42 = x40 + x41
-    x43 = z*x3
-    x44 = w*x0
-    x45 = x43 - x44
-    x46 = y_*x1
-    x47 = w*x3
-    x48 = z*x0
-    x49 = x46 + x47 - x48
-    x50 = delta_x_dot*(x39*x10 + x42*x14 + x45*x18 + w*x49)
-    x51 = x20 - x21
-    x52 = x16 + x24
-    x53 = x12 - x29
-    x54 = x7 + x26 - x8
-    x55 = delta_x*(x2 + x51*x10 + x52*x14 + x53*x18 + w*x54)
-    x56 = x46 + x48
-    x57 = x*x1
-    x58 = x57 + x43
-    x59 = x*x0
-    x60 = x59 + x40
-    x61 = x*x3
-    x62 = x61 + x37 + x38
-    x63 = delta_w_dot*(x56*x10 + x58*x14 - x60*x18 + w*x62)
-    x64 = x59 - x41
-    x65 = x61 - x38
-    x66 = x48 + x47
-    x67 = x43 + x44 - x57
-    x68 = delta_y_dot*(x64*x10 + x65*x14 + x66*x18 - w*x67)
-    x69 = x46 - x47
-    x70 = x61 - x37
-    x71 = x57 + x44
-    x72 = x59 + x41 - x40
-    x73 = delta_z_dot*(x69*x14 + x70*x18 - x71*x10 - w*x72)
-    x74 = delta_w*x23 + 2.0*(x31 + x36 + x50 - x55 - x63 - x68 - x73)
-    x75 = c0*w
-    x76 = c2*y_
-    x77 = c1*z
-    x78 = delta_y*(x25*x75 + (x5 + x27*x76) - x28*x77 + x*x30)
-    x79 = delta_z*(x4 - x32*x77 + x33*x76 - x34*x75 + x*x35)
-    x80 = delta_w_dot*(x58*x77 + x60*x76 - x56*x75 + x*x62)
-    x81 = delta_x_dot*(x39*x75 + x45*x76 - x42*x77 - x*x49)
-    x82 = delta_z_dot*(x71*x75 + x69*x77 - x70*x76 - x*x72)
-    x83 = delta_w*(x2 - x9*x75 + x13*x77 + x17*x76 + x*x22)
-    x84 = delta_y_dot*(x64*x75 + x66*x76 - x65*x77 + x*x67)
-    x85 = 2.0*(x51*x75 + x53*x76 - x52*x77) - (x6 + 2.0*x*x54)
-    x86 = 2.0*(x78 + x79 + x80 + x81 + x82 - x83 - x84) - delta_x*x85
-    x87 = c0*z
-    x88 = c1*w
-    x89 = c2*x
-    x90 = 2.0*(x25*x87 + x28*x88 - x27*x89) + (x6 + 2.0*y_*x30)
-    x91 = delta_w*(x9*x87 + x17*x89 - (x4 - x13*x88) - y_*x22)
-    x92 = delta_x_dot*(x39*x87 + x42*x88 - x45*x89 - y_*x49)
-    x93 = delta_z_dot*(x71*x87 + x70*x89 - x69*x88 - y_*x72)
-    x94 = delta_x*(x51*x87 + x52*x88 + (x5 - x53*x89) - y_*x54)
-    x95 = delta_z*(x2 + x34*x87 + x33*x89 - x32*x88 - y_*x35)
-    x96 = delta_w_dot*(x56*x87 + x58*x88 + x60*x89 - y_*x62)
-    x97 = delta_y_dot*(x64*x87 + x65*x88 - x66*x89 + y_*x67)
-    x98 = delta_y*x90 + 2.0*(x91 + x92 + x93 - x94 - x95 - x96 - x97)
-    x99 = c0*y_
-    x100 = c1*x
-    x101 = c2*w
-    x102 = 2.0*(x34*x99 + x32*x100 + x33*x101) + (x6 + 2.0*z*x35)
-    x103 = delta_w*(x13*x100 + (x5 - x17*x101) - x9*x99 - z*x22)
-    x104 = delta_y*(x2 - x25*x99 + x28*x100 + x27*x101 + z*x30)
-    x105 = delta_w_dot*(x56*x99 + x60*x101 - x58*x100 + z*x62)
-    x106 = delta_x_dot*(x42*x100 + x45*x101 - x39*x99 - z*x49)
-    x107 = delta_x*(x4 + x52*x100 + x53*x101 - x51*x99 - z*x54)
-    x108 = delta_y_dot*(x65*x100 + x66*x101 - x64*x99 + z*x67)
-    x109 = delta_z_dot*(x71*x99 + x69*x100 + x70*x101 + z*x72)
-    x110 = delta_z*x102 + 2.0*(x103 + x104 + x105 + x106 - x107 - x108 - x109)
-    # outputs
-    return _stacked(
-        (16,),
-        y[0],
-        w_dot,
-        x_dot,
-        y_dot,
-        z_dot,
-        -(2.0*(x*x2 + y_*x4 - z*x5) + w*x6),
-        -(2.0*(z*x4 + y_*x5 - w*x2) + x*x6),
-        2.0*(z*x2 + w*x4 + x*x5) - y_*x6,
-        -(2.0*(y_*x2 + w*x5 - x*x4) + z*x6),
-        delta_w_dot,
-        delta_x_dot,
-        delta_y_dot,
-        delta_z_dot,
-        x74,
-        -x86,
-        -x98,
-        -x110,
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    554 operations, 18 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 16 floats
-        w, x, y, z in 1; w_dot, x_dot, y_dot, z_dot in 1/s; delta_w, delta_x, delta_y,
-        delta_z in 1; delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot in 1/s.
-    params : iterable of 6 floats
-        delta_A, delta_B, delta_C, A, B, C in kg m^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_A, delta_B, delta_C, A, B, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = B - C
-    c1 = 1.0/A
-    c2 = c0*c1
-    c3 = C - A
-    c4 = 1.0/B
-    c5 = c3*c4
-    c6 = B - A
-    c7 = 1.0/C
-    c8 = c6*c7
-    c9 = c0*(1.0/(A*A))
-    c10 = c3*(1.0/(B*B))
-    c11 = c6*(1.0/(C*C))
-    # intermediate terms
-    x0 = w_dot*y_ + x_dot*z - y_dot*w - z_dot*x
-    x1 = w_dot*z + y_dot*x - x_dot*y_ - z_dot*w
-    x2 = x0*x1
-    x3 = c2*x2
-    x4 = w_dot*x + z_dot*y_ - x_dot*w - y_dot*z
-    x5 = x1*x4
-    x6 = c5*x5
-    x7 = x0*x4
-    x8 = c8*x7
-    x9 = x4*x4 + x0*x0 + x1*x1
-    x10 = y_dot*x1
-    x11 = z_dot*x0
-    x12 = x10 + x11
-    x13 = c2*x
-    x14 = x_dot*x1
-    x15 = z_dot*x4
-    x16 = x14 + x15
-    x17 = c5*y_
-    x18 = x_dot*x0
-    x19 = y_dot*x4
-    x20 = x18 + x19
-    x21 = c8*z
-    x22 = x_dot*x4
-    x23 = y_dot*x0
-    x24 = z_dot*x1
-    x25 = x22 + x23 + x24
-    x26 = 2.0*(x12*x13 + x16*x17 - x20*x21) - (x9 - 2.0*w*x25)
-    x27 = w_dot*x1
-    x28 = x18 - x27
-    x29 = w_dot*x4
-    x30 = x11 + x29
-    x31 = x22 - x24
-    x32 = w_dot*x0
-    x33 = x15 + x32 - x14
-    x34 = delta_y*(x28*x13 + x30*x21 - (x6 - x31*x17) - w*x33)
-    x35 = x10 - x29
-    x36 = x22 - x23
-    x37 = x14 + x32
-    x38 = x18 + x27 - x19
-    x39 = delta_z*(x35*x17 + (x8 + x36*x21) - x37*x13 - w*x38)
-    x40 = y_*x0
-    x41 = z*x1
-    x42 = x40 - x41
-    x43 = y_*x4
-    x44 = w*x1
-    x45 = x43 + x44
-    x46 = z*x4
-    x47 = w*x0
-    x48 = x46 - x47
-    x49 = y_*x1
-    x50 = w*x4
-    x51 = z*x0
-    x52 = x49 + x50 - x51
-    x53 = delta_x_dot*(x42*x13 + x45*x17 + x48*x21 + w*x52)
-    x54 = c9*x2
-    x55 = c4*x5
-    x56 = y_*x55
-    x57 = c7*x7
-    x58 = z*x57
-    x59 = c10*x5
-    x60 = c1*x2
-    x61 = x*x60
-    x62 = x23 - x24
-    x63 = x19 + x27
-    x64 = x15 - x32
-    x65 = x10 + x29 - x11
-    x66 = delta_x*(x3 + x62*x13 + x63*x17 + x64*x21 + w*x65)
-    x67 = x49 + x51
-    x68 = x*x1
-    x69 = x68 + x46
-    x70 = x*x0
-    x71 = x70 + x43
-    x72 = x*x4
-    x73 = x72 + x40 + x41
-    x74 = delta_w_dot*(x67*x13 + x69*x17 - x71*x21 + w*x73)
-    x75 = x70 - x44
-    x76 = x72 - x41
-    x77 = x51 + x50
-    x78 = x46 + x47 - x68
-    x79 = delta_y_dot*(x75*x13 + x76*x17 + x77*x21 - w*x78)
-    x80 = x49 - x50
-    x81 = x72 - x40
-    x82 = x68 + x47
-    x83 = x70 + x44 - x43
-    x84 = delta_z_dot*(x80*x17 + x81*x21 - x82*x13 - w*x83)
-    x85 = c11*x7
-    x86 = (
-        x34 + x39 + x53 + delta_A*(x*x54 + x56 - x58) + delta_B*(x58 + y_*x59 - x61) - x66
-        - x74 - x79 - x84 - delta_C*(x56 + z*x85 - x61)
-    )
-    x87 = c2*w
-    x88 = c8*y_
-    x89 = c5*z
-    x90 = delta_y*(x28*x87 + (x8 + x30*x88) - x31*x89 + x*x33)
-    x91 = delta_z*(x6 - x35*x89 + x36*x88 - x37*x87 + x*x38)
-    x92 = delta_w_dot*(x69*x89 + x71*x88 - x67*x87 + x*x73)
-    x93 = delta_x_dot*(x42*x87 + x48*x88 - x45*x89 - x*x52)
-    x94 = delta_z_dot*(x82*x87 + x80*x89 - x81*x88 - x*x83)
-    x95 = z*x55
-    x96 = w*x60
-    x97 = delta_w*(x3 - x12*x87 + x16*x89 + x20*x88 + x*x25)
-    x98 = delta_y_dot*(x75*x87 + x77*x88 - x76*x89 + x*x78)
-    x99 = y_*x57
-    x100 = (
-        x90 + x91 + x92 + x93 + x94 + delta_C*(x95 + x96 - y_*x85) - x97 - x98
-        - delta_A*(x95 + x99 - w*x54) - delta_B*(x96 + z*x59 - x99)
-    )
-    x101 = 2.0*(x62*x87 + x64*x88 - x63*x89) - (x9 + 2.0*x*x65)
-    x102 = c2*z
-    x103 = c5*w
-    x104 = c8*x
-    x105 = 2.0*(x28*x102 + x31*x103 - x30*x104) + (x9 + 2.0*y_*x33)
-    x106 = delta_w*(x12*x102 + x20*x104 - (x6 - x16*x103) - y_*x25)
-    x107 = delta_x_dot*(x42*x102 + x45*x103 - x48*x104 - y_*x52)
-    x108 = delta_z_dot*(x82*x102 + x81*x104 - x80*x103 - y_*x83)
-    x109 = w*x55
-    x110 = x*x57
-    x111 = z*x60
-    x112 = delta_x*(x62*x102 + x63*x103 + (x8 - x64*x104) - y_*x65)
-    x113 = delta_z*(x3 + x37*x102 + x36*x104 - x35*x103 - y_*x38)
-    x114 = delta_w_dot*(x67*x102 + x69*x103 + x71*x104 - y_*x73)
-    x115 = delta_y_dot*(x75*x102 + x76*x103 - x77*x104 + y_*x78)
-    x116 = (
-        x106 + x107 + x108 + delta_A*(z*x54 + x109 + x110) + delta_C*(x111 + x*x85 - x109)
-        - x112 - x113 - x114 - x115 - delta_B*(x110 + x111 - w*x59)
-    )
-    x117 = c2*y_
-    x118 = c5*x
-    x119 = c8*w
-    x120 = 2.0*(x37*x117 + x35*x118 + x36*x119) + (x9 + 2.0*z*x38)
-    x121 = delta_w*(x16*x118 + (x8 - x20*x119) - x12*x117 - z*x25)
-    x122 = delta_y*(x3 - x28*x117 + x31*x118 + x30*x119 + z*x33)
-    x123 = delta_w_dot*(x67*x117 + x71*x119 - x69*x118 + z*x73)
-    x124 = delta_x_dot*(x45*x118 + x48*x119 - x42*x117 - z*x52)
-    x125 = w*x57
-    x126 = y_*x60
-    x127 = delta_x*(x6 + x63*x118 + x64*x119 - x62*x117 - z*x65)
-    x128 = delta_y_dot*(x76*x118 + x77*x119 - x75*x117 + z*x78)
-    x129 = delta_z_dot*(x82*x117 + x80*x118 + x81*x119 + z*x83)
-    x130 = x*x55
-    x131 = (
-        x121 + x122 + x123 + x124 + delta_B*(x125 + x126 + x*x59) - x127 - x128 - x129
-        - delta_A*(y_*x54 + x125 - x130) - delta_C*(x130 + x126 + w*x85)
-    )
-    # outputs
-    return (
-        w_dot,
-        x_dot,
-        y_dot,
-        z_dot,
-        -(2.0*(x*x3 + y_*x6 - z*x8) + w*x9),
-        -(2.0*(z*x6 + y_*x8 - w*x3) + x*x9),
-        2.0*(z*x3 + w*x6 + x*x8) - y_*x9,
-        -(2.0*(y_*x3 + w*x8 - x*x6) + z*x9),
-        delta_w_dot,
-        delta_x_dot,
-        delta_y_dot,
-        delta_z_dot,
-        delta_w*x26 + 2.0*x86,
-        -(2.0*x100 - delta_x*x101),
-        -(delta_y*x105 + 2.0*x116),
-        -(delta_z*x120 + 2.0*x131),
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (16, ...)."""
-    # inputs
-    w, x, y_, z, w_dot, x_dot, y_dot, z_dot, delta_w, delta_x, delta_y, delta_z, delta_w_dot, delta_x_dot, delta_y_dot, delta_z_dot = y
-    delta_A, delta_B, delta_C, A, B, C = params
-    # terms of the parameters alone
-    c0 = B - C
-    c1 = 1.0/A
-    c2 = c0*c1
-    c3 = C - A
-    c4 = 1.0/B
-    c5 = c3*c4
-    c6 = B - A
-    c7 = 1.0/C
-    c8 = c6*c7
-    c9 = c0*(1.0/(A*A))
-    c10 = c3*(1.0/(B*B))
-    c11 = c6*(1.0/(C*C))
-    # intermediate terms
-    x0 = w_dot*y_ + x_dot*z - y_dot*w - z_dot*x
-    x1 = w_dot*z + y_dot*x - x_dot*y_ - z_dot*w
-    x2 = x0*x1
-    x3 = c2*x2
-    x4 = w_dot*x + z_dot*y_ - x_dot*w - y_dot*z
-    x5 = x1*x4
-    x6 = c5*x5
-    x7 = x0*x4
-    x8 = c8*x7
-    x9 = x4*x4 + x0*x0 + x1*x1
-    x10 = y_dot*x1
-    x11 = z_dot*x0
-    x12 = x10 + x11
-    x13 = c2*x
-    x14 = x_dot*x1
-    x15 = z_dot*x4
-    x16 = x14 + x15
-    x17 = c5*y_
-    x18 = x_dot*x0
-    x19 = y_dot*x4
-    x20 = x18 + x19
-    x21 = c8*z
-    x22 = x_dot*x4
-    x23 = y_dot*x0
-    x24 = z_dot*x1
-    x25 = x22 + x23 + x24
-    x26 = 2.0*(x12*x13 + x16*x17 - x20*x21) - (x9 - 2.0*w*x25)
-    x27 = w_dot*x1
-    x28 = x18 - x27
-    x29 = w_dot*x4
-    x30 = x11 + x29
-    x31 = x22 - x24
-    x32 = w_dot*x0
-    x33 = x15 + x32 - x14
-    x34 = delta_y*(x28*x13 + x30*x21 - (x6 - x31*x17) - w*x33)
-    x35 = x10 - x29
-    x36 = x22 - x23
-    x37 = x14 + x32
-    x38 = x18 + x27 - x19
-    x39 = delta_z*(x35*x17 + (x8 + x36*x21) - x37*x13 - w*x38)
-    x40 = y_*x0
-    x41 = z*x1
-    x42 = x40 - x41
-    x43 = y_*x4
-    x44 = w*x1
-    x45 = x43 + x44
-    x46 = z*x4
-    x47 = w*x0
-    x48 = x46 - x47
-    x49 = y_*x1
-    x50 = w*x4
-    x51 = z*x0
-    x52 = x49 + x50 - x51
-    x53 = delta_x_dot*(x42*x13 + x45*x17 + x48*x21 + w*x52)
-    x54 = c9*x2
-    x55 = c4*x5
-    x56 = y_*x55
-    x57 = c7*x7
-    x58 = z*x57
-    x59 = c10*x5
-    x60 = c1*x2
-    x61 = x*x60
-    x62 = x23 - x24
-    x63 = x19 + x27
-    x64 = x15 - x32
-    x65 = x10 + x29 - x11
-    x66 = delta_x*(x3 + x62*x13 + x63*x17 + x64*x21 + w*x65)
-    x67 = x49 + x51
-    x68 = x*x1
-    x69 = x68 + x46
-    x70 = x*x0
-    x71 = x70 + x43
-    x72 = x*x4
-    x73 = x72 + x40 + x41
-    x74 = delta_w_dot*(x67*x13 + x69*x17 - x71*x21 + w*x73)
-    x75 = x70 - x44
-    x76 = x72 - x41
-    x77 = x51 + x50
-    x78 = x46 + x47 - x68
-    x79 = delta_y_dot*(x75*x13 + x76*x17 + x77*x21 - w*x78)
-    x80 = x49 - x50
-    x81 = x72 - x40
-    x82 = x68 + x47
-    x83 = x70 + x44 - x43
-    x84 = delta_z_dot*(x80*x17 + x81*x21 - x82*x13 - w*x83)
-    x85 = c11*x7
-    x86 = (
-        x34 + x39 + x53 + delta_A*(x*x54 + x56 - x58) + delta_B*(x58 + y_*x59 - x61) - x66
-        - x74 - x79 - x84 - delta_C*(x56 + z*x85 - x61)
-    )
-    x87 = c2*w
-    x88 = c8*y_
-    x89 = c5*z
-    x90 = delta_y*(x28*x87 + (x8 + x30*x88) - x31*x89 + x*x33)
-    x91 = delta_z*(x6 - x35*x89 + x36*x88 - x37*x87 + x*x38)
-    x92 = delta_w_dot*(x69*x89 + x71*x88 - x67*x87 + x*x73)
-    x93 = delta_x_dot*(x42*x87 + x48*x88 - x45*x89 - x*x52)
-    x94 = delta_z_dot*(x82*x87 + x80*x89 - x81*x88 - x*x83)
-    x95 = z*x55
-    x96 = w*x60
-    x97 = delta_w*(x3 - x12*x87 + x16*x89 + x20*x88 + x*x25)
-    x98 = delta_y_dot*(x75*x87 + x77*x88 - x76*x89 + x*x78)
-    x99 = y_*x57
-    x100 = (
-        x90 + x91 + x92 + x93 + x94 + delta_C*(x95 + x96 - y_*x85) - x97 - x98
-        - delta_A*(x95 + x99 - w*x54) - delta_B*(x96 + z*x59 - x99)
-    )
-    x101 = 2.0*(x62*x87 + x64*x88 - x63*x89) - (x9 + 2.0*x*x65)
-    x102 = c2*z
-    x103 = c5*w
-    x104 = c8*x
-    x105 = 2.0*(x28*x102 + x31*x103 - x30*x104) + (x9 + 2.0*y_*x33)
-    x106 = delta_w*(x12*x102 + x20*x104 - (x6 - x16*x103) - y_*x25)
-    x107 = delta_x_dot*(x42*x102 + x45*x103 - x48*x104 - y_*x52)
-    x108 = delta_z_dot*(x82*x102 + x81*x104 - x80*x103 - y_*x83)
-    x109 = w*x55
-    x110 = x*x57
-    x111 = z*x60
-    x112 = delta_x*(x62*x102 + x63*x103 + (x8 - x64*x104) - y_*x65)
-    x113 = delta_z*(x3 + x37*x102 + x36*x104 - x35*x103 - y_*x38)
-    x114 = delta_w_dot*(x67*x102 + x69*x103 + x71*x104 - y_*x73)
-    x115 = delta_y_dot*(x75*x102 + x76*x103 - x77*x104 + y_*x78)
-    x116 = (
-        x106 + x107 + x108 + delta_A*(z*x54 + x109 + x110) + delta_C*(x111 + x*x85 - x109)
-        - x112 - x113 - x114 - x115 - delta_B*(x110 + x111 - w*x59)
-    )
-    x117 = c2*y_
-    x118 = c5*x
-    x119 = c8*w
-    x120 = 2.0*(x37*x117 + x35*x118 + x36*x119) + (x9 + 2.0*z*x38)
-    x121 = delta_w*(x16*x118 + (x8 - x20*x119) - x12*x117 - z*x25)
-    x122 = delta_y*(x3 - x28*x117 + x31*x118 + x30*x119 + z*x33)
-    x123 = delta_w_dot*(x67*x117 + x71*x119 - x69*x118 + z*x73)
-    x124 = delta_x_dot*(x45*x118 + x48*x119 - x42*x117 - z*x52)
-    x125 = w*x57
-    x126 = y_*x60
-    x127 = delta_x*(x6 + x63*x118 + x64*x119 - x62*x117 - z*x65)
-    x128 = delta_y_dot*(x76*x118 + x77*x119 - x75*x117 + z*x78)
-    x129 = delta_z_dot*(x82*x117 + x80*x118 + x81*x119 + z*x83)
-    x130 = x*x55
-    x131 = (
-        x121 + x122 + x123 + x124 + delta_B*(x125 + x126 + x*x59) - x127 - x128 - x129
-        - delta_A*(y_*x54 + x125 - x130) - delta_C*(x130 + x126 + w*x85)
-    )
-    # outputs
-    return _stacked(
-        (16,),
-        y[0],
-        w_dot,
-        x_dot,
-        y_dot,
-        z_dot,
-        -(2.0*(x*x3 + y_*x6 - z*x8) + w*x9),
-        -(2.0*(z*x6 + y_*x8 - w*x3) + x*x9),
-        2.0*(z*x3 + w*x6 + x*x8) - y_*x9,
-        -(2.0*(y_*x3 + w*x8 - x*x6) + z*x9),
-        delta_w_dot,
-        delta_x_dot,
-        delta_y_dot,
-        delta_z_dot,
-        delta_w*x26 + 2.0*x86,
-        -(2.0*x100 - delta_x*x101),
-        -(delta_y*x105 + 2.0*x116),
-        -(delta_z*x120 + 2.0*x131),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

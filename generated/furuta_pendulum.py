@@ -26,30 +26,6 @@ State y in functions of the rational form:
     alpha_dot [rad/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_alpha [1]
-    cos_alpha [1]
-    sin_theta [1]
-    cos_theta [1]
-    alpha_dot [rad/s]
-    theta_dot [rad/s]
-    delta_alpha [rad]
-    delta_theta [rad]
-    delta_alpha_dot [rad/s]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_alpha [1]
-    cos_alpha [1]
-    sin_theta [1]
-    cos_theta [1]
-    alpha_dot [rad/s]
-    theta_dot [rad/s]
-    delta_alpha [rad]
-    delta_theta [rad]
-    delta_alpha_dot [rad/s]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 0.1: rod's mass
     L [m] > 0, default 0.3: arm's length
@@ -63,7 +39,9 @@ Inputs, the last of params:
 
 Masses and their positions:
     1 at (0, 0, 0), principal moments 0, I, I, orientation: rotations z by alpha
-    m at (L*cos(alpha) - l*sin(alpha)*sin(theta), L*sin(alpha) + l*sin(theta)*cos(alpha), -l*cos(theta)), principal moments J, J, 0, orientation: rotations zx by alpha, theta
+    m at (L*cos(alpha) - l*sin(alpha)*sin(theta), L*sin(alpha)
+        + l*sin(theta)*cos(alpha), -l*cos(theta)), principal moments J, J, 0,
+        orientation: rotations zx by alpha, theta
 
 Lagrangian:
     L = L*alpha_dot*l*m*theta_dot*cos(theta)
@@ -89,19 +67,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "7738fa3284db1f87"
+DIGEST = "2d12ad7e7092b3ab"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -109,36 +86,15 @@ STATES = {
     "lagrangian": ("alpha", "theta", "alpha_dot", "theta_dot"),
     "hamiltonian": ("alpha", "theta", "p_alpha", "p_theta"),
     "rational": (
-        "sin_alpha",
-        "cos_alpha",
-        "sin_theta",
-        "cos_theta",
-        "alpha_dot",
-        "theta_dot",
+        "sin_alpha", "cos_alpha", "sin_theta", "cos_theta", "alpha_dot", "theta_dot",
     ),
     "variational": (
-        "sin_alpha",
-        "cos_alpha",
-        "sin_theta",
-        "cos_theta",
-        "alpha_dot",
-        "theta_dot",
-        "delta_alpha",
-        "delta_theta",
-        "delta_alpha_dot",
-        "delta_theta_dot",
+        "sin_alpha", "cos_alpha", "sin_theta", "cos_theta", "alpha_dot", "theta_dot",
+        "delta_alpha", "delta_theta", "delta_alpha_dot", "delta_theta_dot",
     ),
     "sensitivity": (
-        "sin_alpha",
-        "cos_alpha",
-        "sin_theta",
-        "cos_theta",
-        "alpha_dot",
-        "theta_dot",
-        "delta_alpha",
-        "delta_theta",
-        "delta_alpha_dot",
-        "delta_theta_dot",
+        "sin_alpha", "cos_alpha", "sin_theta", "cos_theta", "alpha_dot", "theta_dot",
+        "delta_alpha", "delta_theta", "delta_alpha_dot", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "L", "l", "g", "I", "J", "tau")
@@ -148,65 +104,25 @@ POSITIVE = ("m", "L", "l", "I", "J")
 LINKS = (("rod", (0, 1)), ("rod", (1, 2)))
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "input_jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "points",
-    "angular_momentum",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "input_jacobian", "parameter_jacobian", "energy", "mass_matrix",
+    "positions", "points", "angular_momentum", "hamiltonian_state", "rhs_hamiltonian",
+    "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (40, 9),
-    "jacobian": (80, 10),
-    "input_jacobian": (24, 8),
-    "parameter_jacobian": (134, 15),
-    "energy": (28, 7),
-    "power": (1, 0),
-    "mass_matrix": (16, 6),
-    "positions": (13, 0),
-    "points": (13, 0),
-    "angular_momentum": (49, 1),
-    "hamiltonian_state": (22, 6),
-    "rhs_hamiltonian": (37, 9),
-    "jacobian_hamiltonian": (70, 10),
-    "energy_hamiltonian": (34, 9),
-    "lagrangian_state": (27, 8),
-    "rational_state": (4, 0),
-    "rhs_rational": (42, 9),
-    "rhs_variational": (83, 9),
-    "rhs_sensitivity": (158, 15),
+    "rhs": (40, 9), "jacobian": (79, 9), "input_jacobian": (24, 8),
+    "parameter_jacobian": (134, 15), "energy": (28, 7), "power": (1, 0),
+    "mass_matrix": (16, 6), "positions": (13, 0), "points": (13, 0),
+    "angular_momentum": (49, 1), "hamiltonian_state": (22, 6), "rhs_hamiltonian": (37, 9),
+    "jacobian_hamiltonian": (70, 10), "energy_hamiltonian": (34, 9),
+    "lagrangian_state": (27, 8), "rational_state": (4, 0), "rhs_rational": (42, 9),
+    "rhs_variational": (83, 9), "rhs_sensitivity": (158, 15),
 }
 UNITS = {
-    "m": "kg",
-    "L": "m",
-    "l": "m",
-    "g": "m/s^2",
-    "I": "kg m^2",
-    "J": "kg m^2",
-    "tau": "N m",
-    "alpha": "rad",
-    "alpha_dot": "rad/s",
-    "p_alpha": "J s",
-    "delta_alpha": "rad",
-    "delta_alpha_dot": "rad/s",
-    "sin_alpha": "1",
-    "cos_alpha": "1",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
-    "cos_theta": "1",
+    "m": "kg", "L": "m", "l": "m", "g": "m/s^2", "I": "kg m^2", "J": "kg m^2", "tau": "N m",
+    "alpha": "rad", "alpha_dot": "rad/s", "p_alpha": "J s", "delta_alpha": "rad",
+    "delta_alpha_dot": "rad/s", "sin_alpha": "1", "cos_alpha": "1", "theta": "rad",
+    "theta_dot": "rad/s", "p_theta": "J s", "delta_theta": "rad",
+    "delta_theta_dot": "rad/s", "sin_theta": "1", "cos_theta": "1",
 }
 
 
@@ -272,39 +188,10 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (alpha_dot, theta_dot, -x5, c3*x3 + x2*x5)
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, alpha_dot, theta_dot = y
-    m, L, l, g, I, J, tau = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c1*(alpha_dot*cos_theta)
-    x1 = theta_dot*sin_theta*(2.0*x0 - c2*theta_dot) - tau
-    x2 = c4*cos_theta
-    x3 = sin_theta*(alpha_dot*x0 - c5)
-    x4 = sin_theta*sin_theta
-    x5 = (x1 + x2*x3)/(I + J*x4 + m*(c6 + c7*x4) - c2*cos_theta*x2)
-    # outputs
-    return _stacked((4,), y[0], alpha_dot, theta_dot, -x5, c3*x3 + x2*x5)
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    80 operations, 10 of them on parameters alone.
+    79 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -332,7 +219,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c5 = g*c0
     c6 = L*L
     c7 = l*l
-    c8 = c1*c3
     # intermediate terms
     sin_theta = sin(theta)
     cos_theta = cos(theta)
@@ -344,316 +230,24 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x5 = sin_theta*cos_theta
     x6 = sin_theta*sin_theta
     x7 = c4*cos_theta
-    x8 = I + J*x6 + m*(c6 + c7*x6) - c2*cos_theta*x7
-    x9 = (sin_theta*theta_dot*x3 - tau + c4*x4*x5)/x8
-    x10 = c1*x5
+    x8 = c2*cos_theta
+    x9 = I + J*x6 + m*(c6 + c7*x6) - x7*x8
+    x10 = (sin_theta*theta_dot*x3 - tau + c4*x4*x5)/x9
     x11 = c2*sin_theta
     x12 = x6*x0
-    x13 = 2.0*x9*x10 + (c3*sin_theta*x4 + x7*x9)*x11 - theta_dot*(cos_theta*x3 - 2.0*x12)
-    x14 = cos_theta*x4 - alpha_dot*x12 - x9*x11
-    x15 = (x13 - x7*x14)/x8
-    x16 = (theta_dot + x7*alpha_dot)*x10/x8
-    x17 = sin_theta*(x2 - x3)/x8
+    x13 = (
+        2.0*c1*x10*x5 + (c3*sin_theta*x4 + x7*x10)*x11 - theta_dot*(cos_theta*x3 - 2.0*x12)
+    )
+    x14 = cos_theta*x4 - alpha_dot*x12 - x10*x11
+    x15 = (x13 - x7*x14)/x9
+    x16 = (c1*theta_dot + alpha_dot*x8)*x5/x9
+    x17 = sin_theta*(x2 - x3)/x9
     # outputs
     return (
         (0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 1.0),
         (0.0, x15, -2.0*x16, x17),
-        (0.0, c3*x14 - x7*x15, 2.0*(c8*alpha_dot*x5 + x7*x16), -x7*x17),
-    )
-
-
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, alpha_dot, theta_dot = y
-    m, L, l, g, I, J, tau = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    c8 = c1*c3
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c1*alpha_dot
-    x1 = cos_theta*x0
-    x2 = c2*theta_dot
-    x3 = 2.0*x1 - x2
-    x4 = alpha_dot*x1 - c5
-    x5 = sin_theta*cos_theta
-    x6 = sin_theta*sin_theta
-    x7 = c4*cos_theta
-    x8 = I + J*x6 + m*(c6 + c7*x6) - c2*cos_theta*x7
-    x9 = (sin_theta*theta_dot*x3 - tau + c4*x4*x5)/x8
-    x10 = c1*x5
-    x11 = c2*sin_theta
-    x12 = x6*x0
-    x13 = 2.0*x9*x10 + (c3*sin_theta*x4 + x7*x9)*x11 - theta_dot*(cos_theta*x3 - 2.0*x12)
-    x14 = cos_theta*x4 - alpha_dot*x12 - x9*x11
-    x15 = (x13 - x7*x14)/x8
-    x16 = (theta_dot + x7*alpha_dot)*x10/x8
-    x17 = sin_theta*(x2 - x3)/x8
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        x15,
-        -2.0*x16,
-        x17,
-        0.0,
-        c3*x14 - x7*x15,
-        2.0*(c8*alpha_dot*x5 + x7*x16),
-        -x7*x17,
-    )
-
-
-def input_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the inputs.
-
-    24 operations, 8 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        alpha, theta in rad; alpha_dot, theta_dot in rad/s.
-    params : iterable of 7 floats
-        m in kg; L, l in m; g in m/s^2; I, J in kg m^2; tau in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to input j.
-    """
-    # inputs
-    _, theta, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, L, l, _, I, J, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = L*L
-    c1 = l*l
-    c2 = m*l
-    c3 = L*c2
-    c4 = 1.0/(J + l*c2)*c3
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    cos_theta = cos(theta)
-    x1 = c4*cos_theta
-    x2 = 1.0/(I + J*x0 + m*(c0 + c1*x0) - c3*cos_theta*x1)
-    # outputs
-    return ((0.0,), (0.0,), (x2,), (-x1*x2,))
-
-
-def input_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`input_jacobian` over arrays: the result has shape (4, 1, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, _, _ = y
-    m, L, l, _, I, J, _ = params
-    # terms of the parameters alone
-    c0 = L*L
-    c1 = l*l
-    c2 = m*l
-    c3 = L*c2
-    c4 = 1.0/(J + l*c2)*c3
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    cos_theta = cos(theta)
-    x1 = c4*cos_theta
-    x2 = 1.0/(I + J*x0 + m*(c0 + c1*x0) - c3*cos_theta*x1)
-    # outputs
-    return _stacked((4, 1), y[0], 0.0, 0.0, x2, -x1*x2)
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    134 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        alpha, theta in rad; alpha_dot, theta_dot in rad/s.
-    params : iterable of 7 floats
-        m in kg; L, l in m; g in m/s^2; I, J in kg m^2; tau in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    _, theta, alpha_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, L, l, g, I, J, tau = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = L*l
-    c1 = m*l
-    c2 = J + l*c1
-    c3 = 1.0/c2
-    c4 = g*c1
-    c5 = L*c1
-    c6 = c3*c5
-    c7 = L*L
-    c8 = l*l
-    c9 = l*c3
-    c10 = c5*c9
-    c11 = m*c10
-    c12 = c3*c1
-    c13 = m*c3
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = cos_theta*alpha_dot
-    x1 = l*x0
-    x2 = L*theta_dot
-    sin_theta = sin(theta)
-    x3 = sin_theta*theta_dot
-    x4 = l*x3
-    x5 = alpha_dot*x0
-    x6 = sin_theta*(c2*x5 - c4)
-    x7 = c6*cos_theta
-    x8 = sin_theta*sin_theta
-    x9 = c7 + c8*x8
-    x10 = I + J*x8 + m*x9 - c5*cos_theta*x7
-    x11 = ((2.0*c2*x0 - c5*theta_dot)*x3 - tau + x7*x6)/x10
-    x12 = c3*x6 + x7*x11
-    x13 = cos_theta*x12
-    x14 = l*x5
-    x15 = cos_theta*x11
-    x16 = L*x15
-    x17 = l*x12
-    x18 = sin_theta*(x14 - g) + x16 - x17
-    x19 = c10*cos_theta
-    x20 = ((2.0*x1 - x2)*x4 + c0*x13 - x9*x11 + x18*x19)/x10
-    x21 = m*(theta_dot*x4 + 2.0*L*x11 - l*x13 - x15*x19)/x10
-    x22 = x16 + sin_theta*(2.0*x14 - g) - 2.0*x17
-    x23 = m*((4.0*x1 - x2)*x3 + L*x13 - 2.0*l*x11*x8 + x7*x22)
-    x24 = x23/x10
-    x25 = c11*sin_theta*cos_theta/x10
-    x26 = x11/x10
-    x27 = x12 - sin_theta*x5
-    x28 = sin_theta*(2.0*theta_dot*x0 - sin_theta*x11) - x7*x27
-    x29 = x28/x10
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-x20, x21, -x24, x25, x26, -x29),
-        (
-            c9*x18 + x7*x20,
-            c12*x15 - x7*x21,
-            c13*x22 + x7*x24,
-            -(c12*sin_theta + x7*x25),
-            -x7*x26,
-            -(c3*x27 - x7*x29),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, alpha_dot, theta_dot = y
-    m, L, l, g, I, J, tau = params
-    # terms of the parameters alone
-    c0 = L*l
-    c1 = m*l
-    c2 = J + l*c1
-    c3 = 1.0/c2
-    c4 = g*c1
-    c5 = L*c1
-    c6 = c3*c5
-    c7 = L*L
-    c8 = l*l
-    c9 = l*c3
-    c10 = c5*c9
-    c11 = m*c10
-    c12 = c3*c1
-    c13 = m*c3
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = cos_theta*alpha_dot
-    x1 = l*x0
-    x2 = L*theta_dot
-    sin_theta = sin(theta)
-    x3 = sin_theta*theta_dot
-    x4 = l*x3
-    x5 = alpha_dot*x0
-    x6 = sin_theta*(c2*x5 - c4)
-    x7 = c6*cos_theta
-    x8 = sin_theta*sin_theta
-    x9 = c7 + c8*x8
-    x10 = I + J*x8 + m*x9 - c5*cos_theta*x7
-    x11 = ((2.0*c2*x0 - c5*theta_dot)*x3 - tau + x7*x6)/x10
-    x12 = c3*x6 + x7*x11
-    x13 = cos_theta*x12
-    x14 = l*x5
-    x15 = cos_theta*x11
-    x16 = L*x15
-    x17 = l*x12
-    x18 = sin_theta*(x14 - g) + x16 - x17
-    x19 = c10*cos_theta
-    x20 = ((2.0*x1 - x2)*x4 + c0*x13 - x9*x11 + x18*x19)/x10
-    x21 = m*(theta_dot*x4 + 2.0*L*x11 - l*x13 - x15*x19)/x10
-    x22 = x16 + sin_theta*(2.0*x14 - g) - 2.0*x17
-    x23 = m*((4.0*x1 - x2)*x3 + L*x13 - 2.0*l*x11*x8 + x7*x22)
-    x24 = x23/x10
-    x25 = c11*sin_theta*cos_theta/x10
-    x26 = x11/x10
-    x27 = x12 - sin_theta*x5
-    x28 = sin_theta*(2.0*theta_dot*x0 - sin_theta*x11) - x7*x27
-    x29 = x28/x10
-    # outputs
-    return _stacked(
-        (4, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x20,
-        x21,
-        -x24,
-        x25,
-        x26,
-        -x29,
-        c9*x18 + x7*x20,
-        c12*x15 - x7*x21,
-        c13*x22 + x7*x24,
-        -(c12*sin_theta + x7*x25),
-        -x7*x26,
-        -(c3*x27 - x7*x29),
+        (0.0, c3*x14 - x7*x15, 2.0*(alpha_dot*x5 + x7*x16), -x7*x17),
     )
 
 
@@ -679,30 +273,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     _, theta, alpha_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, L, l, g, I, J, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = L*c0
-    c2 = L*L
-    c3 = l*l
-    c4 = J + l*c0
-    c5 = g*c0
-    # intermediate terms
-    cos_theta = cos(theta)
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    x1 = alpha_dot*alpha_dot*(I + J*x0 + m*(c2 + c3*x0)) + c4*theta_dot*theta_dot
-    x2 = c1*alpha_dot*theta_dot*cos_theta + 0.5*x1 - c5*cos_theta
-    # outputs
-    return x2
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, alpha_dot, theta_dot = y
-    m, L, l, g, I, J, _ = params
     # terms of the parameters alone
     c0 = m*l
     c1 = L*c0
@@ -746,15 +316,6 @@ def power(t: float, y: Numbers, params: Numbers) -> float:
     return tau*alpha_dot
 
 
-def power_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`power` over arrays: the result has shape (...)."""
-    # inputs
-    _, _, alpha_dot, _ = y
-    _, _, _, _, _, _, tau = params
-    # outputs
-    return tau*alpha_dot
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -788,26 +349,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     x1 = c3*cos(theta)
     # outputs
     return ((I + J*x0 + m*(c0 + c1*x0), x1), (x1, J + l*c2))
-
-
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, _, _ = y
-    m, L, l, _, I, J, _ = params
-    # terms of the parameters alone
-    c0 = L*L
-    c1 = l*l
-    c2 = m*l
-    c3 = L*c2
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    x1 = c3*cos(theta)
-    # outputs
-    return _stacked((2, 2), y[0], I + J*x0 + m*(c0 + c1*x0), x1, x1, J + l*c2)
 
 
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -847,30 +388,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (2, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, theta, _, _ = y
-    _, L, l, _, _, _, _ = params
-    # intermediate terms
-    cos_alpha = cos(alpha)
-    sin_alpha = sin(alpha)
-    x0 = l*sin(theta)
-    # outputs
-    return _stacked(
-        (2, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        L*cos_alpha - sin_alpha*x0,
-        L*sin_alpha + cos_alpha*x0,
-        -l*cos(theta),
-    )
-
-
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Points of `LINKS`, which pictures join.
 
@@ -904,35 +421,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
         (0.0, 0.0, 0.0),
         (x0, x1, 0.0),
         (x0 - sin_alpha*x2, x1 + cos_alpha*x2, -l*cos(theta)),
-    )
-
-
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, theta, _, _ = y
-    _, L, l, _, _, _, _ = params
-    # intermediate terms
-    cos_alpha = cos(alpha)
-    x0 = L*cos_alpha
-    sin_alpha = sin(alpha)
-    x1 = L*sin_alpha
-    x2 = l*sin(theta)
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        x0,
-        x1,
-        0.0,
-        x0 - sin_alpha*x2,
-        x1 + cos_alpha*x2,
-        -l*cos(theta),
     )
 
 
@@ -984,41 +472,6 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def angular_momentum_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`angular_momentum` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, theta, alpha_dot, theta_dot = y
-    m, L, l, _, I, J, _ = params
-    # terms of the parameters alone
-    c0 = m*l
-    # intermediate terms
-    cos_theta = cos(theta)
-    cos_alpha = cos(alpha)
-    sin_alpha = sin(alpha)
-    sin_theta = sin(theta)
-    x0 = l*sin_theta
-    x1 = L*cos_alpha - sin_alpha*x0
-    x2 = l*cos_theta
-    x3 = cos_alpha*theta_dot
-    x4 = alpha_dot*x1 + x2*x3
-    x5 = L*sin_alpha + cos_alpha*x0
-    x6 = sin_theta*theta_dot
-    x7 = J*(alpha_dot*sin_theta)
-    x8 = cos_theta*x7
-    x9 = sin_alpha*theta_dot
-    x10 = alpha_dot*x5 + x2*x9
-    # outputs
-    return _stacked(
-        (3,),
-        y[0],
-        c0*(cos_theta*x4 + x5*x6) + J*x3 - sin_alpha*x8,
-        c0*(cos_theta*x10 - x1*x6) + J*x9 + cos_alpha*x8,
-        I*alpha_dot + m*(x1*x4 + x5*x10) + sin_theta*x7,
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1054,28 +507,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x2 = alpha_dot*(I + J*x0 + m*(c0 + c1*x0)) + theta_dot*x1
     # outputs
     return (alpha, theta, x2, c4*theta_dot + alpha_dot*x1)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, theta, alpha_dot, theta_dot = y
-    m, L, l, _, I, J, _ = params
-    # terms of the parameters alone
-    c0 = L*L
-    c1 = l*l
-    c2 = m*l
-    c3 = L*c2
-    c4 = J + l*c2
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    x1 = c3*cos(theta)
-    x2 = alpha_dot*(I + J*x0 + m*(c0 + c1*x0)) + theta_dot*x1
-    # outputs
-    return _stacked((4,), y[0], alpha, theta, x2, c4*theta_dot + alpha_dot*x1)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1120,161 +551,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x2, x3, tau, -sin_theta*(c7 + c3*x2*x3 - c1*cos_theta*x2*x2))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, p_alpha, p_theta = y
-    m, L, l, g, I, J, tau = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = 1.0/c1
-    c3 = L*c0
-    c4 = c2*c3
-    c5 = L*L
-    c6 = l*l
-    c7 = g*c0
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = c4*cos_theta
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_alpha - x0*p_theta)/(I + J*x1 + m*(c5 + c6*x1) - c3*cos_theta*x0)
-    x3 = c2*p_theta - x0*x2
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        x2,
-        x3,
-        tau,
-        -sin_theta*(c7 + c3*x2*x3 - c1*cos_theta*x2*x2),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    70 operations, 10 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        alpha, theta in rad; p_alpha, p_theta in J s.
-    params : iterable of 7 floats
-        m in kg; L, l in m; g in m/s^2; I, J in kg m^2; tau in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    _, theta, p_alpha, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    m, L, l, g, I, J, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = 1.0/c1
-    c3 = L*c0
-    c4 = c2*c3
-    c5 = L*L
-    c6 = l*l
-    c7 = c4*c3
-    c8 = g*c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c4*cos_theta
-    x1 = sin_theta*sin_theta
-    x2 = I + J*x1 + m*(c5 + c6*x1) - c3*cos_theta*x0
-    x3 = (p_alpha - x0*p_theta)/x2
-    x4 = cos_theta*x3
-    x5 = c1*x4
-    x6 = c3*(c2*p_theta - x0*x3)
-    x7 = sin_theta*(2.0*x5 - x6 + c7*x4)/x2
-    x8 = 1.0/x2
-    x9 = x0/x2
-    x10 = sin_theta*x3
-    x11 = c4*x10 + x0*x7
-    x12 = sin_theta*x7
-    x13 = (
-        c8*cos_theta + x6*x4 + 2.0*x5*x12 + c3*x11*x10 - c1*x3*x3*(cos_theta*cos_theta - x1)
-        - x6*x12
-    )
-    # outputs
-    return (
-        (0.0, -x7, x8, -x9),
-        (0.0, x11, -x0*x8, c2 + x0*x9),
-        (0.0, 0.0, 0.0, 0.0),
-        (0.0, -x13, x7, -x11),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, p_alpha, p_theta = y
-    m, L, l, g, I, J, _ = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = 1.0/c1
-    c3 = L*c0
-    c4 = c2*c3
-    c5 = L*L
-    c6 = l*l
-    c7 = c4*c3
-    c8 = g*c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c4*cos_theta
-    x1 = sin_theta*sin_theta
-    x2 = I + J*x1 + m*(c5 + c6*x1) - c3*cos_theta*x0
-    x3 = (p_alpha - x0*p_theta)/x2
-    x4 = cos_theta*x3
-    x5 = c1*x4
-    x6 = c3*(c2*p_theta - x0*x3)
-    x7 = sin_theta*(2.0*x5 - x6 + c7*x4)/x2
-    x8 = 1.0/x2
-    x9 = x0/x2
-    x10 = sin_theta*x3
-    x11 = c4*x10 + x0*x7
-    x12 = sin_theta*x7
-    x13 = (
-        c8*cos_theta + x6*x4 + 2.0*x5*x12 + c3*x11*x10 - c1*x3*x3*(cos_theta*cos_theta - x1)
-        - x6*x12
-    )
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        -x7,
-        x8,
-        -x9,
-        0.0,
-        x11,
-        -x0*x8,
-        c2 + x0*x9,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x13,
-        x7,
-        -x11,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1297,32 +573,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     _, theta, p_alpha, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, L, l, g, I, J, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = 1.0/(J + l*c0)
-    c2 = L*c0
-    c3 = c1*c2
-    c4 = L*L
-    c5 = l*l
-    c6 = g*c0
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = c3*cos_theta
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_alpha - x0*p_theta)/(I + J*x1 + m*(c4 + c5*x1) - c2*cos_theta*x0)
-    x3 = 0.5*(p_alpha*x2 + p_theta*(c1*p_theta - x0*x2)) - c6*cos_theta
-    # outputs
-    return x3
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, theta, p_alpha, p_theta = y
-    m, L, l, g, I, J, _ = params
     # terms of the parameters alone
     c0 = m*l
     c1 = 1.0/(J + l*c0)
@@ -1381,30 +631,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (alpha, theta, x2, c1*p_theta - x0*x2)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, theta, p_alpha, p_theta = y
-    m, L, l, _, I, J, _ = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = 1.0/(J + l*c0)
-    c2 = L*c0
-    c3 = c1*c2
-    c4 = L*L
-    c5 = l*l
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = c3*cos_theta
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_alpha - x0*p_theta)/(I + J*x1 + m*(c4 + c5*x1) - c2*cos_theta*x0)
-    # outputs
-    return _stacked((4,), y[0], alpha, theta, x2, c1*p_theta - x0*x2)
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1437,25 +663,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, theta, alpha_dot, theta_dot = y
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        sin(alpha),
-        cos(alpha),
-        sin(theta),
-        cos(theta),
-        alpha_dot,
-        theta_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1476,42 +683,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_alpha, cos_alpha, sin_theta, cos_theta, alpha_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, L, l, g, I, J, tau = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = c1*(alpha_dot*cos_theta)
-    x2 = c4*cos_theta
-    x3 = sin_theta*(alpha_dot*x1 - c5)
-    x4 = sin_theta*sin_theta
-    x5 = (
-        (tau - x0*(2.0*x1 - c2*theta_dot) - x2*x3)/(I + J*x4 + m*(c6 + c7*x4) - c2*cos_theta*x2)
-    )
-    # outputs
-    return (
-        alpha_dot*cos_alpha,
-        -alpha_dot*sin_alpha,
-        theta_dot*cos_theta,
-        -x0,
-        x5,
-        c3*x3 - x2*x5,
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_alpha, cos_alpha, sin_theta, cos_theta, alpha_dot, theta_dot = y
-    m, L, l, g, I, J, tau = params
+    m, L, l, g, I, J, tau = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
     c1 = J + l*c0
@@ -1528,12 +702,11 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x3 = sin_theta*(alpha_dot*x1 - c5)
     x4 = sin_theta*sin_theta
     x5 = (
-        (tau - x0*(2.0*x1 - c2*theta_dot) - x2*x3)/(I + J*x4 + m*(c6 + c7*x4) - c2*cos_theta*x2)
+        (tau - x0*(2.0*x1 - c2*theta_dot) - x2*x3)/(I + J*x4 + m*(c6 + c7*x4)
+        - c2*cos_theta*x2)
     )
     # outputs
-    return _stacked(
-        (6,),
-        y[0],
+    return (
         alpha_dot*cos_alpha,
         -alpha_dot*sin_alpha,
         theta_dot*cos_theta,
@@ -1543,306 +716,72 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    83 operations, 9 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_alpha, cos_alpha, sin_theta, cos_theta in 1; alpha_dot, theta_dot in rad/s;
-        delta_alpha, delta_theta in rad; delta_alpha_dot, delta_theta_dot in rad/s.
-    params : iterable of 7 floats
-        m in kg; L, l in m; g in m/s^2; I, J in kg m^2; tau in N m.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_alpha, cos_alpha, sin_theta, cos_theta, alpha_dot, theta_dot, _, delta_theta, delta_alpha_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, L, l, g, I, J, tau = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = c1*alpha_dot
-    x2 = c2*theta_dot
-    x3 = 2.0*cos_theta*x1 - x2
-    x4 = alpha_dot*x1
-    x5 = cos_theta*x4 - c5
-    x6 = cos_theta*sin_theta
-    x7 = sin_theta*sin_theta
-    x8 = c4*cos_theta
-    x9 = I + J*x7 + m*(c6 + c7*x7) - c2*cos_theta*x8
-    x10 = (x0*x3 - tau + c4*x5*x6)/x9
-    x11 = c3*sin_theta*x5 + x8*x10
-    x12 = c1*x6
-    x13 = c2*sin_theta
-    x14 = 2.0*x10*x12 + x11*x13 - theta_dot*(cos_theta*x3 - 2.0*x1*x7)
-    x15 = (
-        delta_theta*x14 + sin_theta*delta_theta_dot*(x2 - x3)
-        - 2.0*theta_dot*delta_alpha_dot*x12
-    )
-    x16 = delta_theta*(cos_theta*x5 - x7*x4 - x10*x13) + 2.0*delta_alpha_dot*x1*x6
-    x17 = (x15 - x8*x16)/x9
-    # outputs
-    return (
-        alpha_dot*cos_alpha,
-        -alpha_dot*sin_alpha,
-        theta_dot*cos_theta,
-        -x0,
-        -x10,
-        x11,
-        delta_alpha_dot,
-        delta_theta_dot,
-        x17,
-        c3*x16 - x8*x17,
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_alpha, cos_alpha, sin_theta, cos_theta, alpha_dot, theta_dot, _, delta_theta, delta_alpha_dot, delta_theta_dot = y
-    m, L, l, g, I, J, tau = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = c1*alpha_dot
-    x2 = c2*theta_dot
-    x3 = 2.0*cos_theta*x1 - x2
-    x4 = alpha_dot*x1
-    x5 = cos_theta*x4 - c5
-    x6 = cos_theta*sin_theta
-    x7 = sin_theta*sin_theta
-    x8 = c4*cos_theta
-    x9 = I + J*x7 + m*(c6 + c7*x7) - c2*cos_theta*x8
-    x10 = (x0*x3 - tau + c4*x5*x6)/x9
-    x11 = c3*sin_theta*x5 + x8*x10
-    x12 = c1*x6
-    x13 = c2*sin_theta
-    x14 = 2.0*x10*x12 + x11*x13 - theta_dot*(cos_theta*x3 - 2.0*x1*x7)
-    x15 = (
-        delta_theta*x14 + sin_theta*delta_theta_dot*(x2 - x3)
-        - 2.0*theta_dot*delta_alpha_dot*x12
-    )
-    x16 = delta_theta*(cos_theta*x5 - x7*x4 - x10*x13) + 2.0*delta_alpha_dot*x1*x6
-    x17 = (x15 - x8*x16)/x9
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        alpha_dot*cos_alpha,
-        -alpha_dot*sin_alpha,
-        theta_dot*cos_theta,
-        -x0,
-        -x10,
-        x11,
-        delta_alpha_dot,
-        delta_theta_dot,
-        x17,
-        c3*x16 - x8*x17,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+power_many = _over_arrays(power)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+angular_momentum_many = _over_arrays(angular_momentum)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    158 operations, 15 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_alpha, cos_alpha, sin_theta, cos_theta in 1; alpha_dot, theta_dot in rad/s;
-        delta_alpha, delta_theta in rad; delta_alpha_dot, delta_theta_dot in rad/s.
-    params : iterable of 14 floats
-        delta_m in kg; delta_L, delta_l in m; delta_g in m/s^2; delta_I, delta_J in kg m^2;
-        delta_tau in N m; m in kg; L, l in m; g in m/s^2; I, J in kg m^2; tau in N m.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_alpha, cos_alpha, sin_theta, cos_theta, alpha_dot, theta_dot, _, delta_theta, delta_alpha_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_L, delta_l, delta_g, delta_I, delta_J, delta_tau, m, L, l, g, I, J, tau = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    c8 = m*delta_L
-    c9 = L*l
-    c10 = m*delta_l
-    c11 = l*delta_m
-    c12 = delta_g*c0
-    c13 = delta_L*c0
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = alpha_dot*cos_theta
-    x2 = c2*theta_dot
-    x3 = 2.0*c1*x1 - x2
-    x4 = c4*cos_theta
-    x5 = c1*alpha_dot
-    x6 = x1*x5 - c5
-    x7 = sin_theta*x6
-    x8 = sin_theta*sin_theta
-    x9 = c6 + c7*x8
-    x10 = I + J*x8 + m*x9 - c2*cos_theta*x4
-    x11 = (x0*x3 - tau + x4*x7)/x10
-    x12 = c3*x7 + x4*x11
-    x13 = cos_theta*x11
-    x14 = c1*sin_theta
-    x15 = c2*sin_theta
-    x16 = x8*x5
-    x17 = 2.0*x13*x14 + x12*x15 - theta_dot*(cos_theta*x3 - 2.0*x16)
-    x18 = l*x0
-    x19 = cos_theta*x12
-    x20 = l*x1
-    x21 = L*theta_dot
-    x22 = delta_J*sin_theta*(2.0*theta_dot*x1 - sin_theta*x11)
-    x23 = (
-        delta_tau + delta_theta*x17 + sin_theta*delta_theta_dot*(x2 - x3)
-        + c8*(theta_dot*x18 + 2.0*L*x11 - l*x19) + delta_I*x11
-        - 2.0*c1*cos_theta*x0*delta_alpha_dot
-        - delta_m*((2.0*x20 - x21)*x18 + c9*x19 - x9*x11)
-        - c10*(x0*(4.0*x20 - x21) + L*x19 - 2.0*l*x11*x8) - x22
-    )
-    x24 = alpha_dot*x1
-    x25 = l*x24
-    x26 = l*x12
-    x27 = L*x13
-    x28 = delta_theta*(cos_theta*x6 - alpha_dot*x16 - x11*x15)
-    x29 = (
-        c11*(sin_theta*(g - x25) + x26 - x27)
-        + c10*(2.0*x26 + sin_theta*(g - 2.0*x25) - x27) + c12*sin_theta
-        + delta_J*(x12 - sin_theta*x24) - x28 - 2.0*delta_alpha_dot*x1*x14 - c13*x13
-    )
-    x30 = (x23 + x4*x29)/x10
-    # outputs
-    return (
-        alpha_dot*cos_alpha,
-        -alpha_dot*sin_alpha,
-        theta_dot*cos_theta,
-        -x0,
-        -x11,
-        x12,
-        delta_alpha_dot,
-        delta_theta_dot,
-        x30,
-        -(c3*x29 + x4*x30),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_alpha, cos_alpha, sin_theta, cos_theta, alpha_dot, theta_dot, _, delta_theta, delta_alpha_dot, delta_theta_dot = y
-    delta_m, delta_L, delta_l, delta_g, delta_I, delta_J, delta_tau, m, L, l, g, I, J, tau = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = J + l*c0
-    c2 = L*c0
-    c3 = 1.0/c1
-    c4 = c3*c2
-    c5 = g*c0
-    c6 = L*L
-    c7 = l*l
-    c8 = m*delta_L
-    c9 = L*l
-    c10 = m*delta_l
-    c11 = l*delta_m
-    c12 = delta_g*c0
-    c13 = delta_L*c0
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = alpha_dot*cos_theta
-    x2 = c2*theta_dot
-    x3 = 2.0*c1*x1 - x2
-    x4 = c4*cos_theta
-    x5 = c1*alpha_dot
-    x6 = x1*x5 - c5
-    x7 = sin_theta*x6
-    x8 = sin_theta*sin_theta
-    x9 = c6 + c7*x8
-    x10 = I + J*x8 + m*x9 - c2*cos_theta*x4
-    x11 = (x0*x3 - tau + x4*x7)/x10
-    x12 = c3*x7 + x4*x11
-    x13 = cos_theta*x11
-    x14 = c1*sin_theta
-    x15 = c2*sin_theta
-    x16 = x8*x5
-    x17 = 2.0*x13*x14 + x12*x15 - theta_dot*(cos_theta*x3 - 2.0*x16)
-    x18 = l*x0
-    x19 = cos_theta*x12
-    x20 = l*x1
-    x21 = L*theta_dot
-    x22 = delta_J*sin_theta*(2.0*theta_dot*x1 - sin_theta*x11)
-    x23 = (
-        delta_tau + delta_theta*x17 + sin_theta*delta_theta_dot*(x2 - x3)
-        + c8*(theta_dot*x18 + 2.0*L*x11 - l*x19) + delta_I*x11
-        - 2.0*c1*cos_theta*x0*delta_alpha_dot
-        - delta_m*((2.0*x20 - x21)*x18 + c9*x19 - x9*x11)
-        - c10*(x0*(4.0*x20 - x21) + L*x19 - 2.0*l*x11*x8) - x22
-    )
-    x24 = alpha_dot*x1
-    x25 = l*x24
-    x26 = l*x12
-    x27 = L*x13
-    x28 = delta_theta*(cos_theta*x6 - alpha_dot*x16 - x11*x15)
-    x29 = (
-        c11*(sin_theta*(g - x25) + x26 - x27)
-        + c10*(2.0*x26 + sin_theta*(g - 2.0*x25) - x27) + c12*sin_theta
-        + delta_J*(x12 - sin_theta*x24) - x28 - 2.0*delta_alpha_dot*x1*x14 - c13*x13
-    )
-    x30 = (x23 + x4*x29)/x10
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        alpha_dot*cos_alpha,
-        -alpha_dot*sin_alpha,
-        theta_dot*cos_theta,
-        -x0,
-        -x11,
-        x12,
-        delta_alpha_dot,
-        delta_theta_dot,
-        x30,
-        -(c3*x29 + x4*x30),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -32,36 +32,6 @@ State y in functions of the rational form:
     beta_dot [rad/s]
     gamma_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    alpha [rad]
-    sin_beta [1]
-    cos_beta [1]
-    gamma [rad]
-    alpha_dot [rad/s]
-    beta_dot [rad/s]
-    gamma_dot [rad/s]
-    delta_alpha [rad]
-    delta_beta [rad]
-    delta_gamma [rad]
-    delta_alpha_dot [rad/s]
-    delta_beta_dot [rad/s]
-    delta_gamma_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    alpha [rad]
-    sin_beta [1]
-    cos_beta [1]
-    gamma [rad]
-    alpha_dot [rad/s]
-    beta_dot [rad/s]
-    gamma_dot [rad/s]
-    delta_alpha [rad]
-    delta_beta [rad]
-    delta_gamma [rad]
-    delta_alpha_dot [rad/s]
-    delta_beta_dot [rad/s]
-    delta_gamma_dot [rad/s]
-
 Parameters params:
     I [kg m^2] > 0, default 2: outer gimbal
     A1 [kg m^2] > 0, default 2: inner one, across
@@ -72,8 +42,10 @@ Parameters params:
 
 Masses and their positions:
     1 at (0, 0, 0), principal moments I, 2*I, I, orientation: rotations z by alpha
-    1 at (0, 0, 0), principal moments B1, C1, A1, orientation: rotations zx by alpha, beta
-    1 at (0, 0, 0), principal moments A, C, A, orientation: rotations zxy by alpha, beta, gamma
+    1 at (0, 0, 0), principal moments B1, C1, A1, orientation: rotations zx by alpha,
+        beta
+    1 at (0, 0, 0), principal moments A, C, A, orientation: rotations zxy by alpha,
+        beta, gamma
 
 Lagrangian:
     L = C*alpha_dot*gamma_dot*sin(beta) + C*gamma_dot**2/2
@@ -100,19 +72,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "f8924a4949cbb459"
+DIGEST = "2eceaaa9845efcf1"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -120,42 +91,16 @@ STATES = {
     "lagrangian": ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot"),
     "hamiltonian": ("alpha", "beta", "gamma", "p_alpha", "p_beta", "p_gamma"),
     "rational": (
-        "alpha",
-        "sin_beta",
-        "cos_beta",
-        "gamma",
-        "alpha_dot",
-        "beta_dot",
-        "gamma_dot",
+        "alpha", "sin_beta", "cos_beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot",
     ),
     "variational": (
-        "alpha",
-        "sin_beta",
-        "cos_beta",
-        "gamma",
-        "alpha_dot",
-        "beta_dot",
-        "gamma_dot",
-        "delta_alpha",
-        "delta_beta",
-        "delta_gamma",
-        "delta_alpha_dot",
-        "delta_beta_dot",
+        "alpha", "sin_beta", "cos_beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot",
+        "delta_alpha", "delta_beta", "delta_gamma", "delta_alpha_dot", "delta_beta_dot",
         "delta_gamma_dot",
     ),
     "sensitivity": (
-        "alpha",
-        "sin_beta",
-        "cos_beta",
-        "gamma",
-        "alpha_dot",
-        "beta_dot",
-        "gamma_dot",
-        "delta_alpha",
-        "delta_beta",
-        "delta_gamma",
-        "delta_alpha_dot",
-        "delta_beta_dot",
+        "alpha", "sin_beta", "cos_beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot",
+        "delta_alpha", "delta_beta", "delta_gamma", "delta_alpha_dot", "delta_beta_dot",
         "delta_gamma_dot",
     ),
 }
@@ -172,65 +117,26 @@ LINKS = (
 )
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "points",
-    "angular_momentum",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "points",
+    "angular_momentum", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
+    "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (34, 5),
-    "jacobian": (78, 8),
-    "parameter_jacobian": (67, 5),
-    "energy": (23, 3),
-    "mass_matrix": (12, 3),
-    "positions": (0, 0),
-    "points": (38, 0),
-    "angular_momentum": (72, 0),
-    "hamiltonian_state": (19, 3),
-    "rhs_hamiltonian": (29, 6),
-    "jacobian_hamiltonian": (58, 6),
-    "energy_hamiltonian": (28, 5),
-    "lagrangian_state": (22, 5),
-    "rational_state": (2, 0),
-    "rhs_rational": (34, 5),
-    "rhs_variational": (84, 5),
-    "rhs_sensitivity": (120, 5),
-    "equilibrium": (0, 0),
+    "rhs": (34, 5), "jacobian": (78, 8), "parameter_jacobian": (67, 5), "energy": (23, 3),
+    "mass_matrix": (12, 3), "positions": (0, 0), "points": (38, 0),
+    "angular_momentum": (72, 0), "hamiltonian_state": (19, 3), "rhs_hamiltonian": (29, 6),
+    "jacobian_hamiltonian": (58, 6), "energy_hamiltonian": (28, 5),
+    "lagrangian_state": (22, 5), "rational_state": (2, 0), "rhs_rational": (34, 5),
+    "rhs_variational": (84, 5), "rhs_sensitivity": (120, 5), "equilibrium": (0, 0),
     "linear": (3, 3),
 }
 UNITS = {
-    "I": "kg m^2",
-    "A1": "kg m^2",
-    "B1": "kg m^2",
-    "C1": "kg m^2",
-    "A": "kg m^2",
-    "C": "kg m^2",
-    "alpha": "rad",
-    "alpha_dot": "rad/s",
-    "p_alpha": "J s",
-    "delta_alpha": "rad",
-    "delta_alpha_dot": "rad/s",
-    "beta": "rad",
-    "beta_dot": "rad/s",
-    "p_beta": "J s",
-    "delta_beta": "rad",
-    "delta_beta_dot": "rad/s",
-    "sin_beta": "1",
-    "cos_beta": "1",
-    "gamma": "rad",
-    "gamma_dot": "rad/s",
-    "p_gamma": "J s",
-    "delta_gamma": "rad",
-    "delta_gamma_dot": "rad/s",
+    "I": "kg m^2", "A1": "kg m^2", "B1": "kg m^2", "C1": "kg m^2", "A": "kg m^2",
+    "C": "kg m^2", "alpha": "rad", "alpha_dot": "rad/s", "p_alpha": "J s",
+    "delta_alpha": "rad", "delta_alpha_dot": "rad/s", "beta": "rad", "beta_dot": "rad/s",
+    "p_beta": "J s", "delta_beta": "rad", "delta_beta_dot": "rad/s", "sin_beta": "1",
+    "cos_beta": "1", "gamma": "rad", "gamma_dot": "rad/s", "p_gamma": "J s",
+    "delta_gamma": "rad", "delta_gamma_dot": "rad/s",
 }
 
 
@@ -290,40 +196,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x5 = alpha_dot*cos_beta
     # outputs
     return (
-        alpha_dot,
-        beta_dot,
-        gamma_dot,
-        x4,
-        -c3*(x1 - x2)*x5,
-        -(beta_dot*x5 + sin_beta*x4),
-    )
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    cos_beta = cos(beta)
-    sin_beta = sin(beta)
-    x0 = alpha_dot*sin_beta
-    x1 = c2*x0
-    x2 = C*gamma_dot
-    x3 = sin_beta*sin_beta
-    x4 = beta_dot*cos_beta*(2.0*x1 - x2 + C*x0)/(I + c0*cos_beta*cos_beta + c1*x3 - C*x3)
-    x5 = alpha_dot*cos_beta
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
         alpha_dot,
         beta_dot,
         gamma_dot,
@@ -410,223 +282,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = C + 2.0*c2
-    c4 = 1.0/(A + B1)
-    c5 = C*c4
-    # intermediate terms
-    sin_beta = sin(beta)
-    x0 = sin_beta*alpha_dot
-    x1 = c2*x0
-    x2 = C*gamma_dot
-    x3 = 2.0*x1 - x2
-    x4 = C*sin_beta
-    x5 = x3 + alpha_dot*x4
-    cos_beta = cos(beta)
-    x6 = cos_beta*beta_dot
-    x7 = I + c0*cos_beta*cos_beta + c1*sin_beta*sin_beta - sin_beta*x4
-    x8 = x5*x6/x7
-    x9 = sin_beta*x8
-    x10 = c2*cos_beta
-    x11 = cos_beta*alpha_dot
-    x12 = x11*x10
-    x13 = 2.0*x9*x10 + C*cos_beta*(alpha_dot*x6 + x9) - beta_dot*(sin_beta*x3 - 2.0*x12)
-    x14 = beta_dot*x0 - cos_beta*x8
-    x15 = (x13 - x14*x4)/x7
-    x16 = c3*sin_beta*x6/x7
-    x17 = cos_beta*x5/x7
-    x18 = C*x6/x7
-    x19 = x1 - x2
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        x15,
-        0.0,
-        x16,
-        x17,
-        -x18,
-        0.0,
-        c4*alpha_dot*(sin_beta*x19 - x12),
-        0.0,
-        -c4*cos_beta*(x1 + x19),
-        0.0,
-        c5*x11,
-        0.0,
-        x14 - sin_beta*x15,
-        0.0,
-        -(x6 + sin_beta*x16),
-        -(x11 + sin_beta*x17),
-        sin_beta*x18,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    67 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        alpha, beta, gamma in rad; alpha_dot, beta_dot, gamma_dot in rad/s.
-    params : iterable of 6 floats
-        I, A1, B1, C1, A, C in kg m^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    _, beta, _, alpha_dot, beta_dot, gamma_dot = y.tolist() if hasattr(y, "tolist") else y
-    I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    sin_beta = sin(beta)
-    x0 = sin_beta*alpha_dot
-    x1 = c2*x0
-    x2 = C*gamma_dot
-    cos_beta = cos(beta)
-    x3 = cos_beta*beta_dot
-    x4 = sin_beta*sin_beta
-    x5 = I + c0*cos_beta*cos_beta + c1*x4 - C*x4
-    x6 = (2.0*x1 - x2 + C*x0)*x3/x5
-    x7 = x6/x5
-    x8 = cos_beta*(2.0*beta_dot*x0 - cos_beta*x6)/x5
-    x9 = cos_beta*alpha_dot
-    x10 = beta_dot*x9
-    x11 = sin_beta*x6
-    x12 = sin_beta*(2.0*x10 + x11)/x5
-    x13 = x6*x4 + (gamma_dot + 2.0*x0)*x3 - sin_beta*(x10 + x11)
-    x14 = x13/x5
-    x15 = c3*x9
-    x16 = x0*x15
-    x17 = (x1 - x2)*x15
-    x18 = -sin_beta*x8
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-x7, x8, 0.0, -x12, x8, -x14),
-        (0.0, -x16, c3*x17, x16, c3*(x17 - x0*x9), (gamma_dot + x0)*x15),
-        (sin_beta*x7, x18, 0.0, sin_beta*x12, x18, sin_beta*x14),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    sin_beta = sin(beta)
-    x0 = sin_beta*alpha_dot
-    x1 = c2*x0
-    x2 = C*gamma_dot
-    cos_beta = cos(beta)
-    x3 = cos_beta*beta_dot
-    x4 = sin_beta*sin_beta
-    x5 = I + c0*cos_beta*cos_beta + c1*x4 - C*x4
-    x6 = (2.0*x1 - x2 + C*x0)*x3/x5
-    x7 = x6/x5
-    x8 = cos_beta*(2.0*beta_dot*x0 - cos_beta*x6)/x5
-    x9 = cos_beta*alpha_dot
-    x10 = beta_dot*x9
-    x11 = sin_beta*x6
-    x12 = sin_beta*(2.0*x10 + x11)/x5
-    x13 = x6*x4 + (gamma_dot + 2.0*x0)*x3 - sin_beta*(x10 + x11)
-    x14 = x13/x5
-    x15 = c3*x9
-    x16 = x0*x15
-    x17 = (x1 - x2)*x15
-    x18 = -sin_beta*x8
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x7,
-        x8,
-        0.0,
-        -x12,
-        x8,
-        -x14,
-        0.0,
-        -x16,
-        c3*x17,
-        x16,
-        c3*(x17 - x0*x9),
-        (gamma_dot + x0)*x15,
-        sin_beta*x7,
-        x18,
-        0.0,
-        sin_beta*x12,
-        x18,
-        sin_beta*x14,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -649,27 +304,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     _, beta, _, alpha_dot, beta_dot, gamma_dot = y.tolist() if hasattr(y, "tolist") else y
     I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = A + B1
-    # intermediate terms
-    sin_beta = sin(beta)
-    x0 = C*gamma_dot
-    cos_beta = cos(beta)
-    x1 = alpha_dot*alpha_dot*(I + c0*cos_beta*cos_beta + c1*sin_beta*sin_beta)
-    x2 = alpha_dot*sin_beta*x0 + 0.5*(gamma_dot*x0 + x1 + c2*beta_dot*beta_dot)
-    # outputs
-    return x2
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
     # terms of the parameters alone
     c0 = A + A1
     c1 = C + C1
@@ -721,36 +355,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, _, _, _ = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    # intermediate terms
-    cos_beta = cos(beta)
-    sin_beta = sin(beta)
-    x0 = C*sin_beta
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        I + c0*cos_beta*cos_beta + c1*sin_beta*sin_beta,
-        0.0,
-        x0,
-        0.0,
-        A + B1,
-        0.0,
-        x0,
-        0.0,
-        C,
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -773,13 +377,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     # inputs
     # outputs
     return ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (3, 3, ...)."""
-    # inputs
-    # outputs
-    return _stacked((3, 3), y[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -838,63 +435,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (11, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, beta, gamma, _, _, _ = y
-    # intermediate terms
-    cos_alpha = cos(alpha)
-    sin_alpha = sin(alpha)
-    cos_beta = cos(beta)
-    x0 = sin_alpha*cos_beta
-    x1 = cos_alpha*cos_beta
-    sin_beta = sin(beta)
-    cos_gamma = cos(gamma)
-    sin_gamma = sin(gamma)
-    x2 = sin_alpha*sin_beta
-    x3 = cos_alpha*sin_beta
-    # outputs
-    return _stacked(
-        (11, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        cos_alpha,
-        sin_alpha,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        -(4.0/5.0)*x0,
-        (4.0/5.0)*x1,
-        (4.0/5.0)*sin_beta,
-        (4.0/5.0)*x0,
-        -(4.0/5.0)*x1,
-        -(4.0/5.0)*sin_beta,
-        (4.0/5.0)*cos_alpha,
-        (4.0/5.0)*sin_alpha,
-        0.0,
-        0.0,
-        0.0,
-        (6.0/5.0),
-        0.5*(cos_alpha*cos_gamma - sin_gamma*x2),
-        0.5*(sin_alpha*cos_gamma + sin_gamma*x3),
-        -0.5*cos_beta*sin_gamma,
-        0.5*(cos_alpha*sin_gamma + cos_gamma*x2),
-        0.5*(sin_alpha*sin_gamma - cos_gamma*x3),
-        0.5*cos_beta*cos_gamma,
-        0.0,
-        0.0,
-        (-6.0/5.0),
-        0.0,
-        0.0,
-        -1.0,
-    )
-
-
 def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     """Angular momentum about the origin.
 
@@ -915,7 +455,8 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
         Its Cartesian components in kg m^2/s.
     """
     # inputs
-    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y
     I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
     # intermediate terms
     cos_gamma = cos(gamma)
@@ -951,47 +492,6 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x10, x12, x13)
 
 
-def angular_momentum_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`angular_momentum` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
-    # intermediate terms
-    cos_gamma = cos(gamma)
-    cos_alpha = cos(alpha)
-    sin_gamma = sin(gamma)
-    sin_alpha = sin(alpha)
-    sin_beta = sin(beta)
-    x0 = sin_alpha*sin_beta
-    cos_beta = cos(beta)
-    x1 = alpha_dot*cos_beta
-    x2 = A*(beta_dot*cos_gamma - sin_gamma*x1)
-    x3 = A*(beta_dot*sin_gamma + cos_gamma*x1)
-    x4 = B1*beta_dot
-    x5 = A1*x1
-    x6 = alpha_dot*sin_beta
-    x7 = C*(gamma_dot + x6)
-    x8 = cos_beta*x7
-    x9 = C1*x1
-    x10 = (
-        (cos_gamma*cos_alpha - sin_gamma*x0)*x2 + (sin_gamma*cos_alpha + cos_gamma*x0)*x3
-        + cos_alpha*x4 + x0*x5 - sin_alpha*x8 - x0*x9
-    )
-    x11 = cos_alpha*sin_beta
-    x12 = (
-        (cos_gamma*sin_alpha + sin_gamma*x11)*x2 + (sin_gamma*sin_alpha - cos_gamma*x11)*x3
-        + sin_alpha*x4 + cos_alpha*x8 + x11*x9 - x11*x5
-    )
-    x13 = (
-        I*alpha_dot + cos_beta*x5 + sin_beta*x7 + C1*sin_beta*x6 + cos_gamma*cos_beta*x3
-        - cos_beta*sin_gamma*x2
-    )
-    # outputs
-    return _stacked((3,), y[0], x10, x12, x13)
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1012,7 +512,8 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Coordinates, then momenta p = M qdot.
     """
     # inputs
-    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y
     I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = A + A1
@@ -1024,34 +525,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x0 = alpha_dot*(I + c0*cos_beta*cos_beta + c1*sin_beta*sin_beta)
     # outputs
     return (
-        alpha,
-        beta,
-        gamma,
-        x0 + C*sin_beta*gamma_dot,
-        c2*beta_dot,
-        C*(gamma_dot + alpha_dot*sin_beta),
-    )
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = A + B1
-    # intermediate terms
-    cos_beta = cos(beta)
-    sin_beta = sin(beta)
-    x0 = alpha_dot*(I + c0*cos_beta*cos_beta + c1*sin_beta*sin_beta)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
         alpha,
         beta,
         gamma,
@@ -1100,166 +573,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x1, c2*p_beta, x3, 0.0, -cos_beta*x1*(c4*x2 - C*x3), 0.0)
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, p_alpha, p_beta, p_gamma = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = 1.0/(A + B1)
-    c3 = 1.0/C
-    c4 = c0 - c1
-    # intermediate terms
-    sin_beta = sin(beta)
-    cos_beta = cos(beta)
-    x0 = sin_beta*sin_beta
-    x1 = (p_alpha - sin_beta*p_gamma)/(I + c0*cos_beta*cos_beta + c1*x0 - C*x0)
-    x2 = sin_beta*x1
-    x3 = c3*p_gamma - x2
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        x1,
-        c2*p_beta,
-        x3,
-        0.0,
-        -cos_beta*x1*(c4*x2 - C*x3),
-        0.0,
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    58 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        alpha, beta, gamma in rad; p_alpha, p_beta, p_gamma in J s.
-    params : iterable of 6 floats
-        I, A1, B1, C1, A, C in kg m^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    _, beta, _, p_alpha, _, p_gamma = y.tolist() if hasattr(y, "tolist") else y
-    I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/C
-    # intermediate terms
-    cos_beta = cos(beta)
-    sin_beta = sin(beta)
-    x0 = cos_beta*cos_beta
-    x1 = sin_beta*sin_beta
-    x2 = I + c0*x0 + c1*x1 - C*x1
-    x3 = (p_alpha - sin_beta*p_gamma)/x2
-    x4 = sin_beta*x3
-    x5 = c2*x4
-    x6 = C*(c3*p_gamma - x4)
-    x7 = cos_beta*(2.0*x5 - x6 + C*x4)/x2
-    x8 = 1.0/x2
-    x9 = sin_beta/x2
-    x10 = cos_beta*x3
-    x11 = x10 + sin_beta*x7
-    x12 = cos_beta*x7
-    x13 = x4*x6 + 2.0*x5*x12 + C*x10*x11 - c2*x3*x3*(x1 - x0) - x6*x12
-    # outputs
-    return (
-        (0.0, x7, 0.0, x8, 0.0, -x9),
-        (0.0, 0.0, 0.0, 0.0, 1.0/(A + B1), 0.0),
-        (0.0, -x11, 0.0, -sin_beta*x8, 0.0, c3 + sin_beta*x9),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, -x13, 0.0, -x7, 0.0, x11),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, p_alpha, _, p_gamma = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/C
-    # intermediate terms
-    cos_beta = cos(beta)
-    sin_beta = sin(beta)
-    x0 = cos_beta*cos_beta
-    x1 = sin_beta*sin_beta
-    x2 = I + c0*x0 + c1*x1 - C*x1
-    x3 = (p_alpha - sin_beta*p_gamma)/x2
-    x4 = sin_beta*x3
-    x5 = c2*x4
-    x6 = C*(c3*p_gamma - x4)
-    x7 = cos_beta*(2.0*x5 - x6 + C*x4)/x2
-    x8 = 1.0/x2
-    x9 = sin_beta/x2
-    x10 = cos_beta*x3
-    x11 = x10 + sin_beta*x7
-    x12 = cos_beta*x7
-    x13 = x4*x6 + 2.0*x5*x12 + C*x10*x11 - c2*x3*x3*(x1 - x0) - x6*x12
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        x7,
-        0.0,
-        x8,
-        0.0,
-        -x9,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0/(A + B1),
-        0.0,
-        0.0,
-        -x11,
-        0.0,
-        -sin_beta*x8,
-        0.0,
-        c3 + sin_beta*x9,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x13,
-        0.0,
-        -x7,
-        0.0,
-        x11,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1282,28 +595,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     _, beta, _, p_alpha, p_beta, p_gamma = y.tolist() if hasattr(y, "tolist") else y
     I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = 1.0/(A + B1)
-    c3 = 1.0/C
-    # intermediate terms
-    sin_beta = sin(beta)
-    cos_beta = cos(beta)
-    x0 = sin_beta*sin_beta
-    x1 = (p_alpha - sin_beta*p_gamma)/(I + c0*cos_beta*cos_beta + c1*x0 - C*x0)
-    x2 = p_alpha*x1 + p_beta*(c2*p_beta) + p_gamma*(c3*p_gamma - sin_beta*x1)
-    # outputs
-    return 0.5*x2
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, beta, _, p_alpha, p_beta, p_gamma = y
-    I, A1, B1, C1, A, C = params
     # terms of the parameters alone
     c0 = A + A1
     c1 = C + C1
@@ -1355,36 +646,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (alpha, beta, gamma, x1, c2*p_beta, c3*p_gamma - sin_beta*x1)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    alpha, beta, gamma, p_alpha, p_beta, p_gamma = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = 1.0/(A + B1)
-    c3 = 1.0/C
-    # intermediate terms
-    sin_beta = sin(beta)
-    cos_beta = cos(beta)
-    x0 = sin_beta*sin_beta
-    x1 = (p_alpha - sin_beta*p_gamma)/(I + c0*cos_beta*cos_beta + c1*x0 - C*x0)
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        alpha,
-        beta,
-        gamma,
-        x1,
-        c2*p_beta,
-        c3*p_gamma - sin_beta*x1,
-    )
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1405,29 +666,10 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Sine and cosine of every angle, other coordinates, velocities.
     """
     # inputs
-    alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y.tolist() if hasattr(y, "tolist") else y
-    # outputs
-    return (alpha, sin(beta), cos(beta), gamma, alpha_dot, beta_dot, gamma_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (7, ...)."""
-    from numpy import cos, sin
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     alpha, beta, gamma, alpha_dot, beta_dot, gamma_dot = y
     # outputs
-    return _stacked(
-        (7,),
-        y[0],
-        alpha,
-        sin(beta),
-        cos(beta),
-        gamma,
-        alpha_dot,
-        beta_dot,
-        gamma_dot,
-    )
+    return (alpha, sin(beta), cos(beta), gamma, alpha_dot, beta_dot, gamma_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1451,37 +693,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    _, sin_beta, cos_beta, _, alpha_dot, beta_dot, gamma_dot = y.tolist() if hasattr(y, "tolist") else y
-    I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    x0 = beta_dot*cos_beta
-    x1 = alpha_dot*sin_beta
-    x2 = c2*x1
-    x3 = C*gamma_dot
-    x4 = sin_beta*sin_beta
-    x5 = x0*(2.0*x2 - x3 + C*x1)/(I + c0*cos_beta*cos_beta + c1*x4 - C*x4)
-    # outputs
-    return (
-        alpha_dot,
-        x0,
-        -beta_dot*sin_beta,
-        gamma_dot,
-        x5,
-        -c3*alpha_dot*cos_beta*(x2 - x3),
-        -(alpha_dot*x0 + sin_beta*x5),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (7, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     _, sin_beta, cos_beta, _, alpha_dot, beta_dot, gamma_dot = y
-    I, A1, B1, C1, A, C = params
+    I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = A + A1
     c1 = C + C1
@@ -1495,9 +709,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x4 = sin_beta*sin_beta
     x5 = x0*(2.0*x2 - x3 + C*x1)/(I + c0*cos_beta*cos_beta + c1*x4 - C*x4)
     # outputs
-    return _stacked(
-        (7,),
-        y[0],
+    return (
         alpha_dot,
         x0,
         -beta_dot*sin_beta,
@@ -1508,366 +720,71 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    84 operations, 5 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 13 floats
-        alpha in rad; sin_beta, cos_beta in 1; gamma in rad; alpha_dot, beta_dot, gamma_dot
-        in rad/s; delta_alpha, delta_beta, delta_gamma in rad; delta_alpha_dot,
-        delta_beta_dot, delta_gamma_dot in rad/s.
-    params : iterable of 6 floats
-        I, A1, B1, C1, A, C in kg m^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, sin_beta, cos_beta, _, alpha_dot, beta_dot, gamma_dot, _, delta_beta, _, delta_alpha_dot, delta_beta_dot, delta_gamma_dot = y.tolist() if hasattr(y, "tolist") else y
-    I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    x0 = beta_dot*cos_beta
-    x1 = alpha_dot*sin_beta
-    x2 = c2*x1
-    x3 = C*gamma_dot
-    x4 = 2.0*x2 - x3
-    x5 = sin_beta*sin_beta
-    x6 = I + c0*cos_beta*cos_beta + c1*x5 - C*x5
-    x7 = x0*(x4 + C*x1)/x6
-    x8 = x2 - x3
-    x9 = alpha_dot*cos_beta
-    x10 = sin_beta*x7
-    x11 = alpha_dot*x0 + x10
-    x12 = c2*cos_beta
-    x13 = x9*x12
-    x14 = 2.0*x10*x12 + C*cos_beta*x11 - beta_dot*(sin_beta*x4 - 2.0*x13)
-    x15 = x0*delta_alpha_dot
-    x16 = C*delta_gamma_dot
-    x17 = delta_beta*x14 + 2.0*c2*sin_beta*x15 + cos_beta*x4*delta_beta_dot - x0*x16
-    x18 = x15 + delta_beta_dot*x9 - delta_beta*(beta_dot*x1 - cos_beta*x7)
-    x19 = (x17 + C*sin_beta*x18)/x6
-    x20 = (
-        alpha_dot*delta_beta*(x13 - sin_beta*x8) + cos_beta*delta_alpha_dot*(x2 + x8)
-        - x9*x16
-    )
-    # outputs
-    return (
-        alpha_dot,
-        x0,
-        -beta_dot*sin_beta,
-        gamma_dot,
-        x7,
-        -c3*x8*x9,
-        -x11,
-        delta_alpha_dot,
-        delta_beta_dot,
-        delta_gamma_dot,
-        x19,
-        -c3*x20,
-        -(x18 + sin_beta*x19),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (13, ...)."""
-    # inputs
-    _, sin_beta, cos_beta, _, alpha_dot, beta_dot, gamma_dot, _, delta_beta, _, delta_alpha_dot, delta_beta_dot, delta_gamma_dot = y
-    I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    x0 = beta_dot*cos_beta
-    x1 = alpha_dot*sin_beta
-    x2 = c2*x1
-    x3 = C*gamma_dot
-    x4 = 2.0*x2 - x3
-    x5 = sin_beta*sin_beta
-    x6 = I + c0*cos_beta*cos_beta + c1*x5 - C*x5
-    x7 = x0*(x4 + C*x1)/x6
-    x8 = x2 - x3
-    x9 = alpha_dot*cos_beta
-    x10 = sin_beta*x7
-    x11 = alpha_dot*x0 + x10
-    x12 = c2*cos_beta
-    x13 = x9*x12
-    x14 = 2.0*x10*x12 + C*cos_beta*x11 - beta_dot*(sin_beta*x4 - 2.0*x13)
-    x15 = x0*delta_alpha_dot
-    x16 = C*delta_gamma_dot
-    x17 = delta_beta*x14 + 2.0*c2*sin_beta*x15 + cos_beta*x4*delta_beta_dot - x0*x16
-    x18 = x15 + delta_beta_dot*x9 - delta_beta*(beta_dot*x1 - cos_beta*x7)
-    x19 = (x17 + C*sin_beta*x18)/x6
-    x20 = (
-        alpha_dot*delta_beta*(x13 - sin_beta*x8) + cos_beta*delta_alpha_dot*(x2 + x8)
-        - x9*x16
-    )
-    # outputs
-    return _stacked(
-        (13,),
-        y[0],
-        alpha_dot,
-        x0,
-        -beta_dot*sin_beta,
-        gamma_dot,
-        x7,
-        -c3*x8*x9,
-        -x11,
-        delta_alpha_dot,
-        delta_beta_dot,
-        delta_gamma_dot,
-        x19,
-        -c3*x20,
-        -(x18 + sin_beta*x19),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+angular_momentum_many = _over_arrays(angular_momentum)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    120 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 13 floats
-        alpha in rad; sin_beta, cos_beta in 1; gamma in rad; alpha_dot, beta_dot, gamma_dot
-        in rad/s; delta_alpha, delta_beta, delta_gamma in rad; delta_alpha_dot,
-        delta_beta_dot, delta_gamma_dot in rad/s.
-    params : iterable of 12 floats
-        delta_I, delta_A1, delta_B1, delta_C1, delta_A, delta_C, I, A1, B1, C1, A, C in kg
-        m^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, sin_beta, cos_beta, _, alpha_dot, beta_dot, gamma_dot, _, delta_beta, _, delta_alpha_dot, delta_beta_dot, delta_gamma_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_I, delta_A1, delta_B1, delta_C1, delta_A, delta_C, I, A1, B1, C1, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    x0 = beta_dot*cos_beta
-    x1 = alpha_dot*sin_beta
-    x2 = c2*x1
-    x3 = C*gamma_dot
-    x4 = 2.0*x2 - x3
-    x5 = sin_beta*sin_beta
-    x6 = I + c0*cos_beta*cos_beta + c1*x5 - C*x5
-    x7 = x0*(x4 + C*x1)/x6
-    x8 = x2 - x3
-    x9 = alpha_dot*cos_beta
-    x10 = c3*x8*x9
-    x11 = beta_dot*x9
-    x12 = sin_beta*x7
-    x13 = x11 + x12
-    x14 = c2*cos_beta
-    x15 = x9*x14
-    x16 = 2.0*x12*x14 + C*cos_beta*x13 - beta_dot*(sin_beta*x4 - 2.0*x15)
-    x17 = x0*delta_alpha_dot
-    x18 = beta_dot*x1
-    x19 = cos_beta*x7
-    x20 = cos_beta*(2.0*x18 - x19)
-    x21 = C*delta_gamma_dot
-    x22 = delta_C*(x7*x5 + x0*(gamma_dot + 2.0*x1) - sin_beta*x13)
-    x23 = (
-        delta_beta*x16 + 2.0*c2*sin_beta*x17 + cos_beta*x4*delta_beta_dot + delta_A1*x20
-        + delta_A*x20 - x0*x21 - delta_I*x7 - delta_C1*sin_beta*(2.0*x11 + x12) - x22
-    )
-    x24 = x17 + delta_beta_dot*x9 - delta_beta*(x18 - x19)
-    x25 = (x23 + C*sin_beta*x24)/x6
-    x26 = x1*x9
-    x27 = (
-        x9*x21 + delta_B1*x10 + delta_C1*x26 + delta_A*(x10 - x26)
-        + delta_C*(gamma_dot + x1)*x9 - alpha_dot*delta_beta*(x15 - sin_beta*x8)
-        - cos_beta*delta_alpha_dot*(x2 + x8) - delta_A1*x26
-    )
-    # outputs
-    return (
-        alpha_dot,
-        x0,
-        -beta_dot*sin_beta,
-        gamma_dot,
-        x7,
-        -x10,
-        -x13,
-        delta_alpha_dot,
-        delta_beta_dot,
-        delta_gamma_dot,
-        x25,
-        c3*x27,
-        -(x24 + sin_beta*x25),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (13, ...)."""
-    # inputs
-    _, sin_beta, cos_beta, _, alpha_dot, beta_dot, gamma_dot, _, delta_beta, _, delta_alpha_dot, delta_beta_dot, delta_gamma_dot = y
-    delta_I, delta_A1, delta_B1, delta_C1, delta_A, delta_C, I, A1, B1, C1, A, C = params
-    # terms of the parameters alone
-    c0 = A + A1
-    c1 = C + C1
-    c2 = c0 - c1
-    c3 = 1.0/(A + B1)
-    # intermediate terms
-    x0 = beta_dot*cos_beta
-    x1 = alpha_dot*sin_beta
-    x2 = c2*x1
-    x3 = C*gamma_dot
-    x4 = 2.0*x2 - x3
-    x5 = sin_beta*sin_beta
-    x6 = I + c0*cos_beta*cos_beta + c1*x5 - C*x5
-    x7 = x0*(x4 + C*x1)/x6
-    x8 = x2 - x3
-    x9 = alpha_dot*cos_beta
-    x10 = c3*x8*x9
-    x11 = beta_dot*x9
-    x12 = sin_beta*x7
-    x13 = x11 + x12
-    x14 = c2*cos_beta
-    x15 = x9*x14
-    x16 = 2.0*x12*x14 + C*cos_beta*x13 - beta_dot*(sin_beta*x4 - 2.0*x15)
-    x17 = x0*delta_alpha_dot
-    x18 = beta_dot*x1
-    x19 = cos_beta*x7
-    x20 = cos_beta*(2.0*x18 - x19)
-    x21 = C*delta_gamma_dot
-    x22 = delta_C*(x7*x5 + x0*(gamma_dot + 2.0*x1) - sin_beta*x13)
-    x23 = (
-        delta_beta*x16 + 2.0*c2*sin_beta*x17 + cos_beta*x4*delta_beta_dot + delta_A1*x20
-        + delta_A*x20 - x0*x21 - delta_I*x7 - delta_C1*sin_beta*(2.0*x11 + x12) - x22
-    )
-    x24 = x17 + delta_beta_dot*x9 - delta_beta*(x18 - x19)
-    x25 = (x23 + C*sin_beta*x24)/x6
-    x26 = x1*x9
-    x27 = (
-        x9*x21 + delta_B1*x10 + delta_C1*x26 + delta_A*(x10 - x26)
-        + delta_C*(gamma_dot + x1)*x9 - alpha_dot*delta_beta*(x15 - sin_beta*x8)
-        - cos_beta*delta_alpha_dot*(x2 + x8) - delta_A1*x26
-    )
-    # outputs
-    return _stacked(
-        (13,),
-        y[0],
-        alpha_dot,
-        x0,
-        -beta_dot*sin_beta,
-        gamma_dot,
-        x7,
-        -x10,
-        -x13,
-        delta_alpha_dot,
-        delta_beta_dot,
-        delta_gamma_dot,
-        x25,
-        c3*x27,
-        -(x24 + sin_beta*x25),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 6 floats
-        I, A1, B1, C1, A, C in kg m^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (3, ...)."""
-    # inputs
-    # outputs
-    return _stacked((3,), params[0], 0.0, 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0, 0).
-
-    3 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 6 floats
-        I, A1, B1, C1, A, C in kg m^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    I, A1, B1, _, A, C = params.tolist() if hasattr(params, "tolist") else params
-    # outputs
-    return (
-        ((A + A1 + I, 0.0, 0.0), (0.0, A + B1, 0.0), (0.0, 0.0, C)),
-        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
-    )
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 3, 3, ...)."""
-    # inputs
-    I, A1, B1, _, A, C = params
-    # outputs
-    return _stacked(
-        (2, 3, 3),
-        params[0],
-        A + A1 + I,
-        0.0,
-        0.0,
-        0.0,
-        A + B1,
-        0.0,
-        0.0,
-        0.0,
-        C,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -33,38 +33,6 @@ State y in functions of the rational form:
     psi_dot [rad/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_phi [1]
-    cos_phi [1]
-    psi [rad]
-    sin_theta [1]
-    cos_theta [1]
-    phi_dot [rad/s]
-    psi_dot [rad/s]
-    theta_dot [rad/s]
-    delta_phi [rad]
-    delta_psi [rad]
-    delta_theta [rad]
-    delta_phi_dot [rad/s]
-    delta_psi_dot [rad/s]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_phi [1]
-    cos_phi [1]
-    psi [rad]
-    sin_theta [1]
-    cos_theta [1]
-    phi_dot [rad/s]
-    psi_dot [rad/s]
-    theta_dot [rad/s]
-    delta_phi [rad]
-    delta_psi [rad]
-    delta_theta [rad]
-    delta_phi_dot [rad/s]
-    delta_psi_dot [rad/s]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass
     l [m] > 0, default 0.3: height of its centre
@@ -73,7 +41,8 @@ Parameters params:
     g [m/s^2] real, default 9.81: gravitational acceleration
 
 Masses and their positions:
-    m at (l*sin(phi)*sin(theta), -l*sin(theta)*cos(phi), l*cos(theta)), principal moments A, A, C, orientation: rotations zxz by phi, theta, psi
+    m at (l*sin(phi)*sin(theta), -l*sin(theta)*cos(phi), l*cos(theta)),
+        principal moments A, A, C, orientation: rotations zxz by phi, theta, psi
 
 Lagrangian:
     L = C*phi_dot*psi_dot*cos(theta) + C*psi_dot**2/2 - g*l*m*cos(theta)
@@ -100,19 +69,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "c2b1be30f1173a6b"
+DIGEST = "5dd4b4310cb48e1e"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -120,45 +88,17 @@ STATES = {
     "lagrangian": ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot"),
     "hamiltonian": ("phi", "psi", "theta", "p_phi", "p_psi", "p_theta"),
     "rational": (
-        "sin_phi",
-        "cos_phi",
-        "psi",
-        "sin_theta",
-        "cos_theta",
-        "phi_dot",
-        "psi_dot",
+        "sin_phi", "cos_phi", "psi", "sin_theta", "cos_theta", "phi_dot", "psi_dot",
         "theta_dot",
     ),
     "variational": (
-        "sin_phi",
-        "cos_phi",
-        "psi",
-        "sin_theta",
-        "cos_theta",
-        "phi_dot",
-        "psi_dot",
-        "theta_dot",
-        "delta_phi",
-        "delta_psi",
-        "delta_theta",
-        "delta_phi_dot",
-        "delta_psi_dot",
+        "sin_phi", "cos_phi", "psi", "sin_theta", "cos_theta", "phi_dot", "psi_dot",
+        "theta_dot", "delta_phi", "delta_psi", "delta_theta", "delta_phi_dot", "delta_psi_dot",
         "delta_theta_dot",
     ),
     "sensitivity": (
-        "sin_phi",
-        "cos_phi",
-        "psi",
-        "sin_theta",
-        "cos_theta",
-        "phi_dot",
-        "psi_dot",
-        "theta_dot",
-        "delta_phi",
-        "delta_psi",
-        "delta_theta",
-        "delta_phi_dot",
-        "delta_psi_dot",
+        "sin_phi", "cos_phi", "psi", "sin_theta", "cos_theta", "phi_dot", "psi_dot",
+        "theta_dot", "delta_phi", "delta_psi", "delta_theta", "delta_phi_dot", "delta_psi_dot",
         "delta_theta_dot",
     ),
 }
@@ -168,66 +108,25 @@ POSITIVE = ("m", "l", "A", "C")
 LINKS = (("rod", (0, 1)), ("wheel", (1, 2, 3)))
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "points",
-    "angular_momentum",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions", "points",
+    "angular_momentum", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
+    "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (34, 6),
-    "jacobian": (79, 9),
-    "parameter_jacobian": (88, 10),
-    "energy": (27, 4),
-    "mass_matrix": (12, 3),
-    "positions": (9, 0),
-    "points": (49, 0),
-    "angular_momentum": (76, 2),
-    "hamiltonian_state": (19, 3),
-    "rhs_hamiltonian": (32, 7),
-    "jacobian_hamiltonian": (59, 7),
-    "energy_hamiltonian": (31, 6),
-    "lagrangian_state": (23, 5),
-    "rational_state": (4, 0),
-    "rhs_rational": (37, 6),
-    "rhs_variational": (85, 6),
-    "rhs_sensitivity": (133, 11),
-    "equilibrium": (0, 0),
+    "rhs": (34, 6), "jacobian": (79, 9), "parameter_jacobian": (88, 10), "energy": (27, 4),
+    "mass_matrix": (12, 3), "positions": (9, 0), "points": (49, 0),
+    "angular_momentum": (76, 2), "hamiltonian_state": (19, 3), "rhs_hamiltonian": (32, 7),
+    "jacobian_hamiltonian": (59, 7), "energy_hamiltonian": (31, 6),
+    "lagrangian_state": (23, 5), "rational_state": (4, 0), "rhs_rational": (37, 6),
+    "rhs_variational": (85, 6), "rhs_sensitivity": (133, 11), "equilibrium": (0, 0),
     "linear": (5, 5),
 }
 UNITS = {
-    "m": "kg",
-    "l": "m",
-    "A": "kg m^2",
-    "C": "kg m^2",
-    "g": "m/s^2",
-    "phi": "rad",
-    "phi_dot": "rad/s",
-    "p_phi": "J s",
-    "delta_phi": "rad",
-    "delta_phi_dot": "rad/s",
-    "sin_phi": "1",
-    "cos_phi": "1",
-    "psi": "rad",
-    "psi_dot": "rad/s",
-    "p_psi": "J s",
-    "delta_psi": "rad",
-    "delta_psi_dot": "rad/s",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
+    "m": "kg", "l": "m", "A": "kg m^2", "C": "kg m^2", "g": "m/s^2", "phi": "rad",
+    "phi_dot": "rad/s", "p_phi": "J s", "delta_phi": "rad", "delta_phi_dot": "rad/s",
+    "sin_phi": "1", "cos_phi": "1", "psi": "rad", "psi_dot": "rad/s", "p_psi": "J s",
+    "delta_psi": "rad", "delta_psi_dot": "rad/s", "theta": "rad", "theta_dot": "rad/s",
+    "p_theta": "J s", "delta_theta": "rad", "delta_theta_dot": "rad/s", "sin_theta": "1",
     "cos_theta": "1",
 }
 
@@ -291,43 +190,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = (2.0*x1 - x2 + C*x0)*x3/(x4 - (x4 + A*x5 + c1*x5))
     # outputs
     return (
-        phi_dot,
-        psi_dot,
-        theta_dot,
-        x6,
-        phi_dot*x3 - cos_theta*x6,
-        c4*sin_theta*(c5 + phi_dot*(x1 - x2)),
-    )
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = phi_dot*cos_theta
-    x1 = c3*x0
-    x2 = C*psi_dot
-    sin_theta = sin(theta)
-    x3 = theta_dot*sin_theta
-    x4 = C*cos_theta*cos_theta
-    x5 = sin_theta*sin_theta
-    x6 = (2.0*x1 - x2 + C*x0)*x3/(x4 - (x4 + A*x5 + c1*x5))
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
         phi_dot,
         psi_dot,
         theta_dot,
@@ -420,247 +282,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = C + 2.0*c3
-    c5 = 1.0/c2
-    c6 = g*c0
-    c7 = C*c5
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = c3*phi_dot
-    x1 = cos_theta*x0
-    x2 = C*psi_dot
-    x3 = 2.0*x1 - x2
-    sin_theta = sin(theta)
-    x4 = sin_theta*sin_theta
-    x5 = x4*x0
-    x6 = C*cos_theta
-    x7 = x3 + phi_dot*x6
-    x8 = sin_theta*theta_dot
-    x9 = cos_theta*x6
-    x10 = x9 - (x9 + A*x4 + c1*x4)
-    x11 = x7*x8/x10
-    x12 = cos_theta*x11
-    x13 = (
-        theta_dot*(cos_theta*x3 - 2.0*x5) + 2.0*c3*sin_theta*x12
-        - C*sin_theta*(phi_dot*x8 - x12)
-    )
-    x14 = cos_theta*theta_dot*phi_dot + sin_theta*x11
-    x15 = (x13 + x14*x6)/x10
-    x16 = c4*cos_theta*x8/x10
-    x17 = C*x8/x10
-    x18 = sin_theta*x7/x10
-    x19 = sin_theta*phi_dot
-    x20 = x1 - x2
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        x15,
-        x16,
-        -x17,
-        x18,
-        0.0,
-        0.0,
-        x14 - cos_theta*x15,
-        x8 - cos_theta*x16,
-        cos_theta*x17,
-        x19 - cos_theta*x18,
-        0.0,
-        0.0,
-        c5*(cos_theta*(c6 + phi_dot*x20) - phi_dot*x5),
-        c5*sin_theta*(x1 + x20),
-        -c7*x19,
-        0.0,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    88 operations, 10 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        phi, psi, theta in rad; phi_dot, psi_dot, theta_dot in rad/s.
-    params : iterable of 5 floats
-        m in kg; l in m; A, C in kg m^2; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    _, _, theta, phi_dot, psi_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = l*m
-    c2 = l*c1
-    c3 = A + c2
-    c4 = c3 - C
-    c5 = 1.0/c3
-    c6 = l*c5
-    c7 = c1*g
-    c8 = m*c5
-    c9 = c1*c5
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = cos_theta*phi_dot
-    x1 = c4*x0
-    x2 = C*psi_dot
-    x3 = sin_theta*theta_dot
-    x4 = cos_theta*cos_theta
-    x5 = C*x4
-    x6 = sin_theta*sin_theta
-    x7 = x5 - (x5 + A*x6 + c2*x6)
-    x8 = (2.0*x1 - x2 + C*x0)*x3/x7
-    x9 = sin_theta*(2.0*theta_dot*x0 + sin_theta*x8)
-    x10 = c0*x9/x7
-    x11 = c1*x9/x7
-    x12 = x9/x7
-    x13 = sin_theta*phi_dot
-    x14 = x8*x4 + cos_theta*(theta_dot*x13 - cos_theta*x8) - (psi_dot + 2.0*x0)*x3
-    x15 = x14/x7
-    x16 = l*phi_dot*x0
-    x17 = c5*sin_theta*(c7 + phi_dot*(x1 - x2))
-    x18 = l*x17
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (x10, 2.0*x11, x12, x15, 0.0),
-        (
-            -cos_theta*x10,
-            -2.0*cos_theta*x11,
-            -cos_theta*x12,
-            -cos_theta*x15,
-            0.0,
-        ),
-        (
-            c6*(sin_theta*(g + x16) - x18),
-            c8*(sin_theta*(g + 2.0*x16) - 2.0*x18),
-            -c5*(x17 - x0*x13),
-            -c5*(psi_dot + x0)*x13,
-            c9*sin_theta,
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (6, 5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = l*m
-    c2 = l*c1
-    c3 = A + c2
-    c4 = c3 - C
-    c5 = 1.0/c3
-    c6 = l*c5
-    c7 = c1*g
-    c8 = m*c5
-    c9 = c1*c5
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = cos_theta*phi_dot
-    x1 = c4*x0
-    x2 = C*psi_dot
-    x3 = sin_theta*theta_dot
-    x4 = cos_theta*cos_theta
-    x5 = C*x4
-    x6 = sin_theta*sin_theta
-    x7 = x5 - (x5 + A*x6 + c2*x6)
-    x8 = (2.0*x1 - x2 + C*x0)*x3/x7
-    x9 = sin_theta*(2.0*theta_dot*x0 + sin_theta*x8)
-    x10 = c0*x9/x7
-    x11 = c1*x9/x7
-    x12 = x9/x7
-    x13 = sin_theta*phi_dot
-    x14 = x8*x4 + cos_theta*(theta_dot*x13 - cos_theta*x8) - (psi_dot + 2.0*x0)*x3
-    x15 = x14/x7
-    x16 = l*phi_dot*x0
-    x17 = c5*sin_theta*(c7 + phi_dot*(x1 - x2))
-    x18 = l*x17
-    # outputs
-    return _stacked(
-        (6, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x10,
-        2.0*x11,
-        x12,
-        x15,
-        0.0,
-        -cos_theta*x10,
-        -2.0*cos_theta*x11,
-        -cos_theta*x12,
-        -cos_theta*x15,
-        0.0,
-        c6*(sin_theta*(g + x16) - x18),
-        c8*(sin_theta*(g + 2.0*x16) - 2.0*x18),
-        -c5*(x17 - x0*x13),
-        -c5*(psi_dot + x0)*x13,
-        c9*sin_theta,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -683,31 +304,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     _, _, theta, phi_dot, psi_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = g*c0
-    c2 = l*c0
-    c3 = A + c2
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = C*psi_dot
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = phi_dot*phi_dot*(A*x1 + C*cos_theta*cos_theta + c2*x1)
-    x3 = (
-        c1*cos_theta + phi_dot*cos_theta*x0 + 0.5*(psi_dot*x0 + x2 + c3*theta_dot*theta_dot)
-    )
-    # outputs
-    return x3
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, g = params
     # terms of the parameters alone
     c0 = m*l
     c1 = g*c0
@@ -763,36 +359,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, _, _, _ = y
-    m, l, A, C, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    cos_theta = cos(theta)
-    x1 = C*cos_theta
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        A*x0 + cos_theta*x1 + c0*x0,
-        x1,
-        0.0,
-        x1,
-        C,
-        0.0,
-        0.0,
-        0.0,
-        A + c0,
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -819,19 +385,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = l*sin(theta)
     # outputs
     return ((sin(phi)*x0, -cos(phi)*x0, l*cos(theta)),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, _, theta, _, _, _ = y
-    _, l, _, _, _ = params
-    # intermediate terms
-    x0 = l*sin(theta)
-    # outputs
-    return _stacked((1, 3), y[0], sin(phi)*x0, -cos(phi)*x0, l*cos(theta))
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -878,48 +431,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
         (sin_phi*x0, -cos_phi*x0, l*cos_theta),
         (x3, -x6, l*(cos_theta + (1.0/3.0)*sin_theta*sin_psi)),
         (x7, -x8, l*(cos_theta + (1.0/3.0)*sin_theta*cos_psi)),
-    )
-
-
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (4, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, theta, _, _, _ = y
-    _, l, _, _, _ = params
-    # intermediate terms
-    sin_phi = sin(phi)
-    sin_theta = sin(theta)
-    x0 = l*sin_theta
-    cos_phi = cos(phi)
-    cos_theta = cos(theta)
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    x1 = sin_phi*cos_theta
-    x2 = sin_phi*sin_theta
-    x3 = l*((1.0/3.0)*(cos_phi*cos_psi - sin_psi*x1) + x2)
-    x4 = sin_theta*cos_phi
-    x5 = cos_phi*cos_theta
-    x6 = l*(x4 - (1.0/3.0)*(sin_phi*cos_psi + sin_psi*x5))
-    x7 = l*(x2 - (1.0/3.0)*(cos_phi*sin_psi + cos_psi*x1))
-    x8 = l*(x4 + (1.0/3.0)*(sin_phi*sin_psi - cos_psi*x5))
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        sin_phi*x0,
-        -cos_phi*x0,
-        l*cos_theta,
-        x3,
-        -x6,
-        l*(cos_theta + (1.0/3.0)*sin_theta*sin_psi),
-        x7,
-        -x8,
-        l*(cos_theta + (1.0/3.0)*sin_theta*cos_psi),
     )
 
 
@@ -981,49 +492,6 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x10, x12, x13)
 
 
-def angular_momentum_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`angular_momentum` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # intermediate terms
-    cos_phi = cos(phi)
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    cos_theta = cos(theta)
-    sin_phi = sin(phi)
-    x0 = cos_theta*sin_phi
-    sin_theta = sin(theta)
-    x1 = phi_dot*sin_theta
-    x2 = A*(theta_dot*cos_psi + sin_psi*x1)
-    x3 = A*(theta_dot*sin_psi - cos_psi*x1)
-    x4 = C*(psi_dot + cos_theta*phi_dot)
-    x5 = sin_phi*sin_theta
-    x6 = cos_theta*cos_phi
-    x7 = sin_phi*x1 - theta_dot*x6
-    x8 = sin_theta*theta_dot
-    x9 = sin_theta*cos_phi
-    x10 = (
-        (cos_phi*cos_psi - sin_psi*x0)*x2 + (cos_phi*sin_psi + cos_psi*x0)*x3 + x4*x5
-        - c0*(cos_theta*x7 - x8*x9)
-    )
-    x11 = cos_phi*x1 + theta_dot*x0
-    x12 = (
-        c0*(cos_theta*x11 + x5*x8) + (sin_phi*cos_psi + sin_psi*x6)*x2
-        + (sin_phi*sin_psi - cos_psi*x6)*x3 - x4*x9
-    )
-    x13 = (
-        c0*sin_theta*(cos_phi*x11 + sin_phi*x7) + cos_theta*x4 + sin_theta*sin_psi*x2
-        - sin_theta*cos_psi*x3
-    )
-    # outputs
-    return _stacked((3,), y[0], x10, x12, x13)
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1057,35 +525,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x2 = phi_dot*(A*x0 + cos_theta*x1 + c0*x0) + psi_dot*x1
     # outputs
     return (phi, psi, theta, x2, C*(psi_dot + phi_dot*cos_theta), c1*theta_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    c1 = A + c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = sin_theta*sin_theta
-    cos_theta = cos(theta)
-    x1 = C*cos_theta
-    x2 = phi_dot*(A*x0 + cos_theta*x1 + c0*x0) + psi_dot*x1
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        phi,
-        psi,
-        theta,
-        x2,
-        C*(psi_dot + phi_dot*cos_theta),
-        c1*theta_dot,
-    )
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1130,175 +569,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (-x2, x4, c4*p_theta, 0.0, 0.0, sin_theta*(c5 + c6*x2*x3 + C*x2*x4))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, p_phi, p_psi, p_theta = y
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = 1.0/C
-    c3 = A + c1
-    c4 = 1.0/c3
-    c5 = g*c0
-    c6 = c3 - C
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = C*cos_theta*cos_theta
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_phi - cos_theta*p_psi)/(x0 - (x0 + A*x1 + c1*x1))
-    x3 = cos_theta*x2
-    x4 = c2*p_psi + x3
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        -x2,
-        x4,
-        c4*p_theta,
-        0.0,
-        0.0,
-        sin_theta*(c5 + c6*x2*x3 + C*x2*x4),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    59 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 6 floats
-        phi, psi, theta in rad; p_phi, p_psi, p_theta in J s.
-    params : iterable of 5 floats
-        m in kg; l in m; A, C in kg m^2; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    _, _, theta, p_phi, p_psi, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/C
-    c5 = g*c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = cos_theta*cos_theta
-    x1 = C*x0
-    x2 = sin_theta*sin_theta
-    x3 = x1 - (x1 + A*x2 + c1*x2)
-    x4 = (p_phi - cos_theta*p_psi)/x3
-    x5 = cos_theta*x4
-    x6 = c3*x5
-    x7 = C*(c4*p_psi + x5)
-    x8 = sin_theta*(2.0*x6 + x7 + C*x5)/x3
-    x9 = 1.0/x3
-    x10 = cos_theta/x3
-    x11 = sin_theta*x4
-    x12 = x11 - cos_theta*x8
-    x13 = sin_theta*x8
-    x14 = c5*cos_theta + c3*x4*x4*(x0 - x2) + x5*x7 + 2.0*x6*x13 + x7*x13 - C*x11*x12
-    # outputs
-    return (
-        (0.0, 0.0, -x8, -x9, x10, 0.0),
-        (0.0, 0.0, -x12, cos_theta*x9, c4 - cos_theta*x10, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 1.0/c2),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, x14, x8, x12, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (6, 6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, p_phi, p_psi, _ = y
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/C
-    c5 = g*c0
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = cos_theta*cos_theta
-    x1 = C*x0
-    x2 = sin_theta*sin_theta
-    x3 = x1 - (x1 + A*x2 + c1*x2)
-    x4 = (p_phi - cos_theta*p_psi)/x3
-    x5 = cos_theta*x4
-    x6 = c3*x5
-    x7 = C*(c4*p_psi + x5)
-    x8 = sin_theta*(2.0*x6 + x7 + C*x5)/x3
-    x9 = 1.0/x3
-    x10 = cos_theta/x3
-    x11 = sin_theta*x4
-    x12 = x11 - cos_theta*x8
-    x13 = sin_theta*x8
-    x14 = c5*cos_theta + c3*x4*x4*(x0 - x2) + x5*x7 + 2.0*x6*x13 + x7*x13 - C*x11*x12
-    # outputs
-    return _stacked(
-        (6, 6),
-        y[0],
-        0.0,
-        0.0,
-        -x8,
-        -x9,
-        x10,
-        0.0,
-        0.0,
-        0.0,
-        -x12,
-        cos_theta*x9,
-        c4 - cos_theta*x10,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0/c2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x14,
-        x8,
-        x12,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1321,30 +591,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     _, _, theta, p_phi, p_psi, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = g*c0
-    c2 = 1.0/C
-    c3 = l*c0
-    c4 = 1.0/(A + c3)
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = C*cos_theta*cos_theta
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_phi - cos_theta*p_psi)/(x0 - (x0 + A*x1 + c3*x1))
-    x3 = p_psi*(c2*p_psi + cos_theta*x2) + p_theta*(c4*p_theta) - p_phi*x2
-    # outputs
-    return c1*cos_theta + 0.5*x3
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, theta, p_phi, p_psi, p_theta = y
-    m, l, A, C, g = params
     # terms of the parameters alone
     c0 = m*l
     c1 = g*c0
@@ -1398,36 +644,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (phi, psi, theta, -x2, c1*p_psi + cos_theta*x2, c2*p_theta)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, theta, p_phi, p_psi, p_theta = y
-    m, l, A, C, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    c1 = 1.0/C
-    c2 = 1.0/(A + c0)
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = C*cos_theta*cos_theta
-    sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_phi - cos_theta*p_psi)/(x0 - (x0 + A*x1 + c0*x1))
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        phi,
-        psi,
-        theta,
-        -x2,
-        c1*p_psi + cos_theta*x2,
-        c2*p_theta,
-    )
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1462,27 +678,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (8, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, psi, theta, phi_dot, psi_dot, theta_dot = y
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        sin(phi),
-        cos(phi),
-        psi,
-        sin(theta),
-        cos(theta),
-        phi_dot,
-        psi_dot,
-        theta_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1504,41 +699,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_phi, cos_phi, _, sin_theta, cos_theta, phi_dot, psi_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = phi_dot*cos_theta
-    x2 = c3*x1
-    x3 = C*psi_dot
-    x4 = C*cos_theta*cos_theta
-    x5 = sin_theta*sin_theta
-    x6 = x0*(2.0*x2 - x3 + C*x1)/(x4 - (x4 + A*x5 + c1*x5))
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot,
-        theta_dot*cos_theta,
-        -x0,
-        x6,
-        phi_dot*x0 - cos_theta*x6,
-        c4*sin_theta*(c5 + phi_dot*(x2 - x3)),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (8, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_phi, cos_phi, _, sin_theta, cos_theta, phi_dot, psi_dot, theta_dot = y
-    m, l, A, C, g = params
+    m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
     c1 = l*c0
@@ -1555,9 +718,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x5 = sin_theta*sin_theta
     x6 = x0*(2.0*x2 - x3 + C*x1)/(x4 - (x4 + A*x5 + c1*x5))
     # outputs
-    return _stacked(
-        (8,),
-        y[0],
+    return (
         phi_dot*cos_phi,
         -phi_dot*sin_phi,
         psi_dot,
@@ -1569,406 +730,71 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    85 operations, 6 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 14 floats
-        sin_phi, cos_phi in 1; psi in rad; sin_theta, cos_theta in 1; phi_dot, psi_dot,
-        theta_dot in rad/s; delta_phi, delta_psi, delta_theta in rad; delta_phi_dot,
-        delta_psi_dot, delta_theta_dot in rad/s.
-    params : iterable of 5 floats
-        m in kg; l in m; A, C in kg m^2; g in m/s^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_phi, cos_phi, _, sin_theta, cos_theta, phi_dot, psi_dot, theta_dot, _, _, delta_theta, delta_phi_dot, delta_psi_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = phi_dot*cos_theta
-    x2 = c3*x1
-    x3 = C*psi_dot
-    x4 = 2.0*x2 - x3
-    x5 = C*cos_theta
-    x6 = cos_theta*x5
-    x7 = sin_theta*sin_theta
-    x8 = x6 - (x6 + A*x7 + c1*x7)
-    x9 = x0*(x4 + C*x1)/x8
-    x10 = cos_theta*x9
-    x11 = phi_dot*x0 - x10
-    x12 = x2 - x3
-    x13 = c5 + phi_dot*x12
-    x14 = phi_dot*sin_theta
-    x15 = c3*sin_theta
-    x16 = x14*x15
-    x17 = theta_dot*(cos_theta*x4 - 2.0*x16) + 2.0*x10*x15 - C*sin_theta*x11
-    x18 = x0*delta_phi_dot
-    x19 = C*delta_psi_dot
-    x20 = delta_theta*x17 + 2.0*c3*cos_theta*x18 + sin_theta*x4*delta_theta_dot - x0*x19
-    x21 = delta_theta*(theta_dot*x1 + sin_theta*x9) + x18 + delta_theta_dot*x14
-    x22 = (x20 + x21*x5)/x8
-    x23 = (
-        delta_theta*(cos_theta*x13 - phi_dot*x16) + sin_theta*delta_phi_dot*(x2 + x12)
-        - x14*x19
-    )
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot,
-        theta_dot*cos_theta,
-        -x0,
-        x9,
-        x11,
-        c4*sin_theta*x13,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_theta_dot,
-        x22,
-        x21 - cos_theta*x22,
-        c4*x23,
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (14, ...)."""
-    # inputs
-    sin_phi, cos_phi, _, sin_theta, cos_theta, phi_dot, psi_dot, theta_dot, _, _, delta_theta, delta_phi_dot, delta_psi_dot, delta_theta_dot = y
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = phi_dot*cos_theta
-    x2 = c3*x1
-    x3 = C*psi_dot
-    x4 = 2.0*x2 - x3
-    x5 = C*cos_theta
-    x6 = cos_theta*x5
-    x7 = sin_theta*sin_theta
-    x8 = x6 - (x6 + A*x7 + c1*x7)
-    x9 = x0*(x4 + C*x1)/x8
-    x10 = cos_theta*x9
-    x11 = phi_dot*x0 - x10
-    x12 = x2 - x3
-    x13 = c5 + phi_dot*x12
-    x14 = phi_dot*sin_theta
-    x15 = c3*sin_theta
-    x16 = x14*x15
-    x17 = theta_dot*(cos_theta*x4 - 2.0*x16) + 2.0*x10*x15 - C*sin_theta*x11
-    x18 = x0*delta_phi_dot
-    x19 = C*delta_psi_dot
-    x20 = delta_theta*x17 + 2.0*c3*cos_theta*x18 + sin_theta*x4*delta_theta_dot - x0*x19
-    x21 = delta_theta*(theta_dot*x1 + sin_theta*x9) + x18 + delta_theta_dot*x14
-    x22 = (x20 + x21*x5)/x8
-    x23 = (
-        delta_theta*(cos_theta*x13 - phi_dot*x16) + sin_theta*delta_phi_dot*(x2 + x12)
-        - x14*x19
-    )
-    # outputs
-    return _stacked(
-        (14,),
-        y[0],
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot,
-        theta_dot*cos_theta,
-        -x0,
-        x9,
-        x11,
-        c4*sin_theta*x13,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_theta_dot,
-        x22,
-        x21 - cos_theta*x22,
-        c4*x23,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+angular_momentum_many = _over_arrays(angular_momentum)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    133 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 14 floats
-        sin_phi, cos_phi in 1; psi in rad; sin_theta, cos_theta in 1; phi_dot, psi_dot,
-        theta_dot in rad/s; delta_phi, delta_psi, delta_theta in rad; delta_phi_dot,
-        delta_psi_dot, delta_theta_dot in rad/s.
-    params : iterable of 10 floats
-        delta_m in kg; delta_l in m; delta_A, delta_C in kg m^2; delta_g in m/s^2; m in kg;
-        l in m; A, C in kg m^2; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_phi, cos_phi, _, sin_theta, cos_theta, phi_dot, psi_dot, theta_dot, _, _, delta_theta, delta_phi_dot, delta_psi_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_l, delta_A, delta_C, delta_g, m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    c6 = l*delta_m
-    c7 = l*c6
-    c8 = delta_l*c0
-    c9 = delta_g*c0
-    c10 = m*delta_l
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = phi_dot*cos_theta
-    x2 = c3*x1
-    x3 = C*psi_dot
-    x4 = 2.0*x2 - x3
-    x5 = C*cos_theta
-    x6 = cos_theta*x5
-    x7 = sin_theta*sin_theta
-    x8 = x6 - (x6 + A*x7 + c1*x7)
-    x9 = x0*(x4 + C*x1)/x8
-    x10 = phi_dot*sin_theta
-    x11 = cos_theta*x9
-    x12 = theta_dot*x10 - x11
-    x13 = x2 - x3
-    x14 = c5 + phi_dot*x13
-    x15 = c4*sin_theta*x14
-    x16 = c3*sin_theta
-    x17 = x10*x16
-    x18 = theta_dot*(cos_theta*x4 - 2.0*x17) + 2.0*x11*x16 - C*sin_theta*x12
-    x19 = theta_dot*x1
-    x20 = sin_theta*x9
-    x21 = sin_theta*(2.0*x19 + x20)
-    x22 = cos_theta*x11 + cos_theta*x12 - x0*(psi_dot + 2.0*x1)
-    x23 = x0*delta_phi_dot
-    x24 = C*delta_psi_dot
-    x25 = (
-        delta_theta*x18 + sin_theta*x4*delta_theta_dot + c7*x21 + delta_A*x21 + delta_C*x22
-        + 2.0*(c3*cos_theta*x23 + c8*x21) - x0*x24
-    )
-    x26 = delta_theta*(x19 + x20) + x23 + delta_theta_dot*x10
-    x27 = (x25 + x26*x5)/x8
-    x28 = l*phi_dot*x1
-    x29 = l*x15
-    x30 = (
-        delta_theta*(cos_theta*x14 - phi_dot*x17) + sin_theta*delta_phi_dot*(x2 + x13)
-        + c6*(sin_theta*(g + x28) - x29) + c9*sin_theta - x10*x24
-        - c10*(2.0*x29 - sin_theta*(g + 2.0*x28)) - delta_A*(x15 - x1*x10)
-        - delta_C*(psi_dot + x1)*x10
-    )
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot,
-        theta_dot*cos_theta,
-        -x0,
-        x9,
-        x12,
-        x15,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_theta_dot,
-        x27,
-        x26 - cos_theta*x27,
-        c4*x30,
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (14, ...)."""
-    # inputs
-    sin_phi, cos_phi, _, sin_theta, cos_theta, phi_dot, psi_dot, theta_dot, _, _, delta_theta, delta_phi_dot, delta_psi_dot, delta_theta_dot = y
-    delta_m, delta_l, delta_A, delta_C, delta_g, m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    c6 = l*delta_m
-    c7 = l*c6
-    c8 = delta_l*c0
-    c9 = delta_g*c0
-    c10 = m*delta_l
-    # intermediate terms
-    x0 = theta_dot*sin_theta
-    x1 = phi_dot*cos_theta
-    x2 = c3*x1
-    x3 = C*psi_dot
-    x4 = 2.0*x2 - x3
-    x5 = C*cos_theta
-    x6 = cos_theta*x5
-    x7 = sin_theta*sin_theta
-    x8 = x6 - (x6 + A*x7 + c1*x7)
-    x9 = x0*(x4 + C*x1)/x8
-    x10 = phi_dot*sin_theta
-    x11 = cos_theta*x9
-    x12 = theta_dot*x10 - x11
-    x13 = x2 - x3
-    x14 = c5 + phi_dot*x13
-    x15 = c4*sin_theta*x14
-    x16 = c3*sin_theta
-    x17 = x10*x16
-    x18 = theta_dot*(cos_theta*x4 - 2.0*x17) + 2.0*x11*x16 - C*sin_theta*x12
-    x19 = theta_dot*x1
-    x20 = sin_theta*x9
-    x21 = sin_theta*(2.0*x19 + x20)
-    x22 = cos_theta*x11 + cos_theta*x12 - x0*(psi_dot + 2.0*x1)
-    x23 = x0*delta_phi_dot
-    x24 = C*delta_psi_dot
-    x25 = (
-        delta_theta*x18 + sin_theta*x4*delta_theta_dot + c7*x21 + delta_A*x21 + delta_C*x22
-        + 2.0*(c3*cos_theta*x23 + c8*x21) - x0*x24
-    )
-    x26 = delta_theta*(x19 + x20) + x23 + delta_theta_dot*x10
-    x27 = (x25 + x26*x5)/x8
-    x28 = l*phi_dot*x1
-    x29 = l*x15
-    x30 = (
-        delta_theta*(cos_theta*x14 - phi_dot*x17) + sin_theta*delta_phi_dot*(x2 + x13)
-        + c6*(sin_theta*(g + x28) - x29) + c9*sin_theta - x10*x24
-        - c10*(2.0*x29 - sin_theta*(g + 2.0*x28)) - delta_A*(x15 - x1*x10)
-        - delta_C*(psi_dot + x1)*x10
-    )
-    # outputs
-    return _stacked(
-        (14,),
-        y[0],
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        psi_dot,
-        theta_dot*cos_theta,
-        -x0,
-        x9,
-        x12,
-        x15,
-        delta_phi_dot,
-        delta_psi_dot,
-        delta_theta_dot,
-        x27,
-        x26 - cos_theta*x27,
-        c4*x30,
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m in kg; l in m; A, C in kg m^2; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (3, ...)."""
-    # inputs
-    # outputs
-    return _stacked((3,), params[0], 0.0, 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0, 0).
-
-    5 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 5 floats
-        m in kg; l in m; A, C in kg m^2; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return (
-        ((C, C, 0.0), (C, C, 0.0), (0.0, 0.0, A + l*c0)),
-        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -g*c0)),
-    )
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 3, 3, ...)."""
-    # inputs
-    m, l, A, C, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return _stacked(
-        (2, 3, 3),
-        params[0],
-        C,
-        C,
-        0.0,
-        C,
-        C,
-        0.0,
-        0.0,
-        0.0,
-        A + l*c0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -g*c0,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

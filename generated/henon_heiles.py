@@ -18,26 +18,6 @@ State y = (q, p), in functions of the Hamiltonian form:
     p_x [kg m/s]
     p_y [kg m/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    x [m]
-    y [m]
-    x_dot [m/s]
-    y_dot [m/s]
-    delta_x [m]
-    delta_y [m]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-
-State y of `rhs_sensitivity`: the same:
-    x [m]
-    y [m]
-    x_dot [m/s]
-    y_dot [m/s]
-    delta_x [m]
-    delta_y [m]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-
 Parameters params:
 
 Masses and their positions:
@@ -61,19 +41,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "0764429291c8d82e"
+DIGEST = "6e846c129f2dc0d3"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")
@@ -81,14 +60,7 @@ STATES = {
     "lagrangian": ("x", "y", "x_dot", "y_dot"),
     "hamiltonian": ("x", "y", "p_x", "p_y"),
     "variational": (
-        "x",
-        "y",
-        "x_dot",
-        "y_dot",
-        "delta_x",
-        "delta_y",
-        "delta_x_dot",
-        "delta_y_dot",
+        "x", "y", "x_dot", "y_dot", "delta_x", "delta_y", "delta_x_dot", "delta_y_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ()
@@ -97,31 +69,15 @@ POSITIVE = ()
 TIMED = ()
 CALLS_FUNCTIONS = ()
 OPERATIONS = {
-    "rhs": (9, 0),
-    "jacobian": (6, 0),
-    "energy": (13, 0),
-    "mass_matrix": (0, 0),
-    "positions": (0, 0),
-    "hamiltonian_state": (0, 0),
-    "rhs_hamiltonian": (9, 0),
-    "jacobian_hamiltonian": (6, 0),
-    "energy_hamiltonian": (14, 0),
-    "lagrangian_state": (0, 0),
-    "rhs_variational": (21, 0),
-    "equilibrium": (0, 0),
+    "rhs": (9, 0), "jacobian": (6, 0), "energy": (13, 0), "mass_matrix": (0, 0),
+    "positions": (0, 0), "hamiltonian_state": (0, 0), "rhs_hamiltonian": (9, 0),
+    "jacobian_hamiltonian": (6, 0), "energy_hamiltonian": (14, 0),
+    "lagrangian_state": (0, 0), "rhs_variational": (21, 0), "equilibrium": (0, 0),
     "linear": (0, 0),
 }
 UNITS = {
-    "x": "m",
-    "x_dot": "m/s",
-    "p_x": "kg m/s",
-    "delta_x": "m",
-    "delta_x_dot": "m/s",
-    "y": "m",
-    "y_dot": "m/s",
-    "p_y": "kg m/s",
-    "delta_y": "m",
-    "delta_y_dot": "m/s",
+    "x": "m", "x_dot": "m/s", "p_x": "kg m/s", "delta_x": "m", "delta_x_dot": "m/s",
+    "y": "m", "y_dot": "m/s", "p_y": "kg m/s", "delta_y": "m", "delta_y_dot": "m/s",
 }
 
 
@@ -166,14 +122,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x_dot, y_dot, -x*(1.0 + 2.0*y_), -(y_ + x*x - y_*y_))
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    # inputs
-    x, y_, x_dot, y_dot = y
-    # outputs
-    return _stacked((4,), y[0], x_dot, y_dot, -x*(1.0 + 2.0*y_), -(y_ + x*x - y_*y_))
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -204,35 +152,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    # inputs
-    x, y_, _, _ = y
-    # intermediate terms
-    x0 = -2.0*x
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        -(1.0 + 2.0*y_),
-        x0,
-        0.0,
-        0.0,
-        x0,
-        2.0*y_ - 1.0,
-        0.0,
-        0.0,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -252,18 +171,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     """
     # inputs
     x, y_, x_dot, y_dot = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0*y_ + 0.5*(x0 + x1 + x_dot*x_dot + y_dot*y_dot) - (1.0/3.0)*y_*x1
-    # outputs
-    return x2
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    # inputs
-    x, y_, x_dot, y_dot = y
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
@@ -294,13 +201,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((1.0, 0.0), (0.0, 1.0))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2, 2), y[0], 1.0, 0.0, 0.0, 1.0)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -322,14 +222,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x, y_, _, _ = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return ((x, y_),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 2, ...)."""
-    # inputs
-    x, y_, _, _ = y
-    # outputs
-    return _stacked((1, 2), y[0], x, y_)
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -355,14 +247,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x, y_, x_dot, y_dot)
 
 
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    x, y_, x_dot, y_dot = y
-    # outputs
-    return _stacked((4,), y[0], x, y_, x_dot, y_dot)
-
-
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
@@ -386,73 +270,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (p_x, p_y, -x*(1.0 + 2.0*y_), -(y_ + x*x - y_*y_))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    # inputs
-    x, y_, p_x, p_y = y
-    # outputs
-    return _stacked((4,), y[0], p_x, p_y, -x*(1.0 + 2.0*y_), -(y_ + x*x - y_*y_))
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    6 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        x, y in m; p_x, p_y in kg m/s.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    x, y_, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = -2.0*x
-    # outputs
-    return (
-        (0.0, 0.0, 1.0, 0.0),
-        (0.0, 0.0, 0.0, 1.0),
-        (-(1.0 + 2.0*y_), x0, 0.0, 0.0),
-        (x0, 2.0*y_ - 1.0, 0.0, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    # inputs
-    x, y_, _, _ = y
-    # intermediate terms
-    x0 = -2.0*x
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        -(1.0 + 2.0*y_),
-        x0,
-        0.0,
-        0.0,
-        x0,
-        2.0*y_ - 1.0,
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -472,18 +289,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """
     # inputs
     x, y_, p_x, p_y = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0*y_ + 0.5*(x0 + x1) - (1.0/3.0)*y_*x1 + 0.5*(p_x*p_x + p_y*p_y)
-    # outputs
-    return x2
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    # inputs
-    x, y_, p_x, p_y = y
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
@@ -515,125 +320,66 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x, y_, p_x, p_y)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    x, y_, p_x, p_y = y
-    # outputs
-    return _stacked((4,), y[0], x, y_, p_x, p_y)
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        result = function(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    21 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 8 floats
-        x, y in m; x_dot, y_dot in m/s; delta_x, delta_y in m; delta_x_dot, delta_y_dot in
-        m/s.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = 1.0 + 2.0*y_
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        -x*x0,
-        -(y_ + x*x - y_*y_),
-        delta_x_dot,
-        delta_y_dot,
-        -(x0*delta_x + 2.0*x*delta_y),
-        -(2.0*x*delta_x - delta_y*(2.0*y_ - 1.0)),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (8, ...)."""
-    # inputs
-    x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y
-    # intermediate terms
-    x0 = 1.0 + 2.0*y_
-    # outputs
-    return _stacked(
-        (8,),
-        y[0],
-        x_dot,
-        y_dot,
-        -x*x0,
-        -(y_ + x*x - y_*y_),
-        delta_x_dot,
-        delta_y_dot,
-        -(x0*delta_x + 2.0*x*delta_y),
-        -(2.0*x*delta_x - delta_y*(2.0*y_ - 1.0)),
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-
-
-    Returns
-    -------
-    Vector
-        q = (0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2,), 0.0, 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0).
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    # outputs
-    return (((1.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (0.0, 1.0)))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 2, 2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2, 2, 2), 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

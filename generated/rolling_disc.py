@@ -35,54 +35,6 @@ State y in functions of the rational form:
     phi_dot [rad/s]
     chi_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    x [m]
-    y [m]
-    sin_psi [1]
-    cos_psi [1]
-    sin_phi [1]
-    cos_phi [1]
-    chi [rad]
-    x_dot [m/s]
-    y_dot [m/s]
-    psi_dot [rad/s]
-    phi_dot [rad/s]
-    chi_dot [rad/s]
-    delta_x [m]
-    delta_y [m]
-    delta_psi [rad]
-    delta_phi [rad]
-    delta_chi [rad]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-    delta_psi_dot [rad/s]
-    delta_phi_dot [rad/s]
-    delta_chi_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    x [m]
-    y [m]
-    sin_psi [1]
-    cos_psi [1]
-    sin_phi [1]
-    cos_phi [1]
-    chi [rad]
-    x_dot [m/s]
-    y_dot [m/s]
-    psi_dot [rad/s]
-    phi_dot [rad/s]
-    chi_dot [rad/s]
-    delta_x [m]
-    delta_y [m]
-    delta_psi [rad]
-    delta_phi [rad]
-    delta_chi [rad]
-    delta_x_dot [m/s]
-    delta_y_dot [m/s]
-    delta_psi_dot [rad/s]
-    delta_phi_dot [rad/s]
-    delta_chi_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass
     R [m] > 0, default 0.3: radius
@@ -90,13 +42,15 @@ Parameters params:
     g [m/s^2] real, default 9.81: gravitational acceleration
 
 Masses and their positions:
-    m at (R*sin(phi)*sin(psi) + x, -R*sin(phi)*cos(psi) + y, R*cos(phi)), principal moments R**2*k*m, 2*R**2*k*m, R**2*k*m, orientation: rotations zxy by psi, phi, chi
+    m at (R*sin(phi)*sin(psi) + x, -R*sin(phi)*cos(psi) + y, R*cos(phi)),
+        principal moments R**2*k*m, 2*R**2*k*m, R**2*k*m, orientation: rotations zxy by psi,
+        phi, chi
 
 Constraints, with their multipliers:
-    -R*chi_dot + x_dot*cos(psi)
-        + y_dot*sin(psi) = 0: ground_along [N], friction on the body, along its path
-    -x_dot*sin(psi)
-        + y_dot*cos(psi) = 0: ground_across [N], friction on the body, to the left of its path
+    -R*chi_dot + x_dot*cos(psi) + y_dot*sin(psi) = 0: ground_along [N],
+        friction on the body, along its path
+    -x_dot*sin(psi) + y_dot*cos(psi) = 0: ground_across [N], friction on the body,
+        to the left of its path
 
 Degrees of freedom:
     5 coordinates, 2 constraints, 3 degrees of freedom
@@ -113,106 +67,41 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "e0a5d41b36a9d3ec"
+DIGEST = "9dec9cea6b369220"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
-    "x",
-    "y",
-    "psi",
-    "phi",
-    "chi",
-    "x_dot",
-    "y_dot",
-    "psi_dot",
-    "phi_dot",
-    "chi_dot",
+    "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
 )
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": (
-        "x",
-        "y",
-        "psi",
-        "phi",
-        "chi",
-        "x_dot",
-        "y_dot",
-        "psi_dot",
-        "phi_dot",
-        "chi_dot",
+        "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
     ),
     "rational": (
-        "x",
-        "y",
-        "sin_psi",
-        "cos_psi",
-        "sin_phi",
-        "cos_phi",
-        "chi",
-        "x_dot",
-        "y_dot",
-        "psi_dot",
-        "phi_dot",
-        "chi_dot",
+        "x", "y", "sin_psi", "cos_psi", "sin_phi", "cos_phi", "chi", "x_dot", "y_dot",
+        "psi_dot", "phi_dot", "chi_dot",
     ),
     "variational": (
-        "x",
-        "y",
-        "sin_psi",
-        "cos_psi",
-        "sin_phi",
-        "cos_phi",
-        "chi",
-        "x_dot",
-        "y_dot",
-        "psi_dot",
-        "phi_dot",
-        "chi_dot",
-        "delta_x",
-        "delta_y",
-        "delta_psi",
-        "delta_phi",
-        "delta_chi",
-        "delta_x_dot",
-        "delta_y_dot",
-        "delta_psi_dot",
-        "delta_phi_dot",
+        "x", "y", "sin_psi", "cos_psi", "sin_phi", "cos_phi", "chi", "x_dot", "y_dot",
+        "psi_dot", "phi_dot", "chi_dot", "delta_x", "delta_y", "delta_psi", "delta_phi",
+        "delta_chi", "delta_x_dot", "delta_y_dot", "delta_psi_dot", "delta_phi_dot",
         "delta_chi_dot",
     ),
     "sensitivity": (
-        "x",
-        "y",
-        "sin_psi",
-        "cos_psi",
-        "sin_phi",
-        "cos_phi",
-        "chi",
-        "x_dot",
-        "y_dot",
-        "psi_dot",
-        "phi_dot",
-        "chi_dot",
-        "delta_x",
-        "delta_y",
-        "delta_psi",
-        "delta_phi",
-        "delta_chi",
-        "delta_x_dot",
-        "delta_y_dot",
-        "delta_psi_dot",
-        "delta_phi_dot",
+        "x", "y", "sin_psi", "cos_psi", "sin_phi", "cos_phi", "chi", "x_dot", "y_dot",
+        "psi_dot", "phi_dot", "chi_dot", "delta_x", "delta_y", "delta_psi", "delta_phi",
+        "delta_chi", "delta_x_dot", "delta_y_dot", "delta_psi_dot", "delta_phi_dot",
         "delta_chi_dot",
     ),
 }
@@ -224,71 +113,26 @@ RESIDUALS = ("ground_along", "ground_across")
 LINKS = (("wheel", (0, 1, 2)),)
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "constraints",
-    "constraints_jacobian",
-    "multipliers",
-    "correction",
-    "mass_matrix",
-    "positions",
-    "points",
-    "angular_momentum",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "constraints",
+    "constraints_jacobian", "multipliers", "correction", "mass_matrix", "positions",
+    "points", "angular_momentum", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (223, 12),
-    "jacobian": (745, 24),
-    "parameter_jacobian": (538, 20),
-    "energy": (52, 5),
-    "constraints": (10, 0),
-    "constraints_jacobian": (11, 1),
-    "multipliers": (187, 11),
-    "correction": (140, 9),
-    "correction_rational": (136, 9),
-    "correction_variational": (174, 9),
-    "correction_sensitivity": (176, 9),
-    "mass_matrix": (27, 6),
-    "positions": (10, 0),
-    "points": (37, 0),
-    "angular_momentum": (91, 3),
-    "rational_state": (4, 0),
-    "rhs_rational": (224, 12),
-    "rhs_variational": (458, 17),
-    "rhs_sensitivity": (533, 23),
+    "rhs": (214, 8), "jacobian": (724, 16), "parameter_jacobian": (521, 10),
+    "energy": (52, 5), "constraints": (10, 0), "constraints_jacobian": (11, 1),
+    "multipliers": (178, 7), "correction": (133, 7), "correction_rational": (130, 7),
+    "correction_variational": (169, 7), "correction_sensitivity": (171, 7),
+    "mass_matrix": (27, 6), "positions": (10, 0), "points": (37, 0),
+    "angular_momentum": (91, 3), "rational_state": (4, 0), "rhs_rational": (214, 8),
+    "rhs_variational": (451, 12), "rhs_sensitivity": (529, 16),
 }
 UNITS = {
-    "m": "kg",
-    "R": "m",
-    "k": "1",
-    "g": "m/s^2",
-    "x": "m",
-    "x_dot": "m/s",
-    "delta_x": "m",
-    "delta_x_dot": "m/s",
-    "y": "m",
-    "y_dot": "m/s",
-    "delta_y": "m",
-    "delta_y_dot": "m/s",
-    "psi": "rad",
-    "psi_dot": "rad/s",
-    "delta_psi": "rad",
-    "delta_psi_dot": "rad/s",
-    "sin_psi": "1",
-    "cos_psi": "1",
-    "phi": "rad",
-    "phi_dot": "rad/s",
-    "delta_phi": "rad",
-    "delta_phi_dot": "rad/s",
-    "sin_phi": "1",
-    "cos_phi": "1",
-    "chi": "rad",
-    "chi_dot": "rad/s",
-    "delta_chi": "rad",
-    "delta_chi_dot": "rad/s",
-    "ground_along": "N",
+    "m": "kg", "R": "m", "k": "1", "g": "m/s^2", "x": "m", "x_dot": "m/s", "delta_x": "m",
+    "delta_x_dot": "m/s", "y": "m", "y_dot": "m/s", "delta_y": "m", "delta_y_dot": "m/s",
+    "psi": "rad", "psi_dot": "rad/s", "delta_psi": "rad", "delta_psi_dot": "rad/s",
+    "sin_psi": "1", "cos_psi": "1", "phi": "rad", "phi_dot": "rad/s", "delta_phi": "rad",
+    "delta_phi_dot": "rad/s", "sin_phi": "1", "cos_phi": "1", "chi": "rad",
+    "chi_dot": "rad/s", "delta_chi": "rad", "delta_chi_dot": "rad/s", "ground_along": "N",
     "ground_across": "N",
 }
 
@@ -314,7 +158,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    223 operations, 12 of them on parameters alone.
+    214 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
@@ -332,77 +176,74 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y: velocities, then accelerations from M qddot = f.
     """
     # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = m*(1.0/(m*c4))
-    c6 = c2*R
-    c7 = m*R
-    c8 = k*c2
-    c9 = 1.0/R
+    c0 = 1.0 + k
+    c1 = m*(1.0/(m*c0))
+    c2 = m*R
+    c3 = 1.0/(m*k)
+    c4 = 1.0/R
     # intermediate terms
     sin_phi = sin(phi)
     x0 = sin_phi*sin_phi
+    x1 = k*x0
     cos_phi = cos(phi)
-    x1 = c2*sin_phi
-    x2 = x0 + k*cos_phi*cos_phi + 2.0*k*x0 - 2.0*k*sin_phi*x1
-    x3 = 1.0/(m*x2)
-    x4 = 1.0 - c3*x0*x3
+    x2 = 1.0/(m*(2.0*x1 + x0 + k*cos_phi*cos_phi - 2.0*x1))
+    x3 = m*x2
+    x4 = 1.0 - x0*x3
     cos_psi = cos(psi)
     sin_psi = sin(psi)
     x5 = cos_phi*cos_psi
-    x6 = c5*x5
+    x6 = c1*x5
     x7 = sin_psi*sin_phi
-    x8 = m*x3
-    x9 = x7*x8
-    x10 = 1.0/(m*(1.0 - x5*x6 - x9*x7))
-    x11 = cos_phi*sin_psi
-    x12 = c5*x11
-    x13 = cos_psi*sin_phi
-    x14 = x13*x8
-    x15 = x12*x5 - x14*x7
-    x16 = m*x15
-    x17 = x10*x16
-    x18 = m*(1.0 - x12*x11 - x14*x13 - x15*x17)
-    x19 = x4*(cos_psi - sin_psi*x17)/x18
+    x8 = x7*x3
+    x9 = 1.0/(m*(1.0 - x5*x6 - x8*x7))
+    x10 = cos_phi*sin_psi
+    x11 = c1*x10
+    x12 = cos_psi*sin_phi
+    x13 = x12*x3
+    x14 = x11*x5 - x13*x7
+    x15 = m*x14
+    x16 = x9*x15
+    x17 = 1.0 - x11*x10 - x13*x12 - x14*x16
+    x18 = m*x17
+    x19 = x4*(cos_psi - sin_psi*x16)/x18
     x20 = phi_dot*cos_phi
-    x21 = psi_dot*x20
+    x21 = R*psi_dot
     x22 = psi_dot*sin_phi
-    x23 = c4*x22
+    x23 = c0*x22
     x24 = k*chi_dot
-    x25 = c7*(x3*(x23 + x24 - c8*x22))
+    x25 = c2*(x2*(x23 + x24 - k*x22))
     x26 = x20*x25
     x27 = psi_dot*psi_dot
     x28 = phi_dot*phi_dot
     x29 = phi_dot*x5
-    x30 = R*psi_dot*cos_phi*(x23 + 2.0*x24) + g*sin_phi
-    x31 = c5*x30
-    x32 = R*(x7*x27 + x7*x28 - 2.0*psi_dot*x29) - x31*x11 + 2.0*sin_phi*x25*x29
-    x33 = R*(x13*x27 + 2.0*sin_psi*x21 + x13*x28) - x30*x6 - 2.0*x26*x7
-    x34 = m*(x32 + x33*x17)/x18
-    x35 = m*x10*(x33 + x15*x34)
-    x36 = 2.0*x26 + x14*x34 - x9*x35
-    x37 = c6*x21 - x1*x36
-    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
-    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
-    x40 = (sin_psi + cos_psi*x17)/x18
-    x41 = x10*(cos_psi + x40*x16)
-    x42 = x14*x40 - x9*x41
-    x43 = x1*x42
-    x44 = x43 + sin_psi*x41 - cos_psi*x40
-    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
-    x46 = x44*x45
-    x47 = x10*(sin_psi*x4 - x19*x16)
-    x48 = x14*x19 + x9*x47 - x1*x3
-    x49 = 0.5*c1 - x1*x48
-    x50 = (x38 + x39*x46)/(x49 + cos_psi*x19 + sin_psi*x47 - x44*x46)
-    x51 = x45*(x39 + x44*x50)
-    x52 = x50*(x12*x19 - x47*x6) + x51*(x12*x40 + x41*x6) - (x12*x34 + x35*x6 - x31)
+    x30 = cos_phi*(x23 + 2.0*x24)*x21 + g*sin_phi
+    x31 = c1*x30
+    x32 = R*(x7*x27 + x7*x28 - 2.0*psi_dot*x29) - x31*x10 + 2.0*sin_phi*x25*x29
+    x33 = R*(x12*x27 + 2.0*psi_dot*sin_psi*x20 + x12*x28) - x30*x6
+    x34 = x33 - 2.0*x26*x7
+    x35 = (x32 + x34*x16)/x17
+    x36 = m*x9*(x34 + x14*x35)
+    x37 = 2.0*x26 + x13*x35 - x8*x36
+    x38 = x20*x21 - sin_phi*x37
+    x39 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x38 + cos_psi*x35 - sin_psi*x36)
+    x40 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x35 + cos_psi*x36)
+    x41 = (sin_psi + cos_psi*x16)/x18
+    x42 = x9*(cos_psi + x41*x15)
+    x43 = x13*x41 - x8*x42
+    x44 = sin_phi*x43
+    x45 = x44 + sin_psi*x42 - cos_psi*x41
+    x46 = 1.0/(sin_psi*x41 + cos_psi*x42)
+    x47 = x45*x46
+    x48 = x9*(sin_psi*x4 - x19*x15)
+    x49 = x13*x19 + x8*x48 - sin_phi*x2
+    x50 = 0.5*c3 - sin_phi*x49
+    x51 = (x39 + x40*x47)/(x50 + cos_psi*x19 + sin_psi*x48 - x45*x47)
+    x52 = x46*(x40 + x45*x51)
+    x53 = x51*(x11*x19 - x48*x6) + x52*(x11*x41 + x42*x6) - (x11*x35 + x36*x6 - x31)
     # outputs
     return (
         x_dot,
@@ -410,111 +251,18 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         psi_dot,
         phi_dot,
         chi_dot,
-        -(x19*x50 + x40*x51 - x34),
-        -(x35 + x47*x50 - x41*x51),
-        c9*(x48*x50 + x42*x51 - x36),
-        c9*x52,
-        -c9*(x37 + x43*x51 - x49*x50),
-    )
-
-
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (10, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, g = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = m*(1.0/(m*c4))
-    c6 = c2*R
-    c7 = m*R
-    c8 = k*c2
-    c9 = 1.0/R
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    cos_phi = cos(phi)
-    x1 = c2*sin_phi
-    x2 = x0 + k*cos_phi*cos_phi + 2.0*k*x0 - 2.0*k*sin_phi*x1
-    x3 = 1.0/(m*x2)
-    x4 = 1.0 - c3*x0*x3
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    x5 = cos_phi*cos_psi
-    x6 = c5*x5
-    x7 = sin_psi*sin_phi
-    x8 = m*x3
-    x9 = x7*x8
-    x10 = 1.0/(m*(1.0 - x5*x6 - x9*x7))
-    x11 = cos_phi*sin_psi
-    x12 = c5*x11
-    x13 = cos_psi*sin_phi
-    x14 = x13*x8
-    x15 = x12*x5 - x14*x7
-    x16 = m*x15
-    x17 = x10*x16
-    x18 = m*(1.0 - x12*x11 - x14*x13 - x15*x17)
-    x19 = x4*(cos_psi - sin_psi*x17)/x18
-    x20 = phi_dot*cos_phi
-    x21 = psi_dot*x20
-    x22 = psi_dot*sin_phi
-    x23 = c4*x22
-    x24 = k*chi_dot
-    x25 = c7*(x3*(x23 + x24 - c8*x22))
-    x26 = x20*x25
-    x27 = psi_dot*psi_dot
-    x28 = phi_dot*phi_dot
-    x29 = phi_dot*x5
-    x30 = R*psi_dot*cos_phi*(x23 + 2.0*x24) + g*sin_phi
-    x31 = c5*x30
-    x32 = R*(x7*x27 + x7*x28 - 2.0*psi_dot*x29) - x31*x11 + 2.0*sin_phi*x25*x29
-    x33 = R*(x13*x27 + 2.0*sin_psi*x21 + x13*x28) - x30*x6 - 2.0*x26*x7
-    x34 = m*(x32 + x33*x17)/x18
-    x35 = m*x10*(x33 + x15*x34)
-    x36 = 2.0*x26 + x14*x34 - x9*x35
-    x37 = c6*x21 - x1*x36
-    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
-    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
-    x40 = (sin_psi + cos_psi*x17)/x18
-    x41 = x10*(cos_psi + x40*x16)
-    x42 = x14*x40 - x9*x41
-    x43 = x1*x42
-    x44 = x43 + sin_psi*x41 - cos_psi*x40
-    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
-    x46 = x44*x45
-    x47 = x10*(sin_psi*x4 - x19*x16)
-    x48 = x14*x19 + x9*x47 - x1*x3
-    x49 = 0.5*c1 - x1*x48
-    x50 = (x38 + x39*x46)/(x49 + cos_psi*x19 + sin_psi*x47 - x44*x46)
-    x51 = x45*(x39 + x44*x50)
-    x52 = x50*(x12*x19 - x47*x6) + x51*(x12*x40 + x41*x6) - (x12*x34 + x35*x6 - x31)
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        x_dot,
-        y_dot,
-        psi_dot,
-        phi_dot,
-        chi_dot,
-        -(x19*x50 + x40*x51 - x34),
-        -(x35 + x47*x50 - x41*x51),
-        c9*(x48*x50 + x42*x51 - x36),
-        c9*x52,
-        -c9*(x37 + x43*x51 - x49*x50),
+        -(x19*x51 + x41*x52 - x35),
+        -(x36 + x48*x51 - x42*x52),
+        c4*(x49*x51 + x43*x52 - x37),
+        c4*x53,
+        -c4*(x38 + x44*x52 - x50*x51),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    745 operations, 24 of them on parameters alone.
+    724 operations, 16 of them on parameters alone.
 
     Parameters
     ----------
@@ -532,32 +280,24 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         Entry [i][j] is the derivative of rhs[i] with respect to y[j].
     """
     # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*R
-    c1 = 1.0/R
-    c2 = m*k
-    c3 = 1.0/c2
-    c4 = c2*c3
-    c5 = m*c4
-    c6 = 1.0 + k
-    c7 = 1.0/(m*c6)
-    c8 = m*c7
-    c9 = c4*R
-    c10 = k*c4
-    c11 = m*m
-    c12 = c7*c11
-    c13 = k*R
-    c14 = c6*R
-    c15 = R*c10
-    c16 = c6 - c10
-    c17 = c0*c16
-    c18 = m*c16
-    c19 = c2*R
-    c20 = c2*c0
-    c21 = c7*c0
-    c22 = c7*c19
+    c1 = 1.0 + k
+    c2 = 1.0/(m*c1)
+    c3 = m*c2
+    c4 = 1.0/(m*k)
+    c5 = m*m
+    c6 = c2*c5
+    c7 = c1 - k
+    c8 = c0*c7
+    c9 = m*c7
+    c10 = k*c0
+    c11 = 1.0/R
+    c12 = c2*c0
+    c13 = c2*c10
     # intermediate terms
     cos_psi = cos(psi)
     sin_phi = sin(phi)
@@ -571,148 +311,147 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x5 = x0*x1 + 2.0*x2*x3 + x0*x4
     x6 = sin_psi*sin_phi
     x7 = k*sin_phi
-    x8 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x7
-    x9 = c4*sin_phi
-    x10 = 1.0/(m*(x8 - 2.0*x9*x7))
+    x8 = sin_phi*x7
+    x9 = cos_phi*cos_phi
+    x10 = 1.0/(m*(2.0*x8 + sin_phi*sin_phi + k*x9 - 2.0*x8))
     x11 = sin_phi*x10
     x12 = m*x11
     x13 = cos_psi*x12
-    x14 = 1.0 - c5*sin_phi*x11
-    x15 = c8*x2
+    x14 = 1.0 - sin_phi*x12
+    x15 = c3*x2
     x16 = cos_phi*cos_psi
     x17 = x15*x16 - x13*x6
-    x18 = c8*x16
+    x18 = c3*x16
     x19 = sin_psi*x12
     x20 = 1.0/(m*(1.0 - x16*x18 - x19*x6))
     x21 = m*x20
     x22 = x17*x21
-    x23 = m*(1.0 - x15*x2 - x13*x0 - x17*x22)
-    x24 = x14*(cos_psi - sin_psi*x22)/x23
-    x25 = m*x17
-    x26 = x20*(sin_psi*x14 - x24*x25)
-    x27 = x13*x24 + x19*x26 - c4*x11
-    x28 = cos_psi*y_dot - sin_psi*x_dot
-    x29 = psi_dot*x28
-    x30 = c9*cos_phi
-    x31 = sin_phi*psi_dot
-    x32 = c6*x31
-    x33 = k*chi_dot
-    x34 = x32 + x33
-    x35 = x34 - c10*x31
-    x36 = c0*x35
-    x37 = cos_phi*x10
-    x38 = phi_dot*x37
-    x39 = x6*x1 + x6*x4 - 2.0*x16*x3
-    x40 = x32 + 2.0*x33
-    x41 = cos_phi*psi_dot
-    x42 = R*x40*x41 + g*sin_phi
-    x43 = phi_dot*x11
-    x44 = x16*x43
-    x45 = x2*x43
-    x46 = R*x5 - x42*x18 - 2.0*x36*x45
-    x47 = m*(R*x39 - x15*x42 + 2.0*x36*x44 + x46*x22)/x23
-    x48 = (x46 + x17*x47)*x21
-    x49 = 2.0*x36*x38 + x13*x47 - x19*x48
-    x50 = x3*x30 - x9*x49
-    x51 = cos_psi*x_dot + sin_psi*y_dot
-    x52 = psi_dot*x51
-    x53 = x52 + (sin_psi*x47 + cos_psi*x48)
-    x54 = (sin_psi + cos_psi*x22)/x23
-    x55 = x20*(cos_psi + x54*x25)
-    x56 = x13*x54 - x19*x55
-    x57 = x9*x56
-    x58 = x57 + sin_psi*x55 - cos_psi*x54
-    x59 = 1.0/(sin_psi*x54 + cos_psi*x55)
-    x60 = x58*x59
-    x61 = x29 + (x50 + cos_psi*x47 - sin_psi*x48) + x53*x60
-    x62 = 0.5*c3 - x9*x27
-    x63 = x62 + cos_psi*x24 + sin_psi*x26 - x58*x60
-    x64 = x61/x63
-    x65 = x59*(x53 + x58*x64)
-    x66 = c1*(x27*x64 + x56*x65 - x49)
-    x67 = c0*x66
-    x68 = x15*x24 - x26*x18
-    x69 = x15*x54 + x55*x18
-    x70 = c1*(x64*x68 + x65*x69 - (x15*x47 + x48*x18 - c8*x42))
-    x71 = c0*x70
-    x72 = c0*x5 + x6*x67 + sin_psi*x64 - x16*x71 - cos_psi*x65
-    x73 = x24*x64 + x54*x65 - x47
-    x74 = x48 + x26*x64 - x55*x65
-    x75 = cos_psi*x73 + sin_psi*x74
-    x76 = cos_phi*x75
-    x77 = c12*x76
-    x78 = sin_psi*x73 - cos_psi*x74
-    x79 = x11*(c11*x78)
-    x80 = x0*x67 + x2*x71 + cos_psi*x64 + sin_psi*x65 - c0*x39
-    x81 = x80 - x16*x77 - x6*x79
-    x82 = (x72 - x2*x77 + x0*x79 + x81*x22)/x23
-    x83 = x20*(x81 + x82*x25)
-    x84 = x78*x12 + x13*x82 - x19*x83
-    x85 = x9*x84
-    x86 = x75 - x29 - (sin_psi*x82 + cos_psi*x83)
-    x87 = x52 - x78 + (x85 + sin_psi*x83 - cos_psi*x82) + x86*x60
-    x88 = x87/x63
-    x89 = x59*(x86 + x58*x88)
-    x90 = c6*cos_phi*x41
-    x91 = x73*x6 + (R*psi_dot*(sin_phi*x40 - x90) - g*cos_phi) - x74*x0
-    x92 = R*(x2*x1 + 2.0*x0*x3 + x2*x4 + x70*x6 - x66*x16) + x15*x91
-    x93 = cos_phi*x66
-    x94 = (
-        R*phi_dot*(sin_phi*x34 - x90) + c13*cos_phi*(c1*(x50 + x57*x65 - x62*x64))
-        - c14*sin_phi*x93
-    )
-    x95 = sin_phi*x3 - x93
-    x96 = x73*x16 + x74*x2 + 2.0*x94 - 2.0*c15*sin_phi*x95
-    x97 = R*(x16*x1 + x16*x4 - 2.0*x6*x3 + x66*x2 + x70*x0)
-    x98 = x97 + x91*x18 + x19*x96
-    x99 = m*(x92 - x13*x96 + x98*x22)/x23
-    x100 = (x98 + x17*x99)*x21
-    x101 = m*x10*x96 + x19*x100 - x13*x99
-    x102 = c9*x95 - x9*x101
-    x103 = sin_psi*x99 + cos_psi*x100
-    x104 = (x102 + sin_psi*x100 - cos_psi*x99 - x103*x60)/x63
-    x105 = x59*(x103 - x58*x104)
-    x106 = psi_dot*(sin_psi - cos_psi*x60)/x63
-    x107 = x59*(cos_psi*psi_dot - x58*x106)
-    x108 = psi_dot*(cos_psi + sin_psi*x60)/x63
-    x109 = x59*(sin_psi*psi_dot + x58*x108)
-    x110 = cos_phi*(x32 + x40)
-    x111 = c18*sin_phi
-    x112 = 2.0*(psi_dot*x6 - phi_dot*x16) - x15*x110 + 2.0*x111*x44
-    x113 = 2.0*(psi_dot*x0 + phi_dot*x2) - x18*x110 - 2.0*x111*x45
-    x114 = c0*(x112 + x113*x22)/x23
-    x115 = (R*x113 + x17*x114)*x21
-    x116 = 2.0*c17*cos_phi*x43 + x13*x114 - x19*x115
-    x117 = phi_dot*x30 - x9*x116
-    x118 = x51 + (sin_psi*x114 + cos_psi*x115)
-    x119 = x28 + (x117 + cos_psi*x114 - sin_psi*x115) + x118*x60
-    x120 = x119/x63
-    x121 = x59*(x118 + x58*x120)
-    x122 = x35*x12
-    x123 = psi_dot*x2 + phi_dot*x0 - x2*x122
-    x124 = c0*(psi_dot*x16 - phi_dot*x6 - x16*x122 - x123*x22)
-    x125 = x124/x23
-    x126 = (R*x123 - x17*x125)*x21
-    x127 = x13*x125 + x19*x126 - x36*x37
-    x128 = c9*x41 + 2.0*x9*x127
-    x129 = sin_psi*x125 - cos_psi*x126
-    x130 = 2.0*(cos_psi*x125 + sin_psi*x126) - x128 + 2.0*x129*x60
-    x131 = x130/x63
-    x132 = x59*(2.0*x129 + x58*x131)
-    x133 = c7*psi_dot
-    x134 = x16*x133 + sin_psi*x43
-    x135 = c20*cos_phi*(x2*x133 - cos_psi*x43 + x134*x22)/x23
-    x136 = (c19*cos_phi*x134 + x17*x135)*x21
-    x137 = c19*x38 + x19*x136 - x13*x135
-    x138 = x9*x137
-    x139 = sin_psi*x135 + cos_psi*x136
-    x140 = (x138 + cos_psi*x135 - sin_psi*x136 + x139*x60)/x63
-    x141 = x59*(x139 + x58*x140)
-    x142 = c1*(x15*x82 + x83*x18 - c8*x76 + x68*x88 + x69*x89)
-    x143 = c8*x91 + x15*x99 + x100*x18 + x68*x104 - x69*x105
-    x144 = x68*x120 + x69*x121 - (x15*x114 + x115*x18 - c21*x110)
-    x145 = c1*(x68*x131 + x69*x132 - 2.0*(x15*x125 - x126*x18))
-    x146 = x68*x140 + x69*x141 - (c22*x41 + x15*x135 + x136*x18)
+    x23 = 1.0 - x15*x2 - x13*x0 - x17*x22
+    x24 = m*x23
+    x25 = x14*(cos_psi - sin_psi*x22)/x24
+    x26 = m*x17
+    x27 = x20*(sin_psi*x14 - x25*x26)
+    x28 = x13*x25 + x19*x27 - x11
+    x29 = cos_psi*y_dot - sin_psi*x_dot
+    x30 = psi_dot*x29
+    x31 = R*cos_phi
+    x32 = c1*sin_phi
+    x33 = psi_dot*x32
+    x34 = k*chi_dot
+    x35 = x33 + x34
+    x36 = x35 - psi_dot*x7
+    x37 = c0*x36
+    x38 = cos_phi*x10
+    x39 = phi_dot*x38
+    x40 = x6*x1 + x6*x4 - 2.0*x16*x3
+    x41 = x33 + 2.0*x34
+    x42 = psi_dot*x31
+    x43 = x41*x42 + g*sin_phi
+    x44 = phi_dot*x11
+    x45 = x16*x44
+    x46 = x2*x44
+    x47 = R*x5 - x43*x18 - 2.0*x37*x46
+    x48 = (R*x40 - x15*x43 + 2.0*x37*x45 + x47*x22)/x23
+    x49 = (x47 + x17*x48)*x21
+    x50 = 2.0*x37*x39 + x13*x48 - x19*x49
+    x51 = x3*x31 - sin_phi*x50
+    x52 = cos_psi*x_dot + sin_psi*y_dot
+    x53 = psi_dot*x52
+    x54 = x53 + (sin_psi*x48 + cos_psi*x49)
+    x55 = (sin_psi + cos_psi*x22)/x24
+    x56 = x20*(cos_psi + x55*x26)
+    x57 = x13*x55 - x19*x56
+    x58 = sin_phi*x57
+    x59 = x58 + sin_psi*x56 - cos_psi*x55
+    x60 = 1.0/(sin_psi*x55 + cos_psi*x56)
+    x61 = x59*x60
+    x62 = x30 + (x51 + cos_psi*x48 - sin_psi*x49) + x54*x61
+    x63 = 0.5*c4 - sin_phi*x28
+    x64 = x63 + cos_psi*x25 + sin_psi*x27 - x59*x61
+    x65 = x62/x64
+    x66 = x60*(x54 + x59*x65)
+    x67 = x28*x65 + x57*x66 - x50
+    x68 = m*x67
+    x69 = x15*x25 - x27*x18
+    x70 = x15*x55 + x56*x18
+    x71 = x65*x69 + x66*x70 - (x15*x48 + x49*x18 - c3*x43)
+    x72 = m*x71
+    x73 = c0*x5 + x6*x68 + sin_psi*x65 - x16*x72 - cos_psi*x66
+    x74 = x25*x65 + x55*x66 - x48
+    x75 = x49 + x27*x65 - x56*x66
+    x76 = cos_psi*x74 + sin_psi*x75
+    x77 = cos_phi*x76
+    x78 = c6*x77
+    x79 = sin_psi*x74 - cos_psi*x75
+    x80 = c5*(x11*x79)
+    x81 = x0*x68 + x2*x72 + cos_psi*x65 + sin_psi*x66 - c0*x40
+    x82 = x81 - x16*x78 - x6*x80
+    x83 = (x73 - x2*x78 + x0*x80 + x82*x22)/x24
+    x84 = x20*(x82 + x83*x26)
+    x85 = x79*x12 + x13*x83 - x19*x84
+    x86 = sin_phi*x85
+    x87 = x76 - x30 - (sin_psi*x83 + cos_psi*x84)
+    x88 = x53 - x79 + (x86 + sin_psi*x84 - cos_psi*x83) + x87*x61
+    x89 = x88/x64
+    x90 = x60*(x87 + x59*x89)
+    x91 = c1*psi_dot*x9
+    x92 = x74*x6 + (R*psi_dot*(sin_phi*x41 - x91) - g*cos_phi) - x75*x0
+    x93 = R*(x2*x1 + 2.0*x0*x3 + x2*x4) + x71*x6 - x67*x16 + x15*x92
+    x94 = cos_phi*x67
+    x95 = R*phi_dot*(sin_phi*x35 - x91) + k*cos_phi*(x51 + x58*x66 - x63*x65) - x94*x32
+    x96 = R*sin_phi*x3 - x94
+    x97 = x74*x16 + x75*x2 + 2.0*x95 - 2.0*x96*x7
+    x98 = R*(x16*x1 + x16*x4 - 2.0*x6*x3) + x67*x2 + x71*x0
+    x99 = x98 + x92*x18 + x19*x97
+    x100 = (x93 - x13*x97 + x99*x22)/x23
+    x101 = (x99 + x17*x100)*x21
+    x102 = m*x10*x97 + x19*x101 - x13*x100
+    x103 = x96 - sin_phi*x102
+    x104 = sin_psi*x100 + cos_psi*x101
+    x105 = (x103 + sin_psi*x101 - cos_psi*x100 - x104*x61)/x64
+    x106 = x60*(x104 - x59*x105)
+    x107 = psi_dot*(sin_psi - cos_psi*x61)/x64
+    x108 = x60*(cos_psi*psi_dot - x59*x107)
+    x109 = psi_dot*(cos_psi + sin_psi*x61)/x64
+    x110 = x60*(sin_psi*psi_dot + x59*x109)
+    x111 = cos_phi*(x33 + x41)
+    x112 = c9*sin_phi
+    x113 = 2.0*(psi_dot*x6 - phi_dot*x16) - x15*x111 + 2.0*x112*x45
+    x114 = 2.0*(psi_dot*x0 + phi_dot*x2) - x18*x111 - 2.0*x112*x46
+    x115 = R*(x113 + x114*x22)/x23
+    x116 = (R*x114 + x17*x115)*x21
+    x117 = 2.0*c8*cos_phi*x44 + x13*x115 - x19*x116
+    x118 = phi_dot*x31 - sin_phi*x117
+    x119 = x52 + (sin_psi*x115 + cos_psi*x116)
+    x120 = x29 + (x118 + cos_psi*x115 - sin_psi*x116) + x119*x61
+    x121 = x120/x64
+    x122 = x60*(x119 + x59*x121)
+    x123 = x36*x12
+    x124 = psi_dot*x2 + phi_dot*x0 - x2*x123
+    x125 = R*(psi_dot*x16 - phi_dot*x6 - x16*x123 - x124*x22)
+    x126 = x125/x23
+    x127 = (R*x124 - x17*x126)*x21
+    x128 = x13*x126 + x19*x127 - x37*x38
+    x129 = x42 + 2.0*sin_phi*x128
+    x130 = sin_psi*x126 - cos_psi*x127
+    x131 = 2.0*(cos_psi*x126 + sin_psi*x127) - x129 + 2.0*x130*x61
+    x132 = x131/x64
+    x133 = x60*(2.0*x130 + x59*x132)
+    x134 = c2*psi_dot
+    x135 = x16*x134 + sin_psi*x44
+    x136 = c10*cos_phi
+    x137 = (x2*x134 - cos_psi*x44 + x135*x22)*x136/x23
+    x138 = (x135*x136 + x17*x137)*x21
+    x139 = c10*x39 + x19*x138 - x13*x137
+    x140 = sin_phi*x139
+    x141 = sin_psi*x137 + cos_psi*x138
+    x142 = (x140 + cos_psi*x137 - sin_psi*x138 + x141*x61)/x64
+    x143 = x60*(x141 + x59*x142)
+    x144 = c11*(x15*x83 + x84*x18 - c3*x77 + x69*x89 + x70*x90)
+    x145 = c3*x92 + x15*x100 + x101*x18 + x69*x105 - x70*x106
+    x146 = x69*x121 + x70*x122 - (x15*x115 + x116*x18 - c12*x111)
+    x147 = c11*(x69*x132 + x70*x133 - 2.0*(x15*x126 - x127*x18))
+    x148 = x69*x142 + x70*x143 - (c13*cos_phi*psi_dot + x15*x137 + x138*x18)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
@@ -723,757 +462,63 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (
             0.0,
             0.0,
-            x82 + x24*x88 + x54*x89,
-            x99 + x24*x104 - x54*x105,
+            x83 + x25*x89 + x55*x90,
+            x100 + x25*x105 - x55*x106,
             0.0,
-            x24*x106 - x54*x107,
-            -(x24*x108 + x54*x109),
-            -(x24*x120 + x54*x121 - x114),
-            x24*x131 + x54*x132 - 2.0*x125,
-            2.0*(x24*x140 + x54*x141 - x135),
+            x25*x107 - x55*x108,
+            -(x25*x109 + x55*x110),
+            -(x25*x121 + x55*x122 - x115),
+            x25*x132 + x55*x133 - 2.0*x126,
+            2.0*(x25*x142 + x55*x143 - x137),
         ),
         (
             0.0,
             0.0,
-            -(x83 + x55*x89 - x26*x88),
-            x26*x104 + x55*x105 - x100,
+            -(x84 + x56*x90 - x27*x89),
+            x27*x105 + x56*x106 - x101,
             0.0,
-            x26*x106 + x55*x107,
-            -(x26*x108 - x55*x109),
-            -(x115 + x26*x120 - x55*x121),
-            -(2.0*x126 + x55*x132 - x26*x131),
-            2.0*(x136 + x26*x140 - x55*x141),
+            x27*x107 + x56*x108,
+            -(x27*x109 - x56*x110),
+            -(x116 + x27*x121 - x56*x122),
+            -(2.0*x127 + x56*x133 - x27*x132),
+            2.0*(x138 + x27*x142 - x56*x143),
         ),
         (
             0.0,
             0.0,
-            -c1*(x84 + x27*x88 + x56*x89),
-            c1*(x101 + x56*x105 - x27*x104),
+            -c11*(x85 + x28*x89 + x57*x90),
+            c11*(x102 + x57*x106 - x28*x105),
             0.0,
-            -c1*(x27*x106 - x56*x107),
-            c1*(x27*x108 + x56*x109),
-            c1*(x27*x120 + x56*x121 - x116),
-            -c1*(x27*x131 + x56*x132 - 2.0*x127),
-            -2.0*c1*(x137 + x27*x140 + x56*x141),
+            -c11*(x28*x107 - x57*x108),
+            c11*(x28*x109 + x57*x110),
+            c11*(x28*x121 + x57*x122 - x117),
+            -c11*(x28*x132 + x57*x133 - 2.0*x128),
+            -2.0*c11*(x139 + x28*x142 + x57*x143),
         ),
         (
             0.0,
             0.0,
-            -x142,
-            -c1*x143,
+            -x144,
+            -c11*x145,
             0.0,
-            -c1*(x68*x106 - x69*x107),
-            c1*(x68*x108 + x69*x109),
-            c1*x144,
-            -x145,
-            -2.0*c1*x146,
+            -c11*(x69*x107 - x70*x108),
+            c11*(x69*x109 + x70*x110),
+            c11*x146,
+            -x147,
+            -2.0*c11*x148,
         ),
         (
             0.0,
             0.0,
-            c1*(x85 + x57*x89 - x62*x88),
-            -c1*(x62*x104 + x57*x105 - x102),
+            c11*(x86 + x58*x90 - x63*x89),
+            -c11*(x63*x105 + x58*x106 - x103),
             0.0,
-            -c1*(x62*x106 + x57*x107),
-            c1*(x62*x108 - x57*x109),
-            -c1*(x117 + x57*x121 - x62*x120),
-            -c1*(x128 + x62*x131 - x57*x132),
-            2.0*c1*(x138 + x57*x141 - x62*x140),
+            -c11*(x63*x107 + x58*x108),
+            c11*(x63*x109 - x58*x110),
+            -c11*(x118 + x58*x122 - x63*x121),
+            -c11*(x129 + x63*x132 - x58*x133),
+            2.0*c11*(x140 + x58*x143 - x63*x142),
         ),
-    )
-
-
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (10, 10, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, g = params
-    # terms of the parameters alone
-    c0 = m*R
-    c1 = 1.0/R
-    c2 = m*k
-    c3 = 1.0/c2
-    c4 = c2*c3
-    c5 = m*c4
-    c6 = 1.0 + k
-    c7 = 1.0/(m*c6)
-    c8 = m*c7
-    c9 = c4*R
-    c10 = k*c4
-    c11 = m*m
-    c12 = c7*c11
-    c13 = k*R
-    c14 = c6*R
-    c15 = R*c10
-    c16 = c6 - c10
-    c17 = c0*c16
-    c18 = m*c16
-    c19 = c2*R
-    c20 = c2*c0
-    c21 = c7*c0
-    c22 = c7*c19
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_phi = sin(phi)
-    x0 = cos_psi*sin_phi
-    x1 = psi_dot*psi_dot
-    cos_phi = cos(phi)
-    sin_psi = sin(psi)
-    x2 = cos_phi*sin_psi
-    x3 = psi_dot*phi_dot
-    x4 = phi_dot*phi_dot
-    x5 = x0*x1 + 2.0*x2*x3 + x0*x4
-    x6 = sin_psi*sin_phi
-    x7 = k*sin_phi
-    x8 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x7
-    x9 = c4*sin_phi
-    x10 = 1.0/(m*(x8 - 2.0*x9*x7))
-    x11 = sin_phi*x10
-    x12 = m*x11
-    x13 = cos_psi*x12
-    x14 = 1.0 - c5*sin_phi*x11
-    x15 = c8*x2
-    x16 = cos_phi*cos_psi
-    x17 = x15*x16 - x13*x6
-    x18 = c8*x16
-    x19 = sin_psi*x12
-    x20 = 1.0/(m*(1.0 - x16*x18 - x19*x6))
-    x21 = m*x20
-    x22 = x17*x21
-    x23 = m*(1.0 - x15*x2 - x13*x0 - x17*x22)
-    x24 = x14*(cos_psi - sin_psi*x22)/x23
-    x25 = m*x17
-    x26 = x20*(sin_psi*x14 - x24*x25)
-    x27 = x13*x24 + x19*x26 - c4*x11
-    x28 = cos_psi*y_dot - sin_psi*x_dot
-    x29 = psi_dot*x28
-    x30 = c9*cos_phi
-    x31 = sin_phi*psi_dot
-    x32 = c6*x31
-    x33 = k*chi_dot
-    x34 = x32 + x33
-    x35 = x34 - c10*x31
-    x36 = c0*x35
-    x37 = cos_phi*x10
-    x38 = phi_dot*x37
-    x39 = x6*x1 + x6*x4 - 2.0*x16*x3
-    x40 = x32 + 2.0*x33
-    x41 = cos_phi*psi_dot
-    x42 = R*x40*x41 + g*sin_phi
-    x43 = phi_dot*x11
-    x44 = x16*x43
-    x45 = x2*x43
-    x46 = R*x5 - x42*x18 - 2.0*x36*x45
-    x47 = m*(R*x39 - x15*x42 + 2.0*x36*x44 + x46*x22)/x23
-    x48 = (x46 + x17*x47)*x21
-    x49 = 2.0*x36*x38 + x13*x47 - x19*x48
-    x50 = x3*x30 - x9*x49
-    x51 = cos_psi*x_dot + sin_psi*y_dot
-    x52 = psi_dot*x51
-    x53 = x52 + (sin_psi*x47 + cos_psi*x48)
-    x54 = (sin_psi + cos_psi*x22)/x23
-    x55 = x20*(cos_psi + x54*x25)
-    x56 = x13*x54 - x19*x55
-    x57 = x9*x56
-    x58 = x57 + sin_psi*x55 - cos_psi*x54
-    x59 = 1.0/(sin_psi*x54 + cos_psi*x55)
-    x60 = x58*x59
-    x61 = x29 + (x50 + cos_psi*x47 - sin_psi*x48) + x53*x60
-    x62 = 0.5*c3 - x9*x27
-    x63 = x62 + cos_psi*x24 + sin_psi*x26 - x58*x60
-    x64 = x61/x63
-    x65 = x59*(x53 + x58*x64)
-    x66 = c1*(x27*x64 + x56*x65 - x49)
-    x67 = c0*x66
-    x68 = x15*x24 - x26*x18
-    x69 = x15*x54 + x55*x18
-    x70 = c1*(x64*x68 + x65*x69 - (x15*x47 + x48*x18 - c8*x42))
-    x71 = c0*x70
-    x72 = c0*x5 + x6*x67 + sin_psi*x64 - x16*x71 - cos_psi*x65
-    x73 = x24*x64 + x54*x65 - x47
-    x74 = x48 + x26*x64 - x55*x65
-    x75 = cos_psi*x73 + sin_psi*x74
-    x76 = cos_phi*x75
-    x77 = c12*x76
-    x78 = sin_psi*x73 - cos_psi*x74
-    x79 = x11*(c11*x78)
-    x80 = x0*x67 + x2*x71 + cos_psi*x64 + sin_psi*x65 - c0*x39
-    x81 = x80 - x16*x77 - x6*x79
-    x82 = (x72 - x2*x77 + x0*x79 + x81*x22)/x23
-    x83 = x20*(x81 + x82*x25)
-    x84 = x78*x12 + x13*x82 - x19*x83
-    x85 = x9*x84
-    x86 = x75 - x29 - (sin_psi*x82 + cos_psi*x83)
-    x87 = x52 - x78 + (x85 + sin_psi*x83 - cos_psi*x82) + x86*x60
-    x88 = x87/x63
-    x89 = x59*(x86 + x58*x88)
-    x90 = c6*cos_phi*x41
-    x91 = x73*x6 + (R*psi_dot*(sin_phi*x40 - x90) - g*cos_phi) - x74*x0
-    x92 = R*(x2*x1 + 2.0*x0*x3 + x2*x4 + x70*x6 - x66*x16) + x15*x91
-    x93 = cos_phi*x66
-    x94 = (
-        R*phi_dot*(sin_phi*x34 - x90) + c13*cos_phi*(c1*(x50 + x57*x65 - x62*x64))
-        - c14*sin_phi*x93
-    )
-    x95 = sin_phi*x3 - x93
-    x96 = x73*x16 + x74*x2 + 2.0*x94 - 2.0*c15*sin_phi*x95
-    x97 = R*(x16*x1 + x16*x4 - 2.0*x6*x3 + x66*x2 + x70*x0)
-    x98 = x97 + x91*x18 + x19*x96
-    x99 = m*(x92 - x13*x96 + x98*x22)/x23
-    x100 = (x98 + x17*x99)*x21
-    x101 = m*x10*x96 + x19*x100 - x13*x99
-    x102 = c9*x95 - x9*x101
-    x103 = sin_psi*x99 + cos_psi*x100
-    x104 = (x102 + sin_psi*x100 - cos_psi*x99 - x103*x60)/x63
-    x105 = x59*(x103 - x58*x104)
-    x106 = psi_dot*(sin_psi - cos_psi*x60)/x63
-    x107 = x59*(cos_psi*psi_dot - x58*x106)
-    x108 = psi_dot*(cos_psi + sin_psi*x60)/x63
-    x109 = x59*(sin_psi*psi_dot + x58*x108)
-    x110 = cos_phi*(x32 + x40)
-    x111 = c18*sin_phi
-    x112 = 2.0*(psi_dot*x6 - phi_dot*x16) - x15*x110 + 2.0*x111*x44
-    x113 = 2.0*(psi_dot*x0 + phi_dot*x2) - x18*x110 - 2.0*x111*x45
-    x114 = c0*(x112 + x113*x22)/x23
-    x115 = (R*x113 + x17*x114)*x21
-    x116 = 2.0*c17*cos_phi*x43 + x13*x114 - x19*x115
-    x117 = phi_dot*x30 - x9*x116
-    x118 = x51 + (sin_psi*x114 + cos_psi*x115)
-    x119 = x28 + (x117 + cos_psi*x114 - sin_psi*x115) + x118*x60
-    x120 = x119/x63
-    x121 = x59*(x118 + x58*x120)
-    x122 = x35*x12
-    x123 = psi_dot*x2 + phi_dot*x0 - x2*x122
-    x124 = c0*(psi_dot*x16 - phi_dot*x6 - x16*x122 - x123*x22)
-    x125 = x124/x23
-    x126 = (R*x123 - x17*x125)*x21
-    x127 = x13*x125 + x19*x126 - x36*x37
-    x128 = c9*x41 + 2.0*x9*x127
-    x129 = sin_psi*x125 - cos_psi*x126
-    x130 = 2.0*(cos_psi*x125 + sin_psi*x126) - x128 + 2.0*x129*x60
-    x131 = x130/x63
-    x132 = x59*(2.0*x129 + x58*x131)
-    x133 = c7*psi_dot
-    x134 = x16*x133 + sin_psi*x43
-    x135 = c20*cos_phi*(x2*x133 - cos_psi*x43 + x134*x22)/x23
-    x136 = (c19*cos_phi*x134 + x17*x135)*x21
-    x137 = c19*x38 + x19*x136 - x13*x135
-    x138 = x9*x137
-    x139 = sin_psi*x135 + cos_psi*x136
-    x140 = (x138 + cos_psi*x135 - sin_psi*x136 + x139*x60)/x63
-    x141 = x59*(x139 + x58*x140)
-    x142 = c1*(x15*x82 + x83*x18 - c8*x76 + x68*x88 + x69*x89)
-    x143 = c8*x91 + x15*x99 + x100*x18 + x68*x104 - x69*x105
-    x144 = x68*x120 + x69*x121 - (x15*x114 + x115*x18 - c21*x110)
-    x145 = c1*(x68*x131 + x69*x132 - 2.0*(x15*x125 - x126*x18))
-    x146 = x68*x140 + x69*x141 - (c22*x41 + x15*x135 + x136*x18)
-    # outputs
-    return _stacked(
-        (10, 10),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        x82 + x24*x88 + x54*x89,
-        x99 + x24*x104 - x54*x105,
-        0.0,
-        x24*x106 - x54*x107,
-        -(x24*x108 + x54*x109),
-        -(x24*x120 + x54*x121 - x114),
-        x24*x131 + x54*x132 - 2.0*x125,
-        2.0*(x24*x140 + x54*x141 - x135),
-        0.0,
-        0.0,
-        -(x83 + x55*x89 - x26*x88),
-        x26*x104 + x55*x105 - x100,
-        0.0,
-        x26*x106 + x55*x107,
-        -(x26*x108 - x55*x109),
-        -(x115 + x26*x120 - x55*x121),
-        -(2.0*x126 + x55*x132 - x26*x131),
-        2.0*(x136 + x26*x140 - x55*x141),
-        0.0,
-        0.0,
-        -c1*(x84 + x27*x88 + x56*x89),
-        c1*(x101 + x56*x105 - x27*x104),
-        0.0,
-        -c1*(x27*x106 - x56*x107),
-        c1*(x27*x108 + x56*x109),
-        c1*(x27*x120 + x56*x121 - x116),
-        -c1*(x27*x131 + x56*x132 - 2.0*x127),
-        -2.0*c1*(x137 + x27*x140 + x56*x141),
-        0.0,
-        0.0,
-        -x142,
-        -c1*x143,
-        0.0,
-        -c1*(x68*x106 - x69*x107),
-        c1*(x68*x108 + x69*x109),
-        c1*x144,
-        -x145,
-        -2.0*c1*x146,
-        0.0,
-        0.0,
-        c1*(x85 + x57*x89 - x62*x88),
-        -c1*(x62*x104 + x57*x105 - x102),
-        0.0,
-        -c1*(x62*x106 + x57*x107),
-        c1*(x62*x108 - x57*x109),
-        -c1*(x117 + x57*x121 - x62*x120),
-        -c1*(x128 + x62*x131 - x57*x132),
-        2.0*c1*(x138 + x57*x141 - x62*x140),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    538 operations, 20 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        x, y in m; psi, phi, chi in rad; x_dot, y_dot in m/s; psi_dot, phi_dot, chi_dot in
-        rad/s.
-    params : iterable of 4 floats
-        m in kg; R in m; k in 1; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = 1.0/(m*c4)
-    c6 = m*c5
-    c7 = k*c1*R
-    c8 = 1.0/R
-    c9 = c2*R
-    c10 = m*R
-    c11 = k*c2
-    c12 = R*c11
-    c13 = c11*c10
-    c14 = m*c10
-    c15 = c1*c10
-    c16 = m*c6
-    c17 = c5*c10
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    cos_phi = cos(phi)
-    x1 = cos_phi*cos_phi
-    x2 = k*sin_phi
-    x3 = x0 + k*x1 + 2.0*sin_phi*x2
-    x4 = c2*sin_phi
-    x5 = 1.0/(m*(x3 - 2.0*x4*x2))
-    x6 = sin_phi*x5
-    x7 = 1.0 - c3*sin_phi*x6
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    x8 = cos_phi*sin_psi
-    x9 = c6*x8
-    x10 = cos_phi*cos_psi
-    x11 = m*x6
-    x12 = cos_psi*x11
-    x13 = sin_psi*sin_phi
-    x14 = x9*x10 - x12*x13
-    x15 = c6*x10
-    x16 = sin_psi*x11
-    x17 = 1.0/(m*(1.0 - x10*x15 - x16*x13))
-    x18 = m*x17
-    x19 = x14*x18
-    x20 = cos_psi*sin_phi
-    x21 = m*(1.0 - x9*x8 - x12*x20 - x14*x19)
-    x22 = x7*(cos_psi - sin_psi*x19)/x21
-    x23 = cos_phi*psi_dot
-    x24 = phi_dot*x23
-    x25 = m*x14
-    x26 = x17*(sin_psi*x7 - x22*x25)
-    x27 = x12*x22 + x16*x26 - c2*x6
-    x28 = cos_phi*phi_dot
-    x29 = sin_phi*psi_dot
-    x30 = c4*x29
-    x31 = k*chi_dot
-    x32 = x30 + x31
-    x33 = c10*(x32 - c11*x29)
-    x34 = psi_dot*psi_dot
-    x35 = phi_dot*phi_dot
-    x36 = psi_dot*phi_dot
-    x37 = x13*x34 + x13*x35 - 2.0*x10*x36
-    x38 = R*x37
-    x39 = (x30 + 2.0*x31)*x23
-    x40 = R*x39 + g*sin_phi
-    x41 = x33*(phi_dot*x6)
-    x42 = x20*x34 + 2.0*x8*x36 + x20*x35
-    x43 = R*x42
-    x44 = x43 - x40*x15 - 2.0*x8*x41
-    x45 = m*(x38 - x9*x40 + 2.0*x10*x41 + x44*x19)/x21
-    x46 = (x44 + x14*x45)*x18
-    x47 = 2.0*x5*x28*x33 + x12*x45 - x16*x46
-    x48 = c9*x24 - x4*x47
-    x49 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + (x48 + cos_psi*x45 - sin_psi*x46)
-    x50 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x45 + cos_psi*x46)
-    x51 = sin_psi + cos_psi*x19
-    x52 = x51/x21
-    x53 = x17*(cos_psi + x52*x25)
-    x54 = x12*x52 - x16*x53
-    x55 = x4*x54
-    x56 = x55 + sin_psi*x53 - cos_psi*x52
-    x57 = 1.0/(sin_psi*x52 + cos_psi*x53)
-    x58 = x56*x57
-    x59 = 0.5*c1 - x4*x27
-    x60 = x59 + cos_psi*x22 + sin_psi*x26 - x56*x58
-    x61 = (x49 + x50*x58)/x60
-    x62 = x57*(x50 + x56*x61)
-    x63 = c8*(x27*x61 + x54*x62 - x47)
-    x64 = c8*(x48 + x55*x62 - x59*x61)
-    x65 = x24 + sin_phi*x63 - x64
-    x66 = x65*x6
-    x67 = R*x63
-    x68 = x9*x22 - x26*x15
-    x69 = x9*x52 + x53*x15
-    x70 = c8*(x61*x68 + x62*x69 - (x9*x45 + x46*x15 - c6*x40))
-    x71 = R*x70
-    x72 = x43 + x13*x67 - (x46 + x26*x61 - x53*x62) - x10*x71
-    x73 = c13*x66
-    x74 = x72 + 2.0*x13*x73
-    x75 = x38 + (x22*x61 + x52*x62 - x45) - x20*x67 - x8*x71
-    x76 = (x75 - 2.0*x20*x73 + x74*x19)/x21
-    x77 = x17*(x74 + x76*x25)
-    x78 = 2.0*c12*x66 + x16*x77 - x12*x76
-    x79 = c7*x65 + x4*x78
-    x80 = sin_psi*x76 + cos_psi*x77
-    x81 = (x79 + cos_psi*x76 - sin_psi*x77 + x80*x58)/x60
-    x82 = x57*(x80 + x56*x81)
-    x83 = x39 - c4*x70
-    x84 = x3*x63 + 2.0*(x32*x28 - x64*x2) - 2.0*c11*sin_phi*x65
-    x85 = x42 + x63*x13 - x70*x10 - x83*x15 - x16*x84
-    x86 = x63*x20 + x70*x8 - x37 + x9*x83 - x12*x84 - x85*x19
-    x87 = m*x86/x21
-    x88 = (x85 - x14*x87)*x18
-    x89 = x12*x87 + x16*x88 - m*x5*x84
-    x90 = c2*x65 + x4*x89
-    x91 = sin_psi*x87 - cos_psi*x88
-    x92 = x64 - (cos_psi*x87 + sin_psi*x88 - x90) - x91*x58
-    x93 = x92/x60
-    x94 = x57*(x91 - x56*x93)
-    x95 = (2.0*chi_dot + x29)*x23 - x70
-    x96 = c5*x95
-    x97 = x63*(2.0*x0 + x1) + 2.0*((chi_dot + x29)*x28 - sin_phi*x64)
-    x98 = x97 - 2.0*x4*x65
-    x99 = x98*x6
-    x100 = x10*x96 + sin_psi*x99
-    x101 = c14*(x8*x96 - cos_psi*x99 + x100*x19)/x21
-    x102 = (c10*x100 + x14*x101)*x18
-    x103 = c10*x5*x98 + x16*x102 - x12*x101
-    x104 = c15*x65 - x4*x103
-    x105 = sin_psi*x101 + cos_psi*x102
-    x106 = (x104 + sin_psi*x102 - cos_psi*x101 - x105*x58)/x60
-    x107 = x57*(x105 - x56*x106)
-    x108 = c16*cos_phi*sin_phi*x51/x21
-    x109 = (sin_phi*x15 + x14*x108)*x18
-    x110 = x12*x108 - x16*x109
-    x111 = x4*x110
-    x112 = sin_psi*x108 + cos_psi*x109
-    x113 = (x111 + sin_psi*x109 - cos_psi*x108 - x112*x58)/x60
-    x114 = x57*(x112 - x56*x113)
-    x115 = c8*(c6*x83 + x9*x87 - x88*x15 + x68*x93 - x69*x94)
-    x116 = c17*x95 + x9*x101 + x102*x15 + x68*x106 - x69*x107
-    x117 = c6*sin_phi + x9*x108 + x109*x15 + x68*x113 - x69*x114
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0),
-        (
-            -(x22*x81 + x52*x82 - x76),
-            -(x87 + x22*x93 - x52*x94),
-            -(x101 + x22*x106 - x52*x107),
-            -(x108 + x22*x113 - x52*x114),
-        ),
-        (
-            -(x77 + x26*x81 - x53*x82),
-            -(x88 + x26*x93 + x53*x94),
-            -(x26*x106 + x53*x107 - x102),
-            -(x26*x113 + x53*x114 - x109),
-        ),
-        (
-            c8*(x78 + x27*x81 + x54*x82),
-            c8*(x89 + x27*x93 - x54*x94),
-            -c8*(x103 + x54*x107 - x27*x106),
-            c8*(x110 + x27*x113 - x54*x114),
-        ),
-        (
-            c8*(x68*x81 + x69*x82 - (x9*x76 + x77*x15)),
-            x115,
-            c8*x116,
-            c8*x117,
-        ),
-        (
-            -c8*(x79 + x55*x82 - x59*x81),
-            c8*(x59*x93 + x55*x94 - x90),
-            c8*(x59*x106 + x55*x107 - x104),
-            c8*(x59*x113 + x55*x114 - x111),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (10, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, g = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = 1.0/(m*c4)
-    c6 = m*c5
-    c7 = k*c1*R
-    c8 = 1.0/R
-    c9 = c2*R
-    c10 = m*R
-    c11 = k*c2
-    c12 = R*c11
-    c13 = c11*c10
-    c14 = m*c10
-    c15 = c1*c10
-    c16 = m*c6
-    c17 = c5*c10
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    cos_phi = cos(phi)
-    x1 = cos_phi*cos_phi
-    x2 = k*sin_phi
-    x3 = x0 + k*x1 + 2.0*sin_phi*x2
-    x4 = c2*sin_phi
-    x5 = 1.0/(m*(x3 - 2.0*x4*x2))
-    x6 = sin_phi*x5
-    x7 = 1.0 - c3*sin_phi*x6
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    x8 = cos_phi*sin_psi
-    x9 = c6*x8
-    x10 = cos_phi*cos_psi
-    x11 = m*x6
-    x12 = cos_psi*x11
-    x13 = sin_psi*sin_phi
-    x14 = x9*x10 - x12*x13
-    x15 = c6*x10
-    x16 = sin_psi*x11
-    x17 = 1.0/(m*(1.0 - x10*x15 - x16*x13))
-    x18 = m*x17
-    x19 = x14*x18
-    x20 = cos_psi*sin_phi
-    x21 = m*(1.0 - x9*x8 - x12*x20 - x14*x19)
-    x22 = x7*(cos_psi - sin_psi*x19)/x21
-    x23 = cos_phi*psi_dot
-    x24 = phi_dot*x23
-    x25 = m*x14
-    x26 = x17*(sin_psi*x7 - x22*x25)
-    x27 = x12*x22 + x16*x26 - c2*x6
-    x28 = cos_phi*phi_dot
-    x29 = sin_phi*psi_dot
-    x30 = c4*x29
-    x31 = k*chi_dot
-    x32 = x30 + x31
-    x33 = c10*(x32 - c11*x29)
-    x34 = psi_dot*psi_dot
-    x35 = phi_dot*phi_dot
-    x36 = psi_dot*phi_dot
-    x37 = x13*x34 + x13*x35 - 2.0*x10*x36
-    x38 = R*x37
-    x39 = (x30 + 2.0*x31)*x23
-    x40 = R*x39 + g*sin_phi
-    x41 = x33*(phi_dot*x6)
-    x42 = x20*x34 + 2.0*x8*x36 + x20*x35
-    x43 = R*x42
-    x44 = x43 - x40*x15 - 2.0*x8*x41
-    x45 = m*(x38 - x9*x40 + 2.0*x10*x41 + x44*x19)/x21
-    x46 = (x44 + x14*x45)*x18
-    x47 = 2.0*x5*x28*x33 + x12*x45 - x16*x46
-    x48 = c9*x24 - x4*x47
-    x49 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + (x48 + cos_psi*x45 - sin_psi*x46)
-    x50 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x45 + cos_psi*x46)
-    x51 = sin_psi + cos_psi*x19
-    x52 = x51/x21
-    x53 = x17*(cos_psi + x52*x25)
-    x54 = x12*x52 - x16*x53
-    x55 = x4*x54
-    x56 = x55 + sin_psi*x53 - cos_psi*x52
-    x57 = 1.0/(sin_psi*x52 + cos_psi*x53)
-    x58 = x56*x57
-    x59 = 0.5*c1 - x4*x27
-    x60 = x59 + cos_psi*x22 + sin_psi*x26 - x56*x58
-    x61 = (x49 + x50*x58)/x60
-    x62 = x57*(x50 + x56*x61)
-    x63 = c8*(x27*x61 + x54*x62 - x47)
-    x64 = c8*(x48 + x55*x62 - x59*x61)
-    x65 = x24 + sin_phi*x63 - x64
-    x66 = x65*x6
-    x67 = R*x63
-    x68 = x9*x22 - x26*x15
-    x69 = x9*x52 + x53*x15
-    x70 = c8*(x61*x68 + x62*x69 - (x9*x45 + x46*x15 - c6*x40))
-    x71 = R*x70
-    x72 = x43 + x13*x67 - (x46 + x26*x61 - x53*x62) - x10*x71
-    x73 = c13*x66
-    x74 = x72 + 2.0*x13*x73
-    x75 = x38 + (x22*x61 + x52*x62 - x45) - x20*x67 - x8*x71
-    x76 = (x75 - 2.0*x20*x73 + x74*x19)/x21
-    x77 = x17*(x74 + x76*x25)
-    x78 = 2.0*c12*x66 + x16*x77 - x12*x76
-    x79 = c7*x65 + x4*x78
-    x80 = sin_psi*x76 + cos_psi*x77
-    x81 = (x79 + cos_psi*x76 - sin_psi*x77 + x80*x58)/x60
-    x82 = x57*(x80 + x56*x81)
-    x83 = x39 - c4*x70
-    x84 = x3*x63 + 2.0*(x32*x28 - x64*x2) - 2.0*c11*sin_phi*x65
-    x85 = x42 + x63*x13 - x70*x10 - x83*x15 - x16*x84
-    x86 = x63*x20 + x70*x8 - x37 + x9*x83 - x12*x84 - x85*x19
-    x87 = m*x86/x21
-    x88 = (x85 - x14*x87)*x18
-    x89 = x12*x87 + x16*x88 - m*x5*x84
-    x90 = c2*x65 + x4*x89
-    x91 = sin_psi*x87 - cos_psi*x88
-    x92 = x64 - (cos_psi*x87 + sin_psi*x88 - x90) - x91*x58
-    x93 = x92/x60
-    x94 = x57*(x91 - x56*x93)
-    x95 = (2.0*chi_dot + x29)*x23 - x70
-    x96 = c5*x95
-    x97 = x63*(2.0*x0 + x1) + 2.0*((chi_dot + x29)*x28 - sin_phi*x64)
-    x98 = x97 - 2.0*x4*x65
-    x99 = x98*x6
-    x100 = x10*x96 + sin_psi*x99
-    x101 = c14*(x8*x96 - cos_psi*x99 + x100*x19)/x21
-    x102 = (c10*x100 + x14*x101)*x18
-    x103 = c10*x5*x98 + x16*x102 - x12*x101
-    x104 = c15*x65 - x4*x103
-    x105 = sin_psi*x101 + cos_psi*x102
-    x106 = (x104 + sin_psi*x102 - cos_psi*x101 - x105*x58)/x60
-    x107 = x57*(x105 - x56*x106)
-    x108 = c16*cos_phi*sin_phi*x51/x21
-    x109 = (sin_phi*x15 + x14*x108)*x18
-    x110 = x12*x108 - x16*x109
-    x111 = x4*x110
-    x112 = sin_psi*x108 + cos_psi*x109
-    x113 = (x111 + sin_psi*x109 - cos_psi*x108 - x112*x58)/x60
-    x114 = x57*(x112 - x56*x113)
-    x115 = c8*(c6*x83 + x9*x87 - x88*x15 + x68*x93 - x69*x94)
-    x116 = c17*x95 + x9*x101 + x102*x15 + x68*x106 - x69*x107
-    x117 = c6*sin_phi + x9*x108 + x109*x15 + x68*x113 - x69*x114
-    # outputs
-    return _stacked(
-        (10, 4),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x22*x81 + x52*x82 - x76),
-        -(x87 + x22*x93 - x52*x94),
-        -(x101 + x22*x106 - x52*x107),
-        -(x108 + x22*x113 - x52*x114),
-        -(x77 + x26*x81 - x53*x82),
-        -(x88 + x26*x93 + x53*x94),
-        -(x26*x106 + x53*x107 - x102),
-        -(x26*x113 + x53*x114 - x109),
-        c8*(x78 + x27*x81 + x54*x82),
-        c8*(x89 + x27*x93 - x54*x94),
-        -c8*(x103 + x54*x107 - x27*x106),
-        c8*(x110 + x27*x113 - x54*x114),
-        c8*(x68*x81 + x69*x82 - (x9*x76 + x77*x15)),
-        x115,
-        c8*x116,
-        c8*x117,
-        -c8*(x79 + x55*x82 - x59*x81),
-        c8*(x59*x93 + x55*x94 - x90),
-        c8*(x59*x106 + x55*x107 - x104),
-        c8*(x59*x113 + x55*x114 - x111),
     )
 
 
@@ -1498,41 +543,9 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
         Energy in J.
     """
     # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = R*g
-    c1 = R*R
-    c2 = k*c1
-    c3 = (k + 1.0)*c1
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = c2*chi_dot
-    sin_psi = sin(psi)
-    x1 = R*x_dot
-    x2 = phi_dot*cos_phi
-    cos_psi = cos(psi)
-    sin_phi = sin(phi)
-    x3 = psi_dot*sin_phi
-    x4 = R*y_dot
-    x5 = sin_phi*sin_phi
-    x6 = c1*psi_dot*psi_dot*(x5 + k*cos_phi*cos_phi + 2.0*k*x5)
-    x7 = x_dot*x_dot + y_dot*y_dot + c3*phi_dot*phi_dot + x6
-    x8 = (
-        c0*cos_phi + chi_dot*x0 + sin_psi*x1*x2 + cos_psi*x3*x1 + sin_psi*x3*x4 + 2.0*x3*x0
-        + 0.5*x7 - cos_psi*x4*x2
-    )
-    # outputs
-    return m*x8
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, g = params
+    m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = R*g
     c1 = R*R
@@ -1592,121 +605,10 @@ def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def constraints_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, _, _, x_dot, y_dot, _, _, chi_dot = y
-    _, R, _, _ = params
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    # outputs
-    return _stacked(
-        (2,),
-        y[0],
-        x_dot*cos_psi + y_dot*sin_psi - R*chi_dot,
-        cos_psi*y_dot - x_dot*sin_psi,
-    )
-
-
-def constraints_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `constraints` with respect to the state.
-
-    11 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        x, y in m; psi, phi, chi in rad; x_dot, y_dot in m/s; psi_dot, phi_dot, chi_dot in
-        rad/s.
-    params : iterable of 4 floats
-        m in kg; R in m; k in 1; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of residual i with respect to y[j].
-    """
-    # inputs
-    _, _, psi, _, _, x_dot, y_dot, _, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    _, R, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    # outputs
-    return (
-        (
-            0.0,
-            0.0,
-            y_dot*cos_psi - x_dot*sin_psi,
-            0.0,
-            0.0,
-            cos_psi,
-            sin_psi,
-            0.0,
-            0.0,
-            -R,
-        ),
-        (
-            0.0,
-            0.0,
-            -(cos_psi*x_dot + y_dot*sin_psi),
-            0.0,
-            0.0,
-            -sin_psi,
-            cos_psi,
-            0.0,
-            0.0,
-            0.0,
-        ),
-    )
-
-
-def constraints_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`constraints_jacobian` over arrays: the result has shape (2, 10, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, _, _, x_dot, y_dot, _, _, _ = y
-    _, R, _, _ = params
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    # outputs
-    return _stacked(
-        (2, 10),
-        y[0],
-        0.0,
-        0.0,
-        y_dot*cos_psi - x_dot*sin_psi,
-        0.0,
-        0.0,
-        cos_psi,
-        sin_psi,
-        0.0,
-        0.0,
-        -R,
-        0.0,
-        0.0,
-        -(cos_psi*x_dot + y_dot*sin_psi),
-        0.0,
-        0.0,
-        -sin_psi,
-        cos_psi,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     """Multipliers ground_along, ground_across of the constraints: their reactions.
 
-    187 operations, 11 of them on parameters alone.
+    178 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -1724,18 +626,14 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
         One for each constraint.
     """
     # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = c2*R
-    c4 = m*R
-    c5 = k + 1.0
-    c6 = k*c2
-    c7 = m*(1.0/(m*c5))
-    c8 = m*c2
+    c0 = m*R
+    c1 = k + 1.0
+    c2 = m*(1.0/(m*c1))
+    c3 = 1.0/(m*k)
     # intermediate terms
     cos_psi = cos(psi)
     sin_psi = sin(psi)
@@ -1743,130 +641,58 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     x0 = cos_phi*phi_dot
     x1 = psi_dot*x0
     sin_phi = sin(phi)
-    x2 = c2*sin_phi
-    x3 = k*sin_phi
-    x4 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x3
-    x5 = 1.0/(m*(x4 - 2.0*x2*x3))
-    x6 = sin_phi*psi_dot
-    x7 = c5*x6
-    x8 = k*chi_dot
-    x9 = x0*(c4*(x7 + x8 - c6*x6))
-    x10 = sin_phi*x5
-    x11 = m*x10
-    x12 = cos_psi*x11
-    x13 = sin_phi*sin_psi
-    x14 = psi_dot*psi_dot
-    x15 = phi_dot*phi_dot
-    x16 = c7*cos_phi
-    x17 = sin_psi*x16
-    x18 = R*cos_phi*psi_dot*(x7 + 2.0*x8) + g*sin_phi
-    x19 = x10*x9
-    x20 = R*(x13*x14 + x13*x15 - 2.0*cos_psi*x1) - x17*x18 + 2.0*cos_psi*x19
-    x21 = sin_phi*cos_psi
-    x22 = cos_psi*x16
-    x23 = R*(x21*x14 + 2.0*sin_psi*x1 + x21*x15) - x18*x22 - 2.0*sin_psi*x19
-    x24 = cos_phi*cos_psi
-    x25 = sin_psi*x11
-    x26 = 1.0/(m*(1.0 - x24*x22 - x25*x13))
-    x27 = x17*x24 - x12*x13
-    x28 = m*x27
-    x29 = x26*x28
-    x30 = m*(1.0 - cos_phi*sin_psi*x17 - x12*x21 - x27*x29)
-    x31 = m*(x20 + x23*x29)/x30
-    x32 = m*x26*(x23 + x27*x31)
-    x33 = c3*x1 - x2*(2.0*x5*x9 + x12*x31 - x25*x32) + cos_psi*x31 - sin_psi*x32
-    x34 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x31 + cos_psi*x32)
-    x35 = (sin_psi + cos_psi*x29)/x30
-    x36 = x26*(cos_psi + x35*x28)
-    x37 = x2*(x12*x35 - x25*x36) + sin_psi*x36 - cos_psi*x35
+    x2 = k*sin_phi
+    x3 = sin_phi*x2
+    x4 = 2.0*x3 + sin_phi*sin_phi + k*cos_phi*cos_phi - 2.0*x3
+    x5 = 1.0/(m*x4)
+    x6 = c1*sin_phi*psi_dot
+    x7 = k*chi_dot
+    x8 = x0*(c0*(x6 + x7 - psi_dot*x2))
+    x9 = sin_phi*x5
+    x10 = m*x9
+    x11 = cos_psi*x10
+    x12 = sin_phi*sin_psi
+    x13 = psi_dot*psi_dot
+    x14 = phi_dot*phi_dot
+    x15 = c2*cos_phi
+    x16 = sin_psi*x15
+    x17 = R*cos_phi*psi_dot*(x6 + 2.0*x7) + g*sin_phi
+    x18 = x9*x8
+    x19 = R*(x12*x13 + x12*x14 - 2.0*cos_psi*x1) - x16*x17 + 2.0*cos_psi*x18
+    x20 = sin_phi*cos_psi
+    x21 = cos_psi*x15
+    x22 = R*(x20*x13 + 2.0*sin_psi*x1 + x20*x14) - x17*x21 - 2.0*sin_psi*x18
+    x23 = cos_phi*cos_psi
+    x24 = sin_psi*x10
+    x25 = 1.0/(m*(1.0 - x23*x21 - x24*x12))
+    x26 = x16*x23 - x11*x12
+    x27 = m*x26
+    x28 = x25*x27
+    x29 = 1.0 - cos_phi*sin_psi*x16 - x11*x20 - x26*x28
+    x30 = (x19 + x22*x28)/x29
+    x31 = m*x25*(x22 + x26*x30)
+    x32 = R*x1 - sin_phi*(2.0*x5*x8 + x11*x30 - x24*x31) + cos_psi*x30 - sin_psi*x31
+    x33 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x30 + cos_psi*x31)
+    x34 = m*x29
+    x35 = (sin_psi + cos_psi*x28)/x34
+    x36 = x25*(cos_psi + x35*x27)
+    x37 = sin_phi*(x11*x35 - x24*x36) + sin_psi*x36 - cos_psi*x35
     x38 = 1.0/(sin_psi*x35 + cos_psi*x36)
     x39 = x37*x38
-    x40 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + x33 + x34*x39
-    x41 = 1.0 - c8*sin_phi*x10
-    x42 = x41*(cos_psi - sin_psi*x29)/x30
-    x43 = x26*(sin_psi*x41 - x42*x28)
-    x44 = 0.5*c1 - x2*(x12*x42 + x25*x43 - c2*x10) + cos_psi*x42 + sin_psi*x43
+    x40 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + x32 + x33*x39
+    x41 = 1.0 - sin_phi*x10
+    x42 = x41*(cos_psi - sin_psi*x28)/x34
+    x43 = x25*(sin_psi*x41 - x42*x27)
+    x44 = 0.5*c3 - sin_phi*(x11*x42 + x24*x43 - x9) + cos_psi*x42 + sin_psi*x43
     x45 = x40/(x44 - x37*x39)
     # outputs
-    return (-x45, x38*(x34 + x37*x45))
-
-
-def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`multipliers` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, g = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = c2*R
-    c4 = m*R
-    c5 = k + 1.0
-    c6 = k*c2
-    c7 = m*(1.0/(m*c5))
-    c8 = m*c2
-    # intermediate terms
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    cos_phi = cos(phi)
-    x0 = cos_phi*phi_dot
-    x1 = psi_dot*x0
-    sin_phi = sin(phi)
-    x2 = c2*sin_phi
-    x3 = k*sin_phi
-    x4 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x3
-    x5 = 1.0/(m*(x4 - 2.0*x2*x3))
-    x6 = sin_phi*psi_dot
-    x7 = c5*x6
-    x8 = k*chi_dot
-    x9 = x0*(c4*(x7 + x8 - c6*x6))
-    x10 = sin_phi*x5
-    x11 = m*x10
-    x12 = cos_psi*x11
-    x13 = sin_phi*sin_psi
-    x14 = psi_dot*psi_dot
-    x15 = phi_dot*phi_dot
-    x16 = c7*cos_phi
-    x17 = sin_psi*x16
-    x18 = R*cos_phi*psi_dot*(x7 + 2.0*x8) + g*sin_phi
-    x19 = x10*x9
-    x20 = R*(x13*x14 + x13*x15 - 2.0*cos_psi*x1) - x17*x18 + 2.0*cos_psi*x19
-    x21 = sin_phi*cos_psi
-    x22 = cos_psi*x16
-    x23 = R*(x21*x14 + 2.0*sin_psi*x1 + x21*x15) - x18*x22 - 2.0*sin_psi*x19
-    x24 = cos_phi*cos_psi
-    x25 = sin_psi*x11
-    x26 = 1.0/(m*(1.0 - x24*x22 - x25*x13))
-    x27 = x17*x24 - x12*x13
-    x28 = m*x27
-    x29 = x26*x28
-    x30 = m*(1.0 - cos_phi*sin_psi*x17 - x12*x21 - x27*x29)
-    x31 = m*(x20 + x23*x29)/x30
-    x32 = m*x26*(x23 + x27*x31)
-    x33 = c3*x1 - x2*(2.0*x5*x9 + x12*x31 - x25*x32) + cos_psi*x31 - sin_psi*x32
-    x34 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x31 + cos_psi*x32)
-    x35 = (sin_psi + cos_psi*x29)/x30
-    x36 = x26*(cos_psi + x35*x28)
-    x37 = x2*(x12*x35 - x25*x36) + sin_psi*x36 - cos_psi*x35
-    x38 = 1.0/(sin_psi*x35 + cos_psi*x36)
-    x39 = x37*x38
-    x40 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + x33 + x34*x39
-    x41 = 1.0 - c8*sin_phi*x10
-    x42 = x41*(cos_psi - sin_psi*x29)/x30
-    x43 = x26*(sin_psi*x41 - x42*x28)
-    x44 = 0.5*c1 - x2*(x12*x42 + x25*x43 - c2*x10) + cos_psi*x42 + sin_psi*x43
-    x45 = x40/(x44 - x37*x39)
-    # outputs
-    return _stacked((2,), y[0], -x45, x38*(x34 + x37*x45))
+    return (-x45, x38*(x33 + x37*x45))
 
 
 def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     """Changes of y that remove small residuals of the constraints, by one step of Newton's method.
 
-    140 operations, 9 of them on parameters alone.
+    133 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -1884,55 +710,53 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
         Changes of coordinates and of velocities, the smallest by the mass matrix.
     """
     # inputs
-    _, _, psi, phi, _, x_dot, y_dot, _, _, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    _, _, psi, phi, _, x_dot, y_dot, _, _, chi_dot = y
     m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
+    c0 = m*(1.0/(m*(1.0 + k)))
+    c1 = 1.0/(m*k)
+    c2 = 1.0/R
     # intermediate terms
     sin_phi = sin(phi)
+    x0 = sin_phi*sin_phi
+    x1 = k*x0
     cos_phi = cos(phi)
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
+    x2 = 1.0/(m*(2.0*x1 + x0 + k*cos_phi*cos_phi - 2.0*x1))
+    x3 = sin_phi*x2
+    x4 = m*x3
+    x5 = 1.0 - sin_phi*x4
     cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
+    x6 = c0*cos_phi
+    x7 = cos_psi*x6
+    x8 = sin_psi*x4
     x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x7 - x8*x9))
+    x11 = sin_psi*x6
     x12 = cos_phi*x11
-    x13 = cos_psi*x7
+    x13 = cos_psi*x4
     x14 = cos_psi*x12 - x13*x9
     x15 = m*x14
     x16 = x10*x15
     x17 = 1.0 - sin_psi*x12 - cos_psi*sin_phi*x13 - x14*x16
     x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x19 = x5*(cos_psi - sin_psi*x16)/x18
     x20 = cos_psi*y_dot - sin_psi*x_dot
     x21 = (sin_psi + cos_psi*x16)/x18
     x22 = x10*(cos_psi + x21*x15)
     x23 = x13*x21 - x8*x22
-    x24 = x2*x23
+    x24 = sin_phi*x23
     x25 = x24 + sin_psi*x22 - cos_psi*x21
     x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
     x27 = x25*x26
     x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
+    x29 = x10*(sin_psi*x5 - x19*x15)
+    x30 = x13*x19 + x8*x29 - x3
+    x31 = 0.5*c1 - sin_phi*x30
     x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
     x33 = x26*(x20 - x25*x32)
-    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
+    x34 = c2*(x32*(x11*x19 - x29*x7) - x33*(x11*x21 + x22*x7))
     # outputs
     return (
         0.0,
@@ -1942,87 +766,16 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
         0.0,
         -(x19*x32 - x21*x33),
         -(x29*x32 + x22*x33),
-        c5*(x30*x32 - x23*x33),
+        c2*(x30*x32 - x23*x33),
         x34,
-        c5*(x31*x32 + x24*x33),
-    )
-
-
-def correction_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction` over arrays: the result has shape (10, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, phi, _, x_dot, y_dot, _, _, chi_dot = y
-    m, R, k, _ = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
-    # intermediate terms
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
-    x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - cos_psi*sin_phi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*y_dot - sin_psi*x_dot
-    x21 = (sin_psi + cos_psi*x16)/x18
-    x22 = x10*(cos_psi + x21*x15)
-    x23 = x13*x21 - x8*x22
-    x24 = x2*x23
-    x25 = x24 + sin_psi*x22 - cos_psi*x21
-    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
-    x27 = x25*x26
-    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
-    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
-    x33 = x26*(x20 - x25*x32)
-    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x19*x32 - x21*x33),
-        -(x29*x32 + x22*x33),
-        c5*(x30*x32 - x23*x33),
-        x34,
-        c5*(x31*x32 + x24*x33),
+        c2*(x31*x32 + x24*x33),
     )
 
 
 def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """`correction` of the rational state.
 
-    136 operations, 9 of them on parameters alone.
+    130 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -2040,118 +793,51 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Changes of coordinates, angles among them, and of velocities.
     """
     # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
-    # intermediate terms
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
-    x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*y_dot - sin_psi*x_dot
-    x21 = (sin_psi + cos_psi*x16)/x18
-    x22 = x10*(cos_psi + x21*x15)
-    x23 = x13*x21 - x8*x22
-    x24 = x2*x23
-    x25 = x24 + sin_psi*x22 - cos_psi*x21
-    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
-    x27 = x25*x26
-    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
-    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
-    x33 = x26*(x20 - x25*x32)
-    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
-    # outputs
-    return (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x19*x32 - x21*x33),
-        -(x29*x32 + x22*x33),
-        c5*(x30*x32 - x23*x33),
-        x34,
-        c5*(x31*x32 + x24*x33),
-    )
-
-
-def correction_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_rational` over arrays: the result has shape (10, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot = y
-    m, R, k, _ = params
+    m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
+    c0 = m*(1.0/(m*(1.0 + k)))
+    c1 = 1.0/(m*k)
+    c2 = 1.0/R
     # intermediate terms
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
+    x0 = sin_phi*sin_phi
+    x1 = k*x0
+    x2 = 1.0/(m*(2.0*x1 - (2.0*x1 + x0 + k*cos_phi*cos_phi)))
+    x3 = sin_phi*x2
+    x4 = m*x3
+    x5 = 1.0 + sin_phi*x4
+    x6 = c0*cos_phi
+    x7 = cos_psi*x6
+    x8 = sin_psi*x4
     x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
+    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x7 + x8*x9))
+    x11 = sin_psi*x6
     x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
+    x13 = cos_psi*x4
+    x14 = cos_psi*x12 + x13*x9
     x15 = m*x14
     x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
+    x17 = 1.0 - sin_psi*x12 + sin_phi*cos_psi*x13 - x14*x16
     x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
+    x19 = x5*(cos_psi - sin_psi*x16)/x18
     x20 = cos_psi*y_dot - sin_psi*x_dot
     x21 = (sin_psi + cos_psi*x16)/x18
     x22 = x10*(cos_psi + x21*x15)
     x23 = x13*x21 - x8*x22
-    x24 = x2*x23
-    x25 = x24 + sin_psi*x22 - cos_psi*x21
+    x24 = sin_phi*x23
+    x25 = x24 + cos_psi*x21 - sin_psi*x22
     x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
     x27 = x25*x26
-    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
+    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot + x20*x27
+    x29 = x10*(sin_psi*x5 - x19*x15)
+    x30 = x13*x19 + x8*x29 - x3
+    x31 = 0.5*c1 + sin_phi*x30
     x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
-    x33 = x26*(x20 - x25*x32)
-    x34 = c5*(x32*(x11*x19 - x29*x6) - x33*(x11*x21 + x22*x6))
+    x33 = x26*(x20 + x25*x32)
+    x34 = c2*(x32*(x11*x19 - x29*x7) - x33*(x11*x21 + x22*x7))
     # outputs
-    return _stacked(
-        (10,),
-        y[0],
+    return (
         0.0,
         0.0,
         0.0,
@@ -2159,368 +845,9 @@ def correction_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         0.0,
         -(x19*x32 - x21*x33),
         -(x29*x32 + x22*x33),
-        c5*(x30*x32 - x23*x33),
+        -c2*(x30*x32 - x23*x33),
         x34,
-        c5*(x31*x32 + x24*x33),
-    )
-
-
-def correction_variational(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction` of the motion, and changes that make its perturbation tangent to the constraints.
-
-    174 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 22 floats
-        x, y in m; sin_psi, cos_psi, sin_phi, cos_phi in 1; chi in rad; x_dot, y_dot in m/s;
-        psi_dot, phi_dot, chi_dot in rad/s; delta_x, delta_y in m; delta_psi, delta_phi,
-        delta_chi in rad; delta_x_dot, delta_y_dot in m/s; delta_psi_dot, delta_phi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 4 floats
-        m in kg; R in m; k in 1; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot, _, _, delta_psi, _, _, delta_x_dot, delta_y_dot, _, _, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
-    # intermediate terms
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
-    x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*x_dot + sin_psi*y_dot
-    x21 = cos_psi*y_dot - sin_psi*x_dot
-    x22 = (sin_psi + cos_psi*x16)/x18
-    x23 = x10*(cos_psi + x22*x15)
-    x24 = x13*x22 - x8*x23
-    x25 = x2*x24
-    x26 = x25 + sin_psi*x23 - cos_psi*x22
-    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
-    x28 = x26*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
-    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
-    x33 = (x20 - R*chi_dot - x21*x28)/x32
-    x34 = x27*(x21 - x26*x33)
-    x35 = x11*x19 - x29*x6
-    x36 = x11*x22 + x23*x6
-    x37 = x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
-    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
-    x39 = (x37 + x38*x28)/x32
-    x40 = x27*(x38 + x26*x39)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            -(x19*x33 - x22*x34),
-            -(x29*x33 + x23*x34),
-            c5*(x30*x33 - x24*x34),
-            c5*(x33*x35 - x34*x36),
-            c5*(x31*x33 + x25*x34),
-        ),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            -(x19*x39 + x22*x40),
-            -(x29*x39 - x23*x40),
-            c5*(x30*x39 + x24*x40),
-            c5*(x35*x39 + x36*x40),
-            c5*(x31*x39 - x25*x40),
-        ),
-    )
-
-
-def correction_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_variational` over arrays: the result has shape (4, 5, ...)."""
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot, _, _, delta_psi, _, _, delta_x_dot, delta_y_dot, _, _, delta_chi_dot = y
-    m, R, k, _ = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
-    # intermediate terms
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
-    x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*x_dot + sin_psi*y_dot
-    x21 = cos_psi*y_dot - sin_psi*x_dot
-    x22 = (sin_psi + cos_psi*x16)/x18
-    x23 = x10*(cos_psi + x22*x15)
-    x24 = x13*x22 - x8*x23
-    x25 = x2*x24
-    x26 = x25 + sin_psi*x23 - cos_psi*x22
-    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
-    x28 = x26*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
-    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
-    x33 = (x20 - R*chi_dot - x21*x28)/x32
-    x34 = x27*(x21 - x26*x33)
-    x35 = x11*x19 - x29*x6
-    x36 = x11*x22 + x23*x6
-    x37 = x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
-    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
-    x39 = (x37 + x38*x28)/x32
-    x40 = x27*(x38 + x26*x39)
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x19*x33 - x22*x34),
-        -(x29*x33 + x23*x34),
-        c5*(x30*x33 - x24*x34),
-        c5*(x33*x35 - x34*x36),
-        c5*(x31*x33 + x25*x34),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x19*x39 + x22*x40),
-        -(x29*x39 - x23*x40),
-        c5*(x30*x39 + x24*x40),
-        c5*(x35*x39 + x36*x40),
-        c5*(x31*x39 - x25*x40),
-    )
-
-
-def correction_sensitivity(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """`correction_variational` with perturbed parameters, whose perturbations precede them.
-
-    176 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 22 floats
-        x, y in m; sin_psi, cos_psi, sin_phi, cos_phi in 1; chi in rad; x_dot, y_dot in m/s;
-        psi_dot, phi_dot, chi_dot in rad/s; delta_x, delta_y in m; delta_psi, delta_phi,
-        delta_chi in rad; delta_x_dot, delta_y_dot in m/s; delta_psi_dot, delta_phi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 8 floats
-        delta_m in kg; delta_R in m; delta_k in 1; delta_g in m/s^2; m in kg; R in m; k in
-        1; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Changes of coordinates, of velocities, and of the perturbations of both.
-    """
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot, _, _, delta_psi, _, _, delta_x_dot, delta_y_dot, _, _, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, delta_R, _, _, m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
-    # intermediate terms
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
-    x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*x_dot + sin_psi*y_dot
-    x21 = cos_psi*y_dot - sin_psi*x_dot
-    x22 = (sin_psi + cos_psi*x16)/x18
-    x23 = x10*(cos_psi + x22*x15)
-    x24 = x13*x22 - x8*x23
-    x25 = x2*x24
-    x26 = x25 + sin_psi*x23 - cos_psi*x22
-    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
-    x28 = x26*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
-    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
-    x33 = (x20 - R*chi_dot - x21*x28)/x32
-    x34 = x27*(x21 - x26*x33)
-    x35 = x11*x19 - x29*x6
-    x36 = x11*x22 + x23*x6
-    x37 = (
-        x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
-        - delta_R*chi_dot
-    )
-    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
-    x39 = (x37 + x38*x28)/x32
-    x40 = x27*(x38 + x26*x39)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            -(x19*x33 - x22*x34),
-            -(x29*x33 + x23*x34),
-            c5*(x30*x33 - x24*x34),
-            c5*(x33*x35 - x34*x36),
-            c5*(x31*x33 + x25*x34),
-        ),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            -(x19*x39 + x22*x40),
-            -(x29*x39 - x23*x40),
-            c5*(x30*x39 + x24*x40),
-            c5*(x35*x39 + x36*x40),
-            c5*(x31*x39 - x25*x40),
-        ),
-    )
-
-
-def correction_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`correction_sensitivity` over arrays: the result has shape (4, 5, ...)."""
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot, _, _, delta_psi, _, _, delta_x_dot, delta_y_dot, _, _, delta_chi_dot = y
-    _, delta_R, _, _, m, R, k, _ = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = m*(1.0/(m*(1.0 + k)))
-    c5 = 1.0/R
-    # intermediate terms
-    x0 = k*sin_phi
-    x1 = sin_phi*sin_phi + k*cos_phi*cos_phi + 2.0*sin_phi*x0
-    x2 = c2*sin_phi
-    x3 = sin_phi*(1.0/(m*(x1 - 2.0*x2*x0)))
-    x4 = 1.0 - c3*sin_phi*x3
-    x5 = c4*cos_phi
-    x6 = cos_psi*x5
-    x7 = m*x3
-    x8 = sin_psi*x7
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x6 - x8*x9))
-    x11 = sin_psi*x5
-    x12 = cos_phi*x11
-    x13 = cos_psi*x7
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - sin_phi*cos_psi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*x_dot + sin_psi*y_dot
-    x21 = cos_psi*y_dot - sin_psi*x_dot
-    x22 = (sin_psi + cos_psi*x16)/x18
-    x23 = x10*(cos_psi + x22*x15)
-    x24 = x13*x22 - x8*x23
-    x25 = x2*x24
-    x26 = x25 + sin_psi*x23 - cos_psi*x22
-    x27 = 1.0/(sin_psi*x22 + cos_psi*x23)
-    x28 = x26*x27
-    x29 = x10*(sin_psi*x4 - x19*x15)
-    x30 = x13*x19 + x8*x29 - c2*x3
-    x31 = 0.5*c1 - x2*x30
-    x32 = x31 + cos_psi*x19 + sin_psi*x29 - x26*x28
-    x33 = (x20 - R*chi_dot - x21*x28)/x32
-    x34 = x27*(x21 - x26*x33)
-    x35 = x11*x19 - x29*x6
-    x36 = x11*x22 + x23*x6
-    x37 = (
-        x21*delta_psi + cos_psi*delta_x_dot + sin_psi*delta_y_dot - R*delta_chi_dot
-        - delta_R*chi_dot
-    )
-    x38 = delta_psi*x20 + sin_psi*delta_x_dot - cos_psi*delta_y_dot
-    x39 = (x37 + x38*x28)/x32
-    x40 = x27*(x38 + x26*x39)
-    # outputs
-    return _stacked(
-        (4, 5),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x19*x33 - x22*x34),
-        -(x29*x33 + x23*x34),
-        c5*(x30*x33 - x24*x34),
-        c5*(x33*x35 - x34*x36),
-        c5*(x31*x33 + x25*x34),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -(x19*x39 + x22*x40),
-        -(x29*x39 - x23*x40),
-        c5*(x30*x39 + x24*x40),
-        c5*(x35*x39 + x36*x40),
-        c5*(x31*x39 - x25*x40),
+        c2*(x31*x32 - x24*x33),
     )
 
 
@@ -2572,60 +899,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (5, 5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, _, psi, phi, _, _, _, _, _, _ = y
-    m, R, k, _ = params
-    # terms of the parameters alone
-    c0 = m*R
-    c1 = R*c0
-    c2 = k*c1
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = c0*cos(psi)
-    x1 = sin_phi*x0
-    cos_phi = cos(phi)
-    x2 = c0*sin(psi)
-    x3 = cos_phi*x2
-    x4 = sin_phi*x2
-    x5 = -cos_phi*x0
-    x6 = sin_phi*sin_phi
-    x7 = 2.0*c2*sin_phi
-    # outputs
-    return _stacked(
-        (5, 5),
-        y[0],
-        m,
-        0.0,
-        x1,
-        x3,
-        0.0,
-        0.0,
-        m,
-        x4,
-        x5,
-        0.0,
-        x1,
-        x4,
-        c1*(x6 + k*cos_phi*cos_phi + 2.0*k*x6),
-        0.0,
-        x7,
-        x3,
-        x5,
-        0.0,
-        c1*(k + 1.0),
-        0.0,
-        0.0,
-        0.0,
-        x7,
-        0.0,
-        2.0*c2,
-    )
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -2653,19 +926,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = R*sin(phi)
     # outputs
     return ((x + sin(psi)*x0, y_ - cos(psi)*x0, R*cos(phi)),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, y_, psi, phi, _, _, _, _, _, _ = y
-    _, R, _, _ = params
-    # intermediate terms
-    x0 = R*sin(phi)
-    # outputs
-    return _stacked((1, 3), y[0], x + sin(psi)*x0, y_ - cos(psi)*x0, R*cos(phi))
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -2718,40 +978,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, y_, psi, phi, chi, _, _, _, _, _ = y
-    _, R, _, _ = params
-    # intermediate terms
-    sin_phi = sin(phi)
-    sin_psi = sin(psi)
-    x0 = sin_phi*sin_psi
-    x1 = x + R*x0
-    cos_psi = cos(psi)
-    x2 = sin_phi*cos_psi
-    x3 = y_ - R*x2
-    x4 = R*cos(phi)
-    cos_chi = cos(chi)
-    sin_chi = sin(chi)
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        x1,
-        x3,
-        x4,
-        x1 + R*(cos_psi*cos_chi - sin_chi*x0),
-        x3 + R*(sin_psi*cos_chi + sin_chi*x2),
-        x4*(1.0 - sin_chi),
-        x1 + R*(cos_psi*sin_chi + cos_chi*x0),
-        x3 + R*(sin_psi*sin_chi - cos_chi*x2),
-        x4*(1.0 + cos_chi),
-    )
-
-
 def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     """Angular momentum about the origin.
 
@@ -2773,7 +999,8 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
         Its Cartesian components in kg m^2/s.
     """
     # inputs
-    x, y_, psi, phi, chi, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
+    y = y.tolist() if hasattr(y, "tolist") else y
+    x, y_, psi, phi, chi, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*R
@@ -2817,55 +1044,6 @@ def angular_momentum(t: float, y: Numbers, params: Numbers) -> Vector:
     return (-c0*x14, c0*x18, m*x20)
 
 
-def angular_momentum_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`angular_momentum` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    x, y_, psi, phi, chi, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, _ = params
-    # terms of the parameters alone
-    c0 = m*R
-    c1 = R*k
-    c2 = R*c1
-    # intermediate terms
-    cos_phi = cos(phi)
-    sin_psi = sin(psi)
-    sin_phi = sin(phi)
-    x0 = R*sin_phi
-    x1 = psi_dot*x0
-    cos_psi = cos(psi)
-    x2 = phi_dot*(R*cos_phi)
-    x3 = y_dot + sin_psi*x1 - cos_psi*x2
-    x4 = y_ - cos_psi*x0
-    x5 = sin_phi*phi_dot
-    x6 = chi_dot + psi_dot*sin_phi
-    x7 = x6*(c1*cos_phi)
-    cos_chi = cos(chi)
-    sin_chi = sin(chi)
-    x8 = sin_phi*sin_psi
-    x9 = cos_phi*psi_dot
-    x10 = phi_dot*cos_chi - sin_chi*x9
-    x11 = c1*x10
-    x12 = phi_dot*sin_chi + cos_chi*x9
-    x13 = c1*x12
-    x14 = (
-        cos_phi*x3 + x4*x5 + 2.0*sin_psi*x7 - (cos_psi*cos_chi - sin_chi*x8)*x11
-        - (cos_psi*sin_chi + cos_chi*x8)*x13
-    )
-    x15 = x_dot + sin_psi*x2 + cos_psi*x1
-    x16 = x + sin_psi*x0
-    x17 = sin_phi*cos_psi
-    x18 = (
-        cos_phi*x15 + x16*x5 + (sin_psi*cos_chi + sin_chi*x17)*x11
-        + (sin_psi*sin_chi - cos_chi*x17)*x13 + 2.0*cos_psi*x7
-    )
-    x19 = c2*cos_phi
-    x20 = x3*x16 - x4*x15 + 2.0*c2*sin_phi*x6 + cos_chi*x12*x19 - sin_chi*x10*x19
-    # outputs
-    return _stacked((3,), y[0], -c0*x14, c0*x18, m*x20)
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -2887,34 +1065,10 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
         Sine and cosine of every angle, other coordinates, velocities.
     """
     # inputs
-    x, y_, psi, phi, chi, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    # outputs
-    return (
-        x,
-        y_,
-        sin(psi),
-        cos(psi),
-        sin(phi),
-        cos(phi),
-        chi,
-        x_dot,
-        y_dot,
-        psi_dot,
-        phi_dot,
-        chi_dot,
-    )
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (12, ...)."""
-    from numpy import cos, sin
-
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     x, y_, psi, phi, chi, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     # outputs
-    return _stacked(
-        (12,),
-        y[0],
+    return (
         x,
         y_,
         sin(psi),
@@ -2933,7 +1087,7 @@ def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
-    224 operations, 12 of them on parameters alone.
+    214 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
@@ -2951,164 +1105,72 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = m*(1.0/(m*c4))
-    c6 = c2*R
-    c7 = m*R
-    c8 = k*c2
-    c9 = 1.0/R
-    # intermediate terms
-    x0 = psi_dot*sin_psi
-    x1 = phi_dot*cos_phi
-    x2 = phi_dot*sin_phi
-    x3 = sin_phi*sin_phi
-    x4 = c2*sin_phi
-    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
-    x6 = 1.0/(m*x5)
-    x7 = 1.0 - c3*x3*x6
-    x8 = cos_psi*cos_phi
-    x9 = c5*x8
-    x10 = sin_psi*sin_phi
-    x11 = m*x6
-    x12 = x10*x11
-    x13 = 1.0/(m*(1.0 - x8*x9 - x12*x10))
-    x14 = sin_psi*cos_phi
-    x15 = c5*x14
-    x16 = cos_psi*sin_phi
-    x17 = x16*x11
-    x18 = x15*x8 - x17*x10
-    x19 = m*x18
-    x20 = x13*x19
-    x21 = m*(1.0 - x15*x14 - x17*x16 - x18*x20)
-    x22 = x7*(cos_psi - sin_psi*x20)/x21
-    x23 = psi_dot*sin_phi
-    x24 = c4*x23
-    x25 = k*chi_dot
-    x26 = c7*(x6*(x24 + x25 - c8*x23))
-    x27 = x1*x26
-    x28 = psi_dot*psi_dot
-    x29 = phi_dot*phi_dot
-    x30 = R*psi_dot*cos_phi*(x24 + 2.0*x25) + g*sin_phi
-    x31 = c5*x30
-    x32 = R*(x10*x28 + x10*x29 - 2.0*psi_dot*phi_dot*x8) - x31*x14
-    x33 = R*(x16*x28 + 2.0*x0*x1 + x16*x29) - x30*x9 - 2.0*x27*x10
-    x34 = m*(x32 + 2.0*x2*x8*x26 + x33*x20)/x21
-    x35 = m*x13*(x33 + x18*x34)
-    x36 = 2.0*x27 + x17*x34 - x12*x35
-    x37 = c6*psi_dot*x1 - x4*x36
-    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
-    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
-    x40 = (sin_psi + cos_psi*x20)/x21
-    x41 = x13*(cos_psi + x40*x19)
-    x42 = x17*x40 - x12*x41
-    x43 = x4*x42
-    x44 = x43 + sin_psi*x41 - cos_psi*x40
-    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
-    x46 = x44*x45
-    x47 = x13*(sin_psi*x7 - x22*x19)
-    x48 = x17*x22 + x12*x47 - x4*x6
-    x49 = 0.5*c1 - x4*x48
-    x50 = (x38 + x39*x46)/(x49 + cos_psi*x22 + sin_psi*x47 - x44*x46)
-    x51 = x45*(x39 + x44*x50)
-    x52 = x50*(x15*x22 - x47*x9) + x51*(x15*x40 + x41*x9) - (x15*x34 + x35*x9 - x31)
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        psi_dot*cos_psi,
-        -x0,
-        x1,
-        -x2,
-        chi_dot,
-        -(x22*x50 + x40*x51 - x34),
-        -(x35 + x47*x50 - x41*x51),
-        c9*(x48*x50 + x42*x51 - x36),
-        c9*x52,
-        -c9*(x37 + x43*x51 - x49*x50),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (12, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
-    m, R, k, g = params
+    m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = m*(1.0/(m*c4))
-    c6 = c2*R
-    c7 = m*R
-    c8 = k*c2
-    c9 = 1.0/R
+    c0 = 1.0 + k
+    c1 = m*(1.0/(m*c0))
+    c2 = m*R
+    c3 = 1.0/(m*k)
+    c4 = 1.0/R
     # intermediate terms
     x0 = psi_dot*sin_psi
     x1 = phi_dot*cos_phi
     x2 = phi_dot*sin_phi
     x3 = sin_phi*sin_phi
-    x4 = c2*sin_phi
-    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
-    x6 = 1.0/(m*x5)
-    x7 = 1.0 - c3*x3*x6
+    x4 = k*x3
+    x5 = 1.0/(m*(2.0*x4 - (2.0*x4 + x3 + k*cos_phi*cos_phi)))
+    x6 = m*x5
+    x7 = 1.0 + x3*x6
     x8 = cos_psi*cos_phi
-    x9 = c5*x8
+    x9 = c1*x8
     x10 = sin_psi*sin_phi
-    x11 = m*x6
-    x12 = x10*x11
-    x13 = 1.0/(m*(1.0 - x8*x9 - x12*x10))
-    x14 = sin_psi*cos_phi
-    x15 = c5*x14
-    x16 = cos_psi*sin_phi
-    x17 = x16*x11
-    x18 = x15*x8 - x17*x10
-    x19 = m*x18
-    x20 = x13*x19
-    x21 = m*(1.0 - x15*x14 - x17*x16 - x18*x20)
-    x22 = x7*(cos_psi - sin_psi*x20)/x21
-    x23 = psi_dot*sin_phi
-    x24 = c4*x23
-    x25 = k*chi_dot
-    x26 = c7*(x6*(x24 + x25 - c8*x23))
-    x27 = x1*x26
-    x28 = psi_dot*psi_dot
-    x29 = phi_dot*phi_dot
-    x30 = R*psi_dot*cos_phi*(x24 + 2.0*x25) + g*sin_phi
-    x31 = c5*x30
-    x32 = R*(x10*x28 + x10*x29 - 2.0*psi_dot*phi_dot*x8) - x31*x14
-    x33 = R*(x16*x28 + 2.0*x0*x1 + x16*x29) - x30*x9 - 2.0*x27*x10
-    x34 = m*(x32 + 2.0*x2*x8*x26 + x33*x20)/x21
-    x35 = m*x13*(x33 + x18*x34)
-    x36 = 2.0*x27 + x17*x34 - x12*x35
-    x37 = c6*psi_dot*x1 - x4*x36
-    x38 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x37 + cos_psi*x34 - sin_psi*x35)
-    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x34 + cos_psi*x35)
-    x40 = (sin_psi + cos_psi*x20)/x21
-    x41 = x13*(cos_psi + x40*x19)
-    x42 = x17*x40 - x12*x41
-    x43 = x4*x42
-    x44 = x43 + sin_psi*x41 - cos_psi*x40
-    x45 = 1.0/(sin_psi*x40 + cos_psi*x41)
-    x46 = x44*x45
-    x47 = x13*(sin_psi*x7 - x22*x19)
-    x48 = x17*x22 + x12*x47 - x4*x6
-    x49 = 0.5*c1 - x4*x48
-    x50 = (x38 + x39*x46)/(x49 + cos_psi*x22 + sin_psi*x47 - x44*x46)
-    x51 = x45*(x39 + x44*x50)
-    x52 = x50*(x15*x22 - x47*x9) + x51*(x15*x40 + x41*x9) - (x15*x34 + x35*x9 - x31)
+    x11 = x10*x6
+    x12 = 1.0/(m*(1.0 - x8*x9 + x11*x10))
+    x13 = sin_psi*cos_phi
+    x14 = c1*x13
+    x15 = cos_psi*sin_phi
+    x16 = x15*x6
+    x17 = x14*x8 + x16*x10
+    x18 = m*x17
+    x19 = x12*x18
+    x20 = 1.0 - x14*x13 + x16*x15 - x17*x19
+    x21 = m*x20
+    x22 = x7*(cos_psi - sin_psi*x19)/x21
+    x23 = R*psi_dot
+    x24 = psi_dot*sin_phi
+    x25 = c0*x24
+    x26 = k*chi_dot
+    x27 = c2*(x5*(x25 + x26 - k*x24))
+    x28 = x1*x27
+    x29 = psi_dot*psi_dot
+    x30 = phi_dot*phi_dot
+    x31 = cos_phi*(x25 + 2.0*x26)*x23 + g*sin_phi
+    x32 = c1*x31
+    x33 = R*(x10*x29 + x10*x30 - 2.0*psi_dot*phi_dot*x8) - x32*x13
+    x34 = R*(x15*x29 + 2.0*x0*x1 + x15*x30) - x31*x9 + 2.0*x28*x10
+    x35 = (x33 - 2.0*x2*x8*x27 + x34*x19)/x20
+    x36 = m*x12*(x34 + x17*x35)
+    x37 = 2.0*x28 + x16*x35 - x11*x36
+    x38 = x1*x23 + sin_phi*x37
+    x39 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x38 + cos_psi*x35 - sin_psi*x36)
+    x40 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x35 + cos_psi*x36)
+    x41 = (sin_psi + cos_psi*x19)/x21
+    x42 = x12*(cos_psi + x41*x18)
+    x43 = x16*x41 - x11*x42
+    x44 = sin_phi*x43
+    x45 = x44 + cos_psi*x41 - sin_psi*x42
+    x46 = 1.0/(sin_psi*x41 + cos_psi*x42)
+    x47 = x45*x46
+    x48 = x12*(sin_psi*x7 - x22*x18)
+    x49 = x16*x22 + x11*x48 - sin_phi*x5
+    x50 = 0.5*c3 + sin_phi*x49
+    x51 = (x39 - x40*x47)/(x50 + cos_psi*x22 + sin_psi*x48 - x45*x47)
+    x52 = x46*(x40 - x45*x51)
+    x53 = x51*(x14*x22 - x48*x9) + x52*(x14*x41 + x42*x9) - (x14*x35 + x36*x9 - x32)
     # outputs
-    return _stacked(
-        (12,),
-        y[0],
+    return (
         x_dot,
         y_dot,
         psi_dot*cos_psi,
@@ -3116,794 +1178,79 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
         x1,
         -x2,
         chi_dot,
-        -(x22*x50 + x40*x51 - x34),
-        -(x35 + x47*x50 - x41*x51),
-        c9*(x48*x50 + x42*x51 - x36),
-        c9*x52,
-        -c9*(x37 + x43*x51 - x49*x50),
+        -(x22*x51 + x41*x52 - x35),
+        -(x36 + x48*x51 - x42*x52),
+        -c4*(x49*x51 + x43*x52 - x37),
+        c4*x53,
+        c4*(x50*x51 + x44*x52 - x38),
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    458 operations, 17 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 22 floats
-        x, y in m; sin_psi, cos_psi, sin_phi, cos_phi in 1; chi in rad; x_dot, y_dot in m/s;
-        psi_dot, phi_dot, chi_dot in rad/s; delta_x, delta_y in m; delta_psi, delta_phi,
-        delta_chi in rad; delta_x_dot, delta_y_dot in m/s; delta_psi_dot, delta_phi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 4 floats
-        m in kg; R in m; k in 1; g in m/s^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot, _, _, delta_psi, delta_phi, _, delta_x_dot, delta_y_dot, delta_psi_dot, delta_phi_dot, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = 1.0/(m*c4)
-    c6 = m*c5
-    c7 = c2*R
-    c8 = m*R
-    c9 = k*c2
-    c10 = 1.0/R
-    c11 = m*m
-    c12 = c5*c11
-    c13 = k*R
-    c14 = c4*R
-    c15 = R*c9
-    # intermediate terms
-    x0 = psi_dot*cos_psi
-    x1 = psi_dot*sin_psi
-    x2 = phi_dot*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = c2*sin_phi
-    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
-    x6 = 1.0/(m*x5)
-    x7 = sin_phi*x6
-    x8 = 1.0 - c3*sin_phi*x7
-    x9 = cos_psi*cos_phi
-    x10 = c6*x9
-    x11 = sin_psi*sin_phi
-    x12 = m*x6
-    x13 = x11*x12
-    x14 = 1.0/(m*(1.0 - x9*x10 - x13*x11))
-    x15 = sin_psi*cos_phi
-    x16 = c6*x15
-    x17 = cos_psi*sin_phi
-    x18 = x17*x12
-    x19 = x16*x9 - x18*x11
-    x20 = m*x19
-    x21 = x14*x20
-    x22 = m*(1.0 - x16*x15 - x18*x17 - x19*x21)
-    x23 = x8*(cos_psi - sin_psi*x21)/x22
-    x24 = y_dot*cos_psi - x_dot*sin_psi
-    x25 = psi_dot*x24
-    x26 = psi_dot*phi_dot
-    x27 = psi_dot*sin_phi
-    x28 = c4*x27
-    x29 = k*chi_dot
-    x30 = x28 + x29
-    x31 = c8*(x30 - c9*x27)
-    x32 = psi_dot*psi_dot
-    x33 = phi_dot*phi_dot
-    x34 = x11*x32 + x11*x33 - 2.0*x9*x26
-    x35 = x28 + 2.0*x29
-    x36 = psi_dot*cos_phi
-    x37 = R*x35*x36 + g*sin_phi
-    x38 = c6*x37
-    x39 = phi_dot*x9
-    x40 = x7*x31
-    x41 = x17*x32 + 2.0*x15*x26 + x17*x33
-    x42 = phi_dot*x15
-    x43 = R*x41 - x37*x10 - 2.0*x42*x40
-    x44 = m*(R*x34 - x38*x15 + 2.0*x39*x40 + x43*x21)/x22
-    x45 = m*x14*(x43 + x19*x44)
-    x46 = 2.0*x2*x6*x31 + x18*x44 - x13*x45
-    x47 = c7*cos_phi*x26 - x4*x46
-    x48 = x_dot*cos_psi + y_dot*sin_psi
-    x49 = psi_dot*x48
-    x50 = x49 + (sin_psi*x44 + cos_psi*x45)
-    x51 = (sin_psi + cos_psi*x21)/x22
-    x52 = x14*(cos_psi + x51*x20)
-    x53 = x18*x51 - x13*x52
-    x54 = x4*x53
-    x55 = x54 + sin_psi*x52 - cos_psi*x51
-    x56 = 1.0/(sin_psi*x51 + cos_psi*x52)
-    x57 = x55*x56
-    x58 = x25 + (x47 + cos_psi*x44 - sin_psi*x45) + x50*x57
-    x59 = x14*(sin_psi*x8 - x23*x20)
-    x60 = x18*x23 + x13*x59 - c2*x7
-    x61 = 0.5*c1 - x4*x60
-    x62 = x61 + cos_psi*x23 + sin_psi*x59 - x55*x57
-    x63 = x58/x62
-    x64 = x56*(x50 + x55*x63)
-    x65 = x23*x63 + x51*x64 - x44
-    x66 = x45 + x59*x63 - x52*x64
-    x67 = c10*(x60*x63 + x53*x64 - x46)
-    x68 = x16*x23 - x59*x10
-    x69 = x16*x51 + x52*x10
-    x70 = c10*(x63*x68 + x64*x69 - (x16*x44 + x45*x10 - x38))
-    x71 = c10*(x47 + x54*x64 - x61*x63)
-    x72 = c8*x67
-    x73 = c8*x70
-    x74 = c8*x41 + x11*x72 + sin_psi*x63 - x9*x73 - cos_psi*x64
-    x75 = x15*x32 + 2.0*x17*x26 + x15*x33 + x70*x11 - x67*x9
-    x76 = c8*delta_phi
-    x77 = c8*delta_psi_dot
-    x78 = c8*delta_phi_dot
-    x79 = (psi_dot*x11 - x39)*x77 - (psi_dot*x9 - phi_dot*x11)*x78
-    x80 = cos_psi*x65 + sin_psi*x66
-    x81 = c4*cos_phi*x36
-    x82 = x66*x17 + (R*psi_dot*(x81 - sin_phi*x35) + g*cos_phi) - x65*x11
-    x83 = R*cos_phi
-    x84 = c13*delta_chi_dot
-    x85 = (
-        cos_phi*delta_psi*x80 + delta_phi*x82 + delta_psi_dot*(x28 + x35)*x83 + 2.0*x36*x84
-    )
-    x86 = c12*x85
-    x87 = sin_psi*x65 - cos_psi*x66
-    x88 = x2*delta_psi_dot
-    x89 = c14*sin_phi
-    x90 = cos_phi*x67
-    x91 = c13*cos_phi*x71 - R*phi_dot*(x81 - sin_phi*x30) - x90*x89
-    x92 = (
-        sin_phi*delta_psi*x87 + 2.0*(x88*x89 + x30*delta_phi_dot*x83 + x2*x84)
-        - delta_phi*(x65*x9 + x66*x15 + 2.0*x91)
-    )
-    x93 = x88 + delta_phi_dot*x36 - delta_phi*(sin_phi*x26 - x90)
-    x94 = x92 - 2.0*c15*sin_phi*x93
-    x95 = c11*(x6*x94)
-    x96 = delta_psi*x74 + x75*x76 + 2.0*x79 - x15*x86 + x17*x95
-    x97 = x17*x72 + x15*x73 + cos_psi*x63 + sin_psi*x64 - c8*x34
-    x98 = x9*x32 + x9*x33 - 2.0*x11*x26 + x67*x15 + x70*x17
-    x99 = (psi_dot*x17 + x42)*x77 + (psi_dot*x15 + phi_dot*x17)*x78
-    x100 = delta_psi*x97 + x98*x76 + 2.0*x99 - x9*x86 - x11*x95
-    x101 = (x96 + x100*x21)/x22
-    x102 = delta_psi*(x49 - x87) + x1*delta_x_dot - x0*delta_y_dot - x24*delta_psi_dot
-    x103 = x14*(x100 + x101*x20)
-    x104 = x94*x12 + x18*x101 - x13*x103
-    x105 = c7*x93 - x4*x104
-    x106 = x0*delta_x_dot + x1*delta_y_dot + x48*delta_psi_dot - delta_psi*(x80 - x25)
-    x107 = x106 + (sin_psi*x101 + cos_psi*x103)
-    x108 = x102 - (x105 + cos_psi*x101 - sin_psi*x103) - x107*x57
-    x109 = x108/x62
-    x110 = x56*(x107 - x55*x109)
-    x111 = x16*x101 + x103*x10 - c6*x85 + x68*x109 - x69*x110
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x2,
-        -phi_dot*sin_phi,
-        chi_dot,
-        -x65,
-        -x66,
-        x67,
-        x70,
-        -x71,
-        delta_x_dot,
-        delta_y_dot,
-        delta_psi_dot,
-        delta_phi_dot,
-        delta_chi_dot,
-        x101 + x23*x109 - x51*x110,
-        x59*x109 + x52*x110 - x103,
-        -c10*(x104 + x60*x109 - x53*x110),
-        -c10*x111,
-        -c10*(x105 + x61*x109 + x54*x110),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (22, ...)."""
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot, _, _, delta_psi, delta_phi, _, delta_x_dot, delta_y_dot, delta_psi_dot, delta_phi_dot, delta_chi_dot = y
-    m, R, k, g = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = 1.0/(m*c4)
-    c6 = m*c5
-    c7 = c2*R
-    c8 = m*R
-    c9 = k*c2
-    c10 = 1.0/R
-    c11 = m*m
-    c12 = c5*c11
-    c13 = k*R
-    c14 = c4*R
-    c15 = R*c9
-    # intermediate terms
-    x0 = psi_dot*cos_psi
-    x1 = psi_dot*sin_psi
-    x2 = phi_dot*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = c2*sin_phi
-    x5 = x3 + k*cos_phi*cos_phi + 2.0*k*x3 - 2.0*k*sin_phi*x4
-    x6 = 1.0/(m*x5)
-    x7 = sin_phi*x6
-    x8 = 1.0 - c3*sin_phi*x7
-    x9 = cos_psi*cos_phi
-    x10 = c6*x9
-    x11 = sin_psi*sin_phi
-    x12 = m*x6
-    x13 = x11*x12
-    x14 = 1.0/(m*(1.0 - x9*x10 - x13*x11))
-    x15 = sin_psi*cos_phi
-    x16 = c6*x15
-    x17 = cos_psi*sin_phi
-    x18 = x17*x12
-    x19 = x16*x9 - x18*x11
-    x20 = m*x19
-    x21 = x14*x20
-    x22 = m*(1.0 - x16*x15 - x18*x17 - x19*x21)
-    x23 = x8*(cos_psi - sin_psi*x21)/x22
-    x24 = y_dot*cos_psi - x_dot*sin_psi
-    x25 = psi_dot*x24
-    x26 = psi_dot*phi_dot
-    x27 = psi_dot*sin_phi
-    x28 = c4*x27
-    x29 = k*chi_dot
-    x30 = x28 + x29
-    x31 = c8*(x30 - c9*x27)
-    x32 = psi_dot*psi_dot
-    x33 = phi_dot*phi_dot
-    x34 = x11*x32 + x11*x33 - 2.0*x9*x26
-    x35 = x28 + 2.0*x29
-    x36 = psi_dot*cos_phi
-    x37 = R*x35*x36 + g*sin_phi
-    x38 = c6*x37
-    x39 = phi_dot*x9
-    x40 = x7*x31
-    x41 = x17*x32 + 2.0*x15*x26 + x17*x33
-    x42 = phi_dot*x15
-    x43 = R*x41 - x37*x10 - 2.0*x42*x40
-    x44 = m*(R*x34 - x38*x15 + 2.0*x39*x40 + x43*x21)/x22
-    x45 = m*x14*(x43 + x19*x44)
-    x46 = 2.0*x2*x6*x31 + x18*x44 - x13*x45
-    x47 = c7*cos_phi*x26 - x4*x46
-    x48 = x_dot*cos_psi + y_dot*sin_psi
-    x49 = psi_dot*x48
-    x50 = x49 + (sin_psi*x44 + cos_psi*x45)
-    x51 = (sin_psi + cos_psi*x21)/x22
-    x52 = x14*(cos_psi + x51*x20)
-    x53 = x18*x51 - x13*x52
-    x54 = x4*x53
-    x55 = x54 + sin_psi*x52 - cos_psi*x51
-    x56 = 1.0/(sin_psi*x51 + cos_psi*x52)
-    x57 = x55*x56
-    x58 = x25 + (x47 + cos_psi*x44 - sin_psi*x45) + x50*x57
-    x59 = x14*(sin_psi*x8 - x23*x20)
-    x60 = x18*x23 + x13*x59 - c2*x7
-    x61 = 0.5*c1 - x4*x60
-    x62 = x61 + cos_psi*x23 + sin_psi*x59 - x55*x57
-    x63 = x58/x62
-    x64 = x56*(x50 + x55*x63)
-    x65 = x23*x63 + x51*x64 - x44
-    x66 = x45 + x59*x63 - x52*x64
-    x67 = c10*(x60*x63 + x53*x64 - x46)
-    x68 = x16*x23 - x59*x10
-    x69 = x16*x51 + x52*x10
-    x70 = c10*(x63*x68 + x64*x69 - (x16*x44 + x45*x10 - x38))
-    x71 = c10*(x47 + x54*x64 - x61*x63)
-    x72 = c8*x67
-    x73 = c8*x70
-    x74 = c8*x41 + x11*x72 + sin_psi*x63 - x9*x73 - cos_psi*x64
-    x75 = x15*x32 + 2.0*x17*x26 + x15*x33 + x70*x11 - x67*x9
-    x76 = c8*delta_phi
-    x77 = c8*delta_psi_dot
-    x78 = c8*delta_phi_dot
-    x79 = (psi_dot*x11 - x39)*x77 - (psi_dot*x9 - phi_dot*x11)*x78
-    x80 = cos_psi*x65 + sin_psi*x66
-    x81 = c4*cos_phi*x36
-    x82 = x66*x17 + (R*psi_dot*(x81 - sin_phi*x35) + g*cos_phi) - x65*x11
-    x83 = R*cos_phi
-    x84 = c13*delta_chi_dot
-    x85 = (
-        cos_phi*delta_psi*x80 + delta_phi*x82 + delta_psi_dot*(x28 + x35)*x83 + 2.0*x36*x84
-    )
-    x86 = c12*x85
-    x87 = sin_psi*x65 - cos_psi*x66
-    x88 = x2*delta_psi_dot
-    x89 = c14*sin_phi
-    x90 = cos_phi*x67
-    x91 = c13*cos_phi*x71 - R*phi_dot*(x81 - sin_phi*x30) - x90*x89
-    x92 = (
-        sin_phi*delta_psi*x87 + 2.0*(x88*x89 + x30*delta_phi_dot*x83 + x2*x84)
-        - delta_phi*(x65*x9 + x66*x15 + 2.0*x91)
-    )
-    x93 = x88 + delta_phi_dot*x36 - delta_phi*(sin_phi*x26 - x90)
-    x94 = x92 - 2.0*c15*sin_phi*x93
-    x95 = c11*(x6*x94)
-    x96 = delta_psi*x74 + x75*x76 + 2.0*x79 - x15*x86 + x17*x95
-    x97 = x17*x72 + x15*x73 + cos_psi*x63 + sin_psi*x64 - c8*x34
-    x98 = x9*x32 + x9*x33 - 2.0*x11*x26 + x67*x15 + x70*x17
-    x99 = (psi_dot*x17 + x42)*x77 + (psi_dot*x15 + phi_dot*x17)*x78
-    x100 = delta_psi*x97 + x98*x76 + 2.0*x99 - x9*x86 - x11*x95
-    x101 = (x96 + x100*x21)/x22
-    x102 = delta_psi*(x49 - x87) + x1*delta_x_dot - x0*delta_y_dot - x24*delta_psi_dot
-    x103 = x14*(x100 + x101*x20)
-    x104 = x94*x12 + x18*x101 - x13*x103
-    x105 = c7*x93 - x4*x104
-    x106 = x0*delta_x_dot + x1*delta_y_dot + x48*delta_psi_dot - delta_psi*(x80 - x25)
-    x107 = x106 + (sin_psi*x101 + cos_psi*x103)
-    x108 = x102 - (x105 + cos_psi*x101 - sin_psi*x103) - x107*x57
-    x109 = x108/x62
-    x110 = x56*(x107 - x55*x109)
-    x111 = x16*x101 + x103*x10 - c6*x85 + x68*x109 - x69*x110
-    # outputs
-    return _stacked(
-        (22,),
-        y[0],
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x2,
-        -phi_dot*sin_phi,
-        chi_dot,
-        -x65,
-        -x66,
-        x67,
-        x70,
-        -x71,
-        delta_x_dot,
-        delta_y_dot,
-        delta_psi_dot,
-        delta_phi_dot,
-        delta_chi_dot,
-        x101 + x23*x109 - x51*x110,
-        x59*x109 + x52*x110 - x103,
-        -c10*(x104 + x60*x109 - x53*x110),
-        -c10*x111,
-        -c10*(x105 + x61*x109 + x54*x110),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+constraints_many = _over_arrays(constraints)
+multipliers_many = _over_arrays(multipliers)
+correction_many = _over_arrays(correction)
+correction_rational_many = _over_arrays(correction_rational)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+angular_momentum_many = _over_arrays(angular_momentum)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    533 operations, 23 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 22 floats
-        x, y in m; sin_psi, cos_psi, sin_phi, cos_phi in 1; chi in rad; x_dot, y_dot in m/s;
-        psi_dot, phi_dot, chi_dot in rad/s; delta_x, delta_y in m; delta_psi, delta_phi,
-        delta_chi in rad; delta_x_dot, delta_y_dot in m/s; delta_psi_dot, delta_phi_dot,
-        delta_chi_dot in rad/s.
-    params : iterable of 8 floats
-        delta_m in kg; delta_R in m; delta_k in 1; delta_g in m/s^2; m in kg; R in m; k in
-        1; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot, _, _, delta_psi, delta_phi, _, delta_x_dot, delta_y_dot, delta_psi_dot, delta_phi_dot, delta_chi_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_m, delta_R, delta_k, delta_g, m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = 1.0/(m*c4)
-    c6 = m*c5
-    c7 = c2*R
-    c8 = m*R
-    c9 = k*c2
-    c10 = 1.0/R
-    c11 = c0*R
-    c12 = k*R
-    c13 = delta_m*c12
-    c14 = c0*delta_R
-    c15 = c8*delta_k
-    c16 = R*delta_k
-    c17 = c4*R
-    c18 = k*c1
-    c19 = m*delta_R
-    c20 = m*m
-    c21 = c5*c20
-    # intermediate terms
-    x0 = psi_dot*cos_psi
-    x1 = psi_dot*sin_psi
-    x2 = phi_dot*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = cos_phi*cos_phi
-    x5 = k*sin_phi
-    x6 = x3 + k*x4 + 2.0*sin_phi*x5
-    x7 = c2*sin_phi
-    x8 = 1.0/(m*(x6 - 2.0*x7*x5))
-    x9 = sin_phi*x8
-    x10 = 1.0 - c3*sin_phi*x9
-    x11 = cos_psi*cos_phi
-    x12 = c6*x11
-    x13 = sin_psi*sin_phi
-    x14 = m*x8
-    x15 = x13*x14
-    x16 = 1.0/(m*(1.0 - x11*x12 - x15*x13))
-    x17 = sin_psi*cos_phi
-    x18 = c6*x17
-    x19 = cos_psi*sin_phi
-    x20 = x19*x14
-    x21 = x18*x11 - x20*x13
-    x22 = m*x21
-    x23 = x16*x22
-    x24 = m*(1.0 - x18*x17 - x20*x19 - x21*x23)
-    x25 = x10*(cos_psi - sin_psi*x23)/x24
-    x26 = y_dot*cos_psi - x_dot*sin_psi
-    x27 = psi_dot*x26
-    x28 = psi_dot*x2
-    x29 = psi_dot*sin_phi
-    x30 = c4*x29
-    x31 = k*chi_dot
-    x32 = x30 + x31
-    x33 = c8*(x32 - c9*x29)
-    x34 = psi_dot*psi_dot
-    x35 = phi_dot*phi_dot
-    x36 = psi_dot*phi_dot
-    x37 = x13*x34 + x13*x35 - 2.0*x11*x36
-    x38 = R*x37
-    x39 = x30 + 2.0*x31
-    x40 = psi_dot*cos_phi
-    x41 = x39*x40
-    x42 = R*x41 + g*sin_phi
-    x43 = c6*x42
-    x44 = phi_dot*x11
-    x45 = x9*x33
-    x46 = x19*x34 + 2.0*x17*x36 + x19*x35
-    x47 = R*x46
-    x48 = phi_dot*x17
-    x49 = x47 - x42*x12 - 2.0*x48*x45
-    x50 = m*(x38 - x43*x17 + 2.0*x44*x45 + x49*x23)/x24
-    x51 = m*x16*(x49 + x21*x50)
-    x52 = 2.0*x2*x8*x33 + x20*x50 - x15*x51
-    x53 = c7*x28 - x7*x52
-    x54 = x_dot*cos_psi + y_dot*sin_psi
-    x55 = psi_dot*x54
-    x56 = x55 + (sin_psi*x50 + cos_psi*x51)
-    x57 = (sin_psi + cos_psi*x23)/x24
-    x58 = x16*(cos_psi + x57*x22)
-    x59 = x20*x57 - x15*x58
-    x60 = x7*x59
-    x61 = x60 + sin_psi*x58 - cos_psi*x57
-    x62 = 1.0/(sin_psi*x57 + cos_psi*x58)
-    x63 = x61*x62
-    x64 = x27 + (x53 + cos_psi*x50 - sin_psi*x51) + x56*x63
-    x65 = x16*(sin_psi*x10 - x25*x22)
-    x66 = x20*x25 + x15*x65 - c2*x9
-    x67 = 0.5*c1 - x7*x66
-    x68 = x67 + cos_psi*x25 + sin_psi*x65 - x61*x63
-    x69 = x64/x68
-    x70 = x62*(x56 + x61*x69)
-    x71 = x25*x69 + x57*x70 - x50
-    x72 = x51 + x65*x69 - x58*x70
-    x73 = c10*(x66*x69 + x59*x70 - x52)
-    x74 = x18*x25 - x65*x12
-    x75 = x18*x57 + x58*x12
-    x76 = c10*(x69*x74 + x70*x75 - (x18*x50 + x51*x12 - x43))
-    x77 = c10*(x53 + x60*x70 - x67*x69)
-    x78 = sin_psi*x71 - cos_psi*x72
-    x79 = (
-        x0*delta_y_dot + x26*delta_psi_dot + delta_R*x77 - delta_psi*(x55 - x78)
-        - x1*delta_x_dot
-    )
-    x80 = x2*delta_psi_dot
-    x81 = x28 + sin_phi*x73 - x77
-    x82 = cos_phi*x73
-    x83 = (
-        c11*x80 + c11*delta_phi_dot*x40 + c13*x81 + c14*x81 + c15*x81
-        - c11*delta_phi*(sin_phi*x36 - x82)
-    )
-    x84 = x73*(2.0*x3 + x4) + 2.0*(x2*(chi_dot + x29) - sin_phi*x77)
-    x85 = c17*sin_phi
-    x86 = R*cos_phi
-    x87 = c12*delta_chi_dot
-    x88 = c4*cos_phi*x40
-    x89 = c12*cos_phi*x77 - R*phi_dot*(x88 - sin_phi*x32) - x82*x85
-    x90 = (
-        sin_phi*delta_psi*x78 + delta_R*(x6*x73 + 2.0*(x2*x32 - x77*x5)) + c16*x84
-        + 2.0*(x80*x85 + x32*delta_phi_dot*x86 + x2*x87)
-        - delta_phi*(x71*x11 + x72*x17 + 2.0*x89)
-    )
-    x91 = x90 - 2.0*c18*sin_phi*x83
-    x92 = x73*x13
-    x93 = x76*x11
-    x94 = c8*x46 + c8*x92 + sin_psi*x69 - c8*x93 - cos_psi*x70
-    x95 = x17*x34 + 2.0*x19*x36 + x17*x35 + x76*x13 - x73*x11
-    x96 = c8*delta_phi
-    x97 = x73*x19
-    x98 = x76*x17
-    x99 = c8*delta_psi_dot
-    x100 = c8*delta_phi_dot
-    x101 = (psi_dot*x13 - x44)*x99 - (psi_dot*x11 - phi_dot*x13)*x100
-    x102 = (
-        delta_psi*x94 + x95*x96 + delta_m*(x38 + x71 - R*x97 - R*x98) + 2.0*x101
-        - c19*(x97 + x98 - x37)
-    )
-    x103 = cos_psi*x71 + sin_psi*x72
-    x104 = x72*x19 + (R*psi_dot*(x88 - sin_phi*x39) + g*cos_phi) - x71*x13
-    x105 = (
-        cos_phi*delta_psi*x103 + delta_phi*x104 + delta_psi_dot*(x30 + x39)*x86
-        + 2.0*x40*x87 + delta_R*(x41 - c4*x76) + delta_g*sin_phi
-        - c16*(x76 - (2.0*chi_dot + x29)*x40)
-    )
-    x106 = c21*x105
-    x107 = c20*(x8*x91)
-    x108 = c8*x97 + c8*x98 + cos_psi*x69 + sin_psi*x70 - c8*x37
-    x109 = x11*x34 + x11*x35 - 2.0*x13*x36 + x73*x17 + x76*x19
-    x110 = (psi_dot*x19 + x48)*x99 + (psi_dot*x17 + phi_dot*x19)*x100
-    x111 = (
-        delta_psi*x108 + x109*x96 + delta_m*(x47 + R*x92 - x72 - R*x93)
-        + c19*(x46 + x92 - x93) + 2.0*x110
-    )
-    x112 = x111 - x11*x106 - x13*x107
-    x113 = (x102 - x17*x106 + x19*x107 + x112*x23)/x24
-    x114 = x16*(x112 + x113*x22)
-    x115 = x91*x14 + x20*x113 - x15*x114
-    x116 = c1*x83 - x7*x115
-    x117 = x0*delta_x_dot + x1*delta_y_dot + x54*delta_psi_dot - delta_psi*(x103 - x27)
-    x118 = x117 + (sin_psi*x113 + cos_psi*x114)
-    x119 = x79 + (x116 + cos_psi*x113 - sin_psi*x114) + x118*x63
-    x120 = x119/x68
-    x121 = x62*(x118 + x61*x120)
-    x122 = x74*x120 + x75*x121 - (x18*x113 + x114*x12 - c6*x105)
-    # outputs
-    return (
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x2,
-        -phi_dot*sin_phi,
-        chi_dot,
-        -x71,
-        -x72,
-        x73,
-        x76,
-        -x77,
-        delta_x_dot,
-        delta_y_dot,
-        delta_psi_dot,
-        delta_phi_dot,
-        delta_chi_dot,
-        -(x25*x120 + x57*x121 - x113),
-        -(x114 + x65*x120 - x58*x121),
-        c10*(x66*x120 + x59*x121 - x115),
-        c10*x122,
-        -c10*(x116 + x60*x121 - x67*x120),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (22, ...)."""
-    # inputs
-    _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot, _, _, delta_psi, delta_phi, _, delta_x_dot, delta_y_dot, delta_psi_dot, delta_phi_dot, delta_chi_dot = y
-    delta_m, delta_R, delta_k, delta_g, m, R, k, g = params
-    # terms of the parameters alone
-    c0 = m*k
-    c1 = 1.0/c0
-    c2 = c0*c1
-    c3 = m*c2
-    c4 = 1.0 + k
-    c5 = 1.0/(m*c4)
-    c6 = m*c5
-    c7 = c2*R
-    c8 = m*R
-    c9 = k*c2
-    c10 = 1.0/R
-    c11 = c0*R
-    c12 = k*R
-    c13 = delta_m*c12
-    c14 = c0*delta_R
-    c15 = c8*delta_k
-    c16 = R*delta_k
-    c17 = c4*R
-    c18 = k*c1
-    c19 = m*delta_R
-    c20 = m*m
-    c21 = c5*c20
-    # intermediate terms
-    x0 = psi_dot*cos_psi
-    x1 = psi_dot*sin_psi
-    x2 = phi_dot*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = cos_phi*cos_phi
-    x5 = k*sin_phi
-    x6 = x3 + k*x4 + 2.0*sin_phi*x5
-    x7 = c2*sin_phi
-    x8 = 1.0/(m*(x6 - 2.0*x7*x5))
-    x9 = sin_phi*x8
-    x10 = 1.0 - c3*sin_phi*x9
-    x11 = cos_psi*cos_phi
-    x12 = c6*x11
-    x13 = sin_psi*sin_phi
-    x14 = m*x8
-    x15 = x13*x14
-    x16 = 1.0/(m*(1.0 - x11*x12 - x15*x13))
-    x17 = sin_psi*cos_phi
-    x18 = c6*x17
-    x19 = cos_psi*sin_phi
-    x20 = x19*x14
-    x21 = x18*x11 - x20*x13
-    x22 = m*x21
-    x23 = x16*x22
-    x24 = m*(1.0 - x18*x17 - x20*x19 - x21*x23)
-    x25 = x10*(cos_psi - sin_psi*x23)/x24
-    x26 = y_dot*cos_psi - x_dot*sin_psi
-    x27 = psi_dot*x26
-    x28 = psi_dot*x2
-    x29 = psi_dot*sin_phi
-    x30 = c4*x29
-    x31 = k*chi_dot
-    x32 = x30 + x31
-    x33 = c8*(x32 - c9*x29)
-    x34 = psi_dot*psi_dot
-    x35 = phi_dot*phi_dot
-    x36 = psi_dot*phi_dot
-    x37 = x13*x34 + x13*x35 - 2.0*x11*x36
-    x38 = R*x37
-    x39 = x30 + 2.0*x31
-    x40 = psi_dot*cos_phi
-    x41 = x39*x40
-    x42 = R*x41 + g*sin_phi
-    x43 = c6*x42
-    x44 = phi_dot*x11
-    x45 = x9*x33
-    x46 = x19*x34 + 2.0*x17*x36 + x19*x35
-    x47 = R*x46
-    x48 = phi_dot*x17
-    x49 = x47 - x42*x12 - 2.0*x48*x45
-    x50 = m*(x38 - x43*x17 + 2.0*x44*x45 + x49*x23)/x24
-    x51 = m*x16*(x49 + x21*x50)
-    x52 = 2.0*x2*x8*x33 + x20*x50 - x15*x51
-    x53 = c7*x28 - x7*x52
-    x54 = x_dot*cos_psi + y_dot*sin_psi
-    x55 = psi_dot*x54
-    x56 = x55 + (sin_psi*x50 + cos_psi*x51)
-    x57 = (sin_psi + cos_psi*x23)/x24
-    x58 = x16*(cos_psi + x57*x22)
-    x59 = x20*x57 - x15*x58
-    x60 = x7*x59
-    x61 = x60 + sin_psi*x58 - cos_psi*x57
-    x62 = 1.0/(sin_psi*x57 + cos_psi*x58)
-    x63 = x61*x62
-    x64 = x27 + (x53 + cos_psi*x50 - sin_psi*x51) + x56*x63
-    x65 = x16*(sin_psi*x10 - x25*x22)
-    x66 = x20*x25 + x15*x65 - c2*x9
-    x67 = 0.5*c1 - x7*x66
-    x68 = x67 + cos_psi*x25 + sin_psi*x65 - x61*x63
-    x69 = x64/x68
-    x70 = x62*(x56 + x61*x69)
-    x71 = x25*x69 + x57*x70 - x50
-    x72 = x51 + x65*x69 - x58*x70
-    x73 = c10*(x66*x69 + x59*x70 - x52)
-    x74 = x18*x25 - x65*x12
-    x75 = x18*x57 + x58*x12
-    x76 = c10*(x69*x74 + x70*x75 - (x18*x50 + x51*x12 - x43))
-    x77 = c10*(x53 + x60*x70 - x67*x69)
-    x78 = sin_psi*x71 - cos_psi*x72
-    x79 = (
-        x0*delta_y_dot + x26*delta_psi_dot + delta_R*x77 - delta_psi*(x55 - x78)
-        - x1*delta_x_dot
-    )
-    x80 = x2*delta_psi_dot
-    x81 = x28 + sin_phi*x73 - x77
-    x82 = cos_phi*x73
-    x83 = (
-        c11*x80 + c11*delta_phi_dot*x40 + c13*x81 + c14*x81 + c15*x81
-        - c11*delta_phi*(sin_phi*x36 - x82)
-    )
-    x84 = x73*(2.0*x3 + x4) + 2.0*(x2*(chi_dot + x29) - sin_phi*x77)
-    x85 = c17*sin_phi
-    x86 = R*cos_phi
-    x87 = c12*delta_chi_dot
-    x88 = c4*cos_phi*x40
-    x89 = c12*cos_phi*x77 - R*phi_dot*(x88 - sin_phi*x32) - x82*x85
-    x90 = (
-        sin_phi*delta_psi*x78 + delta_R*(x6*x73 + 2.0*(x2*x32 - x77*x5)) + c16*x84
-        + 2.0*(x80*x85 + x32*delta_phi_dot*x86 + x2*x87)
-        - delta_phi*(x71*x11 + x72*x17 + 2.0*x89)
-    )
-    x91 = x90 - 2.0*c18*sin_phi*x83
-    x92 = x73*x13
-    x93 = x76*x11
-    x94 = c8*x46 + c8*x92 + sin_psi*x69 - c8*x93 - cos_psi*x70
-    x95 = x17*x34 + 2.0*x19*x36 + x17*x35 + x76*x13 - x73*x11
-    x96 = c8*delta_phi
-    x97 = x73*x19
-    x98 = x76*x17
-    x99 = c8*delta_psi_dot
-    x100 = c8*delta_phi_dot
-    x101 = (psi_dot*x13 - x44)*x99 - (psi_dot*x11 - phi_dot*x13)*x100
-    x102 = (
-        delta_psi*x94 + x95*x96 + delta_m*(x38 + x71 - R*x97 - R*x98) + 2.0*x101
-        - c19*(x97 + x98 - x37)
-    )
-    x103 = cos_psi*x71 + sin_psi*x72
-    x104 = x72*x19 + (R*psi_dot*(x88 - sin_phi*x39) + g*cos_phi) - x71*x13
-    x105 = (
-        cos_phi*delta_psi*x103 + delta_phi*x104 + delta_psi_dot*(x30 + x39)*x86
-        + 2.0*x40*x87 + delta_R*(x41 - c4*x76) + delta_g*sin_phi
-        - c16*(x76 - (2.0*chi_dot + x29)*x40)
-    )
-    x106 = c21*x105
-    x107 = c20*(x8*x91)
-    x108 = c8*x97 + c8*x98 + cos_psi*x69 + sin_psi*x70 - c8*x37
-    x109 = x11*x34 + x11*x35 - 2.0*x13*x36 + x73*x17 + x76*x19
-    x110 = (psi_dot*x19 + x48)*x99 + (psi_dot*x17 + phi_dot*x19)*x100
-    x111 = (
-        delta_psi*x108 + x109*x96 + delta_m*(x47 + R*x92 - x72 - R*x93)
-        + c19*(x46 + x92 - x93) + 2.0*x110
-    )
-    x112 = x111 - x11*x106 - x13*x107
-    x113 = (x102 - x17*x106 + x19*x107 + x112*x23)/x24
-    x114 = x16*(x112 + x113*x22)
-    x115 = x91*x14 + x20*x113 - x15*x114
-    x116 = c1*x83 - x7*x115
-    x117 = x0*delta_x_dot + x1*delta_y_dot + x54*delta_psi_dot - delta_psi*(x103 - x27)
-    x118 = x117 + (sin_psi*x113 + cos_psi*x114)
-    x119 = x79 + (x116 + cos_psi*x113 - sin_psi*x114) + x118*x63
-    x120 = x119/x68
-    x121 = x62*(x118 + x61*x120)
-    x122 = x74*x120 + x75*x121 - (x18*x113 + x114*x12 - c6*x105)
-    # outputs
-    return _stacked(
-        (22,),
-        y[0],
-        x_dot,
-        y_dot,
-        x0,
-        -x1,
-        x2,
-        -phi_dot*sin_phi,
-        chi_dot,
-        -x71,
-        -x72,
-        x73,
-        x76,
-        -x77,
-        delta_x_dot,
-        delta_y_dot,
-        delta_psi_dot,
-        delta_phi_dot,
-        delta_chi_dot,
-        -(x25*x120 + x57*x121 - x113),
-        -(x114 + x65*x120 - x58*x121),
-        c10*(x66*x120 + x59*x121 - x115),
-        c10*x122,
-        -c10*(x116 + x60*x121 - x67*x120),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

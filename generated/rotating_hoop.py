@@ -18,20 +18,6 @@ State y in functions of the rational form:
     cos_theta [1]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta [1]
-    cos_theta [1]
-    theta_dot [rad/s]
-    delta_theta [rad]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta [1]
-    cos_theta [1]
-    theta_dot [rad/s]
-    delta_theta [rad]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bead
     R [m] > 0, default 1.0: radius
@@ -59,19 +45,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "5c0b01a6dc3113cb"
+DIGEST = "7a02bfec9b4ef2e7"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -80,18 +65,10 @@ STATES = {
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
-        "sin_theta",
-        "cos_theta",
-        "theta_dot",
-        "delta_theta",
-        "delta_theta_dot",
+        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
     "sensitivity": (
-        "sin_theta",
-        "cos_theta",
-        "theta_dot",
-        "delta_theta",
-        "delta_theta_dot",
+        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "R", "Omega", "g")
@@ -100,49 +77,22 @@ POSITIVE = ("m", "R")
 LINKS = (("ring", (0, 1, 2)),)
 TIMED = ("positions", "points")
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "positions",
-    "points",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "points",
+    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (9, 3),
-    "jacobian": (12, 3),
-    "parameter_jacobian": (20, 4),
-    "energy": (15, 3),
-    "mass_matrix": (2, 2),
-    "positions": (10, 0),
-    "points": (5, 0),
-    "hamiltonian_state": (3, 2),
-    "rhs_hamiltonian": (14, 5),
-    "jacobian_hamiltonian": (16, 6),
-    "energy_hamiltonian": (18, 5),
-    "lagrangian_state": (5, 3),
-    "rational_state": (2, 0),
-    "rhs_rational": (11, 3),
-    "rhs_variational": (18, 3),
-    "rhs_sensitivity": (30, 5),
-    "equilibrium": (0, 0),
+    "rhs": (9, 3), "jacobian": (12, 3), "parameter_jacobian": (20, 4), "energy": (15, 3),
+    "mass_matrix": (2, 2), "positions": (10, 0), "points": (5, 0),
+    "hamiltonian_state": (3, 2), "rhs_hamiltonian": (14, 5),
+    "jacobian_hamiltonian": (16, 6), "energy_hamiltonian": (18, 5),
+    "lagrangian_state": (5, 3), "rational_state": (2, 0), "rhs_rational": (11, 3),
+    "rhs_variational": (18, 3), "rhs_sensitivity": (30, 5), "equilibrium": (0, 0),
     "linear": (6, 6),
 }
 UNITS = {
-    "m": "kg",
-    "R": "m",
-    "Omega": "rad/s",
-    "g": "m/s^2",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
-    "cos_theta": "1",
+    "m": "kg", "R": "m", "Omega": "rad/s", "g": "m/s^2", "theta": "rad",
+    "theta_dot": "rad/s", "p_theta": "J s", "delta_theta": "rad",
+    "delta_theta_dot": "rad/s", "sin_theta": "1", "cos_theta": "1",
 }
 
 
@@ -193,20 +143,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot, c0*(sin(theta)*(c1*cos(theta) - g)))
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    _, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega*Omega
-    # outputs
-    return _stacked((2,), y[0], theta_dot, c0*(sin(theta)*(c1*cos(theta) - g)))
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -240,98 +176,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0), (c0*x0, 0.0))
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    _, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega*Omega
-    # intermediate terms
-    cos_theta = cos(theta)
-    sin_theta = sin(theta)
-    x0 = cos_theta*(c1*cos_theta - g) - c1*sin_theta*sin_theta
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0, c0*x0, 0.0)
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    20 operations, 4 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        theta in rad; theta_dot in rad/s.
-    params : iterable of 4 floats
-        m in kg; R in m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta, _ = y.tolist() if hasattr(y, "tolist") else y
-    _, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega
-    c2 = Omega*c1
-    c3 = Omega*Omega
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = sin_theta*cos_theta
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0),
-        (
-            0.0,
-            -c0*(c0*(sin_theta*(c2*cos_theta - g)) - c3*x0),
-            2.0*c0*(c1*x0),
-            -c0*sin_theta,
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (2, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    _, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega
-    c2 = Omega*c1
-    c3 = Omega*Omega
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = sin_theta*cos_theta
-    # outputs
-    return _stacked(
-        (2, 4),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -c0*(c0*(sin_theta*(c2*cos_theta - g)) - c3*x0),
-        2.0*c0*(c1*x0),
-        -c0*sin_theta,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Jacobi's integral qdot dL/dqdot - L, not T + V, since positions depend on time.
 
@@ -354,23 +198,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*R
-    c1 = R*Omega*Omega
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = g*cos(theta) + 0.5*(c1*sin_theta*sin_theta - R*theta_dot*theta_dot)
-    # outputs
-    return -c0*x0
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    m, R, Omega, g = params
     # terms of the parameters alone
     c0 = m*R
     c1 = R*Omega*Omega
@@ -406,14 +233,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((m*R*R,),)
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
-    # inputs
-    m, R, _, _ = params
-    # outputs
-    return _stacked((1, 1), y[0], m*R*R)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -443,20 +262,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((cos(x0)*x1, sin(x0)*x1, -R*cos(theta)),)
 
 
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    _, R, Omega, _ = params
-    # intermediate terms
-    x0 = Omega*t
-    x1 = R*sin(theta)
-    # outputs
-    return _stacked((1, 3), y[0], cos(x0)*x1, sin(x0)*x1, -R*cos(theta))
-
-
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Points of `LINKS`, which pictures join.
 
@@ -482,30 +287,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = Omega*t
     # outputs
     return ((0.0, 0.0, 0.0), (R*cos(x0), R*sin(x0), 0.0), (0.0, 0.0, R))
-
-
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (3, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    _, R, Omega, _ = params
-    # intermediate terms
-    x0 = Omega*t
-    # outputs
-    return _stacked(
-        (3, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        R*cos(x0),
-        R*sin(x0),
-        0.0,
-        0.0,
-        0.0,
-        R,
-    )
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -534,17 +315,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     c0 = m*R*R
     # outputs
     return (theta, c0*theta_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
-    # inputs
-    theta, theta_dot = y
-    m, R, _, _ = params
-    # terms of the parameters alone
-    c0 = m*R*R
-    # outputs
-    return _stacked((2,), y[0], theta, c0*theta_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -578,73 +348,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*(c2*p_theta), -c1*sin(theta)*(g - c3*cos(theta)))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*m
-    c2 = 1.0/c1
-    c3 = R*Omega*Omega
-    # outputs
-    return _stacked((2,), y[0], c0*(c2*p_theta), -c1*sin(theta)*(g - c3*cos(theta)))
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    16 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        theta in rad; p_theta in J s.
-    params : iterable of 4 floats
-        m in kg; R in m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = R*m
-    c1 = R*Omega*Omega
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c1*(sin_theta*sin_theta - cos_theta*cos_theta) + g*cos_theta
-    # outputs
-    return ((0.0, 1.0/c0*(1.0/R)), (-c0*x0, 0.0))
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    m, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = R*m
-    c1 = R*Omega*Omega
-    # intermediate terms
-    sin_theta = sin(theta)
-    cos_theta = cos(theta)
-    x0 = c1*(sin_theta*sin_theta - cos_theta*cos_theta) + g*cos_theta
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/R), -c0*x0, 0.0)
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -667,25 +370,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*m
-    c2 = 1.0/c1
-    c3 = R*Omega*Omega
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = 0.5*c0*p_theta*(c2*p_theta) - c1*(0.5*c3*sin_theta*sin_theta + g*cos(theta))
-    # outputs
-    return x0
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, p_theta = y
-    m, R, Omega, g = params
     # terms of the parameters alone
     c0 = 1.0/R
     c1 = R*m
@@ -727,18 +411,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(c1*p_theta))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (2, ...)."""
-    # inputs
-    theta, p_theta = y
-    m, R, _, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = 1.0/(R*m)
-    # outputs
-    return _stacked((2,), y[0], theta, c0*(c1*p_theta))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -762,16 +434,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (sin(theta), cos(theta), theta_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    # outputs
-    return _stacked((3,), y[0], sin(theta), cos(theta), theta_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -807,224 +469,70 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (3, ...)."""
-    # inputs
-    sin_theta, cos_theta, theta_dot = y
-    _, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega*Omega
-    # outputs
-    return _stacked(
-        (3,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*(sin_theta*(g - c1*cos_theta)),
-    )
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    18 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 5 floats
-        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
-        in rad/s.
-    params : iterable of 4 floats
-        m in kg; R in m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega*Omega
-    # intermediate terms
-    x0 = g - c1*cos_theta
-    x1 = delta_theta*(cos_theta*x0 + c1*sin_theta*sin_theta)
-    # outputs
-    return (
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*(sin_theta*x0),
-        delta_theta_dot,
-        -c0*x1,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (5, ...)."""
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
-    _, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega*Omega
-    # intermediate terms
-    x0 = g - c1*cos_theta
-    x1 = delta_theta*(cos_theta*x0 + c1*sin_theta*sin_theta)
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*(sin_theta*x0),
-        delta_theta_dot,
-        -c0*x1,
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    30 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 5 floats
-        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
-        in rad/s.
-    params : iterable of 8 floats
-        delta_m in kg; delta_R in m; delta_Omega in rad/s; delta_g in m/s^2; m in kg; R in
-        m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, delta_R, delta_Omega, delta_g, _, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega
-    c2 = Omega*c1
-    c3 = Omega*Omega
-    c4 = delta_Omega*c1
-    # intermediate terms
-    x0 = g - c2*cos_theta
-    x1 = c0*(sin_theta*x0)
-    x2 = delta_theta*(cos_theta*x0 + c2*sin_theta*sin_theta)
-    x3 = cos_theta*sin_theta
-    x4 = x2 + delta_g*sin_theta - delta_R*(x1 + c3*x3) - 2.0*c4*x3
-    # outputs
-    return (
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -x1,
-        delta_theta_dot,
-        -c0*x4,
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
-    _, delta_R, delta_Omega, delta_g, _, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = 1.0/R
-    c1 = R*Omega
-    c2 = Omega*c1
-    c3 = Omega*Omega
-    c4 = delta_Omega*c1
-    # intermediate terms
-    x0 = g - c2*cos_theta
-    x1 = c0*(sin_theta*x0)
-    x2 = delta_theta*(cos_theta*x0 + c2*sin_theta*sin_theta)
-    x3 = cos_theta*sin_theta
-    x4 = x2 + delta_g*sin_theta - delta_R*(x1 + c3*x3) - 2.0*c4*x3
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -x1,
-        delta_theta_dot,
-        -c0*x4,
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 4 floats
-        m in kg; R in m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0).
-    """
-    # inputs
-    # outputs
-    return (0.0,)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (1, ...)."""
-    # inputs
-    # outputs
-    return _stacked((1,), params[0], 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0).
-
-    6 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 4 floats
-        m in kg; R in m; Omega in rad/s; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m, R, Omega, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*R
-    # outputs
-    return (((R*c0,),), (((g - R*Omega*Omega)*c0,),))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 1, 1, ...)."""
-    # inputs
-    m, R, Omega, g = params
-    # terms of the parameters alone
-    c0 = m*R
-    # outputs
-    return _stacked((2, 1, 1), params[0], R*c0, (g - R*Omega*Omega)*c0)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

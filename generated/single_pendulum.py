@@ -18,20 +18,6 @@ State y in functions of the rational form:
     cos_theta [1]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta [1]
-    cos_theta [1]
-    theta_dot [rad/s]
-    delta_theta [rad]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta [1]
-    cos_theta [1]
-    theta_dot [rad/s]
-    delta_theta [rad]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 2.0: length
@@ -58,19 +44,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "72a2a0eb70faa430"
+DIGEST = "24e2efb1f5a0a112"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -79,18 +64,10 @@ STATES = {
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
-        "sin_theta",
-        "cos_theta",
-        "theta_dot",
-        "delta_theta",
-        "delta_theta_dot",
+        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
     "sensitivity": (
-        "sin_theta",
-        "cos_theta",
-        "theta_dot",
-        "delta_theta",
-        "delta_theta_dot",
+        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "l", "g")
@@ -98,47 +75,20 @@ DEFAULTS: tuple[float, ...] = (1.0, 2.0, 9.81)
 POSITIVE = ("m", "l")
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "reactions",
-    "positions",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "reactions", "positions",
+    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (5, 1),
-    "jacobian": (5, 1),
-    "parameter_jacobian": (7, 1),
-    "energy": (8, 1),
-    "reactions": (6, 0),
-    "mass_matrix": (2, 2),
-    "positions": (5, 0),
-    "hamiltonian_state": (3, 2),
-    "rhs_hamiltonian": (9, 4),
-    "jacobian_hamiltonian": (8, 5),
-    "energy_hamiltonian": (11, 4),
-    "lagrangian_state": (5, 3),
-    "rational_state": (2, 0),
-    "rhs_rational": (7, 1),
-    "rhs_variational": (11, 1),
-    "rhs_sensitivity": (18, 3),
-    "equilibrium": (0, 0),
-    "linear": (3, 3),
+    "rhs": (5, 1), "jacobian": (5, 1), "parameter_jacobian": (7, 1), "energy": (8, 1),
+    "reactions": (6, 0), "mass_matrix": (2, 2), "positions": (5, 0),
+    "hamiltonian_state": (3, 2), "rhs_hamiltonian": (9, 4), "jacobian_hamiltonian": (8, 5),
+    "energy_hamiltonian": (11, 4), "lagrangian_state": (5, 3), "rational_state": (2, 0),
+    "rhs_rational": (7, 1), "rhs_variational": (11, 1), "rhs_sensitivity": (18, 3),
+    "equilibrium": (0, 0), "linear": (3, 3),
 }
 UNITS = {
-    "m": "kg",
-    "l": "m",
-    "g": "m/s^2",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
+    "m": "kg", "l": "m", "g": "m/s^2", "theta": "rad", "theta_dot": "rad/s",
+    "p_theta": "J s", "delta_theta": "rad", "delta_theta_dot": "rad/s", "sin_theta": "1",
     "cos_theta": "1",
 }
 
@@ -189,19 +139,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot, -c0*(g*sin(theta)))
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (2, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, theta_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # outputs
-    return _stacked((2,), y[0], theta_dot, -c0*(g*sin(theta)))
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -230,73 +167,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0), (-c0*(g*cos(theta)), 0.0))
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta, _ = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0, -c0*(g*cos(theta)), 0.0)
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    7 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        theta in rad; theta_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta, _ = y.tolist() if hasattr(y, "tolist") else y
-    _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    sin_theta = sin(theta)
-    # outputs
-    return ((0.0, 0.0, 0.0), (0.0, c0*(c0*(g*sin_theta)), -c0*sin_theta))
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (2, 3, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, _ = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    sin_theta = sin(theta)
-    # outputs
-    return _stacked(
-        (2, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        c0*(c0*(g*sin_theta)),
-        -c0*sin_theta,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -319,19 +189,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return c0*(0.5*l*theta_dot*theta_dot - g*cos(theta))
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    theta, theta_dot = y
-    m, l, g = params
     # terms of the parameters alone
     c0 = m*l
     # outputs
@@ -364,17 +221,6 @@ def reactions(t: float, y: Numbers, params: Numbers) -> Vector:
     return (m*(l*theta_dot*theta_dot + g*cos(theta)),)
 
 
-def reactions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`reactions` over arrays: the result has shape (1, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta, theta_dot = y
-    m, l, g = params
-    # outputs
-    return _stacked((1,), y[0], m*(l*theta_dot*theta_dot + g*cos(theta)))
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -398,14 +244,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, _ = params.tolist() if hasattr(params, "tolist") else params
     # outputs
     return ((m*l*l,),)
-
-
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
-    # inputs
-    m, l, _ = params
-    # outputs
-    return _stacked((1, 1), y[0], m*l*l)
 
 
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -434,17 +272,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((l*sin(theta), -l*cos(theta)),)
 
 
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _ = y
-    _, l, _ = params
-    # outputs
-    return _stacked((1, 2), y[0], l*sin(theta), -l*cos(theta))
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -471,17 +298,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     c0 = m*l*l
     # outputs
     return (theta, c0*theta_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
-    # inputs
-    theta, theta_dot = y
-    m, l, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # outputs
-    return _stacked((2,), y[0], theta, c0*theta_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -515,65 +331,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*(c2*p_theta), -c3*sin(theta))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, p_theta = y
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = c1*g
-    # outputs
-    return _stacked((2,), y[0], c0*(c2*p_theta), -c3*sin(theta))
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    8 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        theta in rad; p_theta in J s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta, _ = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*m
-    c1 = c0*g
-    # outputs
-    return ((0.0, 1.0/c0*(1.0/l)), (-c1*cos(theta), 0.0))
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    theta, _ = y
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = l*m
-    c1 = c0*g
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0/c0*(1.0/l), -c1*cos(theta), 0.0)
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -596,22 +353,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = c1*g
-    # outputs
-    return 0.5*c0*p_theta*(c2*p_theta) - c3*cos(theta)
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    theta, p_theta = y
-    m, l, g = params
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = l*m
@@ -650,18 +391,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta, c0*(c1*p_theta))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (2, ...)."""
-    # inputs
-    theta, p_theta = y
-    m, l, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/(l*m)
-    # outputs
-    return _stacked((2,), y[0], theta, c0*(c1*p_theta))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -685,16 +414,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     theta, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (sin(theta), cos(theta), theta_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, theta_dot = y
-    # outputs
-    return _stacked((3,), y[0], sin(theta), cos(theta), theta_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -725,204 +444,70 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta_dot*cos_theta, -theta_dot*sin_theta, -c0*(g*sin_theta))
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (3, ...)."""
-    # inputs
-    sin_theta, cos_theta, theta_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # outputs
-    return _stacked(
-        (3,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*(g*sin_theta),
-    )
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    11 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 5 floats
-        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
-        in rad/s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # outputs
-    return (
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*(g*sin_theta),
-        delta_theta_dot,
-        -c0*(g*cos_theta*delta_theta),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+reactions_many = _over_arrays(reactions)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (5, ...)."""
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*(g*sin_theta),
-        delta_theta_dot,
-        -c0*(g*cos_theta*delta_theta),
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    18 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 5 floats
-        sin_theta, cos_theta in 1; theta_dot in rad/s; delta_theta in rad; delta_theta_dot
-        in rad/s.
-    params : iterable of 6 floats
-        delta_m in kg; delta_l in m; delta_g in m/s^2; m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, delta_l, delta_g, _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*g
-    c2 = l*delta_g
-    # intermediate terms
-    x0 = g*sin_theta
-    x1 = c1*cos_theta*delta_theta + c2*sin_theta - delta_l*x0
-    # outputs
-    return (
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*x0,
-        delta_theta_dot,
-        -c0*(c0*x1),
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
-    # inputs
-    sin_theta, cos_theta, theta_dot, delta_theta, delta_theta_dot = y
-    _, delta_l, delta_g, _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*g
-    c2 = l*delta_g
-    # intermediate terms
-    x0 = g*sin_theta
-    x1 = c1*cos_theta*delta_theta + c2*sin_theta - delta_l*x0
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        -c0*x0,
-        delta_theta_dot,
-        -c0*(c0*x1),
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0).
-    """
-    # inputs
-    # outputs
-    return (0.0,)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (1, ...)."""
-    # inputs
-    # outputs
-    return _stacked((1,), params[0], 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0).
-
-    3 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return (((l*c0,),), ((g*c0,),))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 1, 1, ...)."""
-    # inputs
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return _stacked((2, 1, 1), params[0], l*c0, g*c0)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

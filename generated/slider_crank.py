@@ -18,20 +18,6 @@ State y in functions of the rational form:
     cos_phi [1]
     phi_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_phi [1]
-    cos_phi [1]
-    phi_dot [rad/s]
-    delta_phi [rad]
-    delta_phi_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_phi [1]
-    cos_phi [1]
-    phi_dot [rad/s]
-    delta_phi [rad]
-    delta_phi_dot [rad/s]
-
 Parameters params:
     r [m] > 0, default 0.1: crank
     l [m] > 0, default 0.3: rod
@@ -43,7 +29,8 @@ Parameters params:
 Masses and their positions:
     m1 at (r*cos(phi)/2, r*sin(phi)/2), moment of inertia m1*r**2/12, orientation phi
     M at (r*cos(phi) + sqrt(l**2 - r**2*sin(phi)**2), 0)
-    m2 at (r*cos(phi) + sqrt(l**2 - r**2*sin(phi)**2)/2, r*sin(phi)/2), moment of inertia l**2*m2/12, orientation
+    m2 at (r*cos(phi) + sqrt(l**2 - r**2*sin(phi)**2)/2, r*sin(phi)/2),
+        moment of inertia l**2*m2/12, orientation
         -atan(r*sin(phi)/sqrt(l**2 - r**2*sin(phi)**2))
 
 Degrees of freedom:
@@ -59,24 +46,31 @@ Multipliers of eliminated constraints:
 
 Lagrangian:
     L = -g*r*(m1 + m2)*sin(phi)/2
-        + phi_dot**2*(M*r**2*(r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 1)**2*sin(phi)**2 + l**2*m2*r**2*cos(phi)**2/(12*(l**2 - r**2*sin(phi)**2)) + m1*r**2/3 + m2*r**2*((r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 2)**2*sin(phi)**2 + cos(phi)**2)/4)/2
+        + phi_dot**2*(M*r**2*(r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 1)**2*sin(phi)**2
+        + l**2*m2*r**2*cos(phi)**2/(12*(l**2 - r**2*sin(phi)**2)) + m1*r**2/3
+        + m2*r**2*((r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 2)**2*sin(phi)**2
+        + cos(phi)**2)/4)/2
 
 Equations of motion:
-    M*phi_dot**2*r**6*sin(phi)**3*cos(phi)**3/(l**4 - 2*l**2*r**2*sin(phi)**2 + r**4*sin(phi)**4)
-        + M*phi_dot**2*r**5*sin(phi)**3*cos(phi)**2/(l**2*sqrt(l**2 - r**2*sin(phi)**2) - r**2*sqrt(l**2 - r**2*sin(phi)**2)*sin(phi)**2)
+    M*phi_dot**2*r**6*sin(phi)**3*cos(phi)**3/(l**4 - 2*l**2*r**2*sin(phi)**2
+        + r**4*sin(phi)**4) + M*phi_dot**2*r**5*sin(phi)**3*cos(phi)**2/(l**2*sqrt(l**2
+        - r**2*sin(phi)**2) - r**2*sqrt(l**2 - r**2*sin(phi)**2)*sin(phi)**2)
         - M*phi_dot**2*r**4*sin(phi)**3*cos(phi)/(l**2 - r**2*sin(phi)**2)
-        + M*phi_dot**2*r**4*sin(phi)*cos(phi)**3/(l**2 - r**2*sin(phi)**2)
-        + g*r*(m1 + m2)*cos(phi)/2
-        + l**2*m2*phi_dot**2*r**4*sin(phi)*cos(phi)**3/(12*l**4 - 24*l**2*r**2*sin(phi)**2 + 12*r**4*sin(phi)**4)
+        + M*phi_dot**2*r**4*sin(phi)*cos(phi)**3/(l**2 - r**2*sin(phi)**2) + g*r*(m1
+        + m2)*cos(phi)/2 + l**2*m2*phi_dot**2*r**4*sin(phi)*cos(phi)**3/(12*l**4
+        - 24*l**2*r**2*sin(phi)**2 + 12*r**4*sin(phi)**4)
         - l**2*m2*phi_dot**2*r**2*sin(phi)*cos(phi)/(12*l**2 - 12*r**2*sin(phi)**2)
-        + m2*phi_dot**2*r**6*sin(phi)**3*cos(phi)**3/(4*l**4 - 8*l**2*r**2*sin(phi)**2 + 4*r**4*sin(phi)**4)
-        + m2*phi_dot**2*r**5*sin(phi)**3*cos(phi)**2/(2*l**2*sqrt(l**2 - r**2*sin(phi)**2) - 2*r**2*sqrt(l**2 - r**2*sin(phi)**2)*sin(phi)**2)
+        + m2*phi_dot**2*r**6*sin(phi)**3*cos(phi)**3/(4*l**4 - 8*l**2*r**2*sin(phi)**2
+        + 4*r**4*sin(phi)**4) + m2*phi_dot**2*r**5*sin(phi)**3*cos(phi)**2/(2*l**2*sqrt(l**2
+        - r**2*sin(phi)**2) - 2*r**2*sqrt(l**2 - r**2*sin(phi)**2)*sin(phi)**2)
         - m2*phi_dot**2*r**4*sin(phi)**3*cos(phi)/(4*l**2 - 4*r**2*sin(phi)**2)
         + m2*phi_dot**2*r**4*sin(phi)*cos(phi)**3/(4*l**2 - 4*r**2*sin(phi)**2)
-        + phi_ddot*(M*r**2*(r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 1)**2*sin(phi)**2 + l**2*m2*r**2*cos(phi)**2/(12*(l**2 - r**2*sin(phi)**2)) + m1*r**2/3 + m2*r**2*((r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 2)**2*sin(phi)**2 + cos(phi)**2)/4)
-        - phi_dot**2*r**3*(M + m2/2)*sin(phi)**3/sqrt(l**2 - r**2*sin(phi)**2)
-        + phi_dot**2*r**3*(2*M + m2)*sin(phi)*cos(phi)**2/sqrt(l**2 - r**2*sin(phi)**2)
-        + phi_dot**2*r**2*(M + 3*m2/4)*sin(phi)*cos(phi) = 0
+        + phi_ddot*(M*r**2*(r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 1)**2*sin(phi)**2
+        + l**2*m2*r**2*cos(phi)**2/(12*(l**2 - r**2*sin(phi)**2)) + m1*r**2/3
+        + m2*r**2*((r*cos(phi)/sqrt(l**2 - r**2*sin(phi)**2) + 2)**2*sin(phi)**2
+        + cos(phi)**2)/4) - phi_dot**2*r**3*(M + m2/2)*sin(phi)**3/sqrt(l**2
+        - r**2*sin(phi)**2) + phi_dot**2*r**3*(2*M + m2)*sin(phi)*cos(phi)**2/sqrt(l**2
+        - r**2*sin(phi)**2) + phi_dot**2*r**2*(M + 3*m2/4)*sin(phi)*cos(phi) = 0
 
 Each function takes one state as plain numbers and returns plain numbers, which is fastest for
 one state. Its variant ``_many`` takes NumPy arrays, with the state along the first axis: y of
@@ -90,25 +84,23 @@ from math import cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "slider_crank"
-DIGEST = "21169e6cc24e5134"
+DIGEST = "8000cc277bba5d01"
 COORDINATES = ("phi",)
 STATE = ("phi", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("phi", "phi_dot"),
-    "hamiltonian": ("phi", "p_phi"),
+    "lagrangian": ("phi", "phi_dot"), "hamiltonian": ("phi", "p_phi"),
     "rational": ("sin_phi", "cos_phi", "phi_dot"),
     "variational": ("sin_phi", "cos_phi", "phi_dot", "delta_phi", "delta_phi_dot"),
     "sensitivity": ("sin_phi", "cos_phi", "phi_dot", "delta_phi", "delta_phi_dot"),
@@ -126,65 +118,25 @@ LINKS = (
 )
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "outputs",
-    "outputs_jacobian",
-    "outputs_parameter_jacobian",
-    "energy",
-    "multipliers",
-    "mass_matrix",
-    "positions",
-    "points",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
-    "rhs_rational",
-    "rhs_variational",
-    "rhs_sensitivity",
+    "rhs", "jacobian", "parameter_jacobian", "outputs", "outputs_jacobian",
+    "outputs_parameter_jacobian", "energy", "multipliers", "mass_matrix", "positions",
+    "points", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
+    "energy_hamiltonian", "lagrangian_state", "rational_state", "rhs_rational",
+    "rhs_variational", "rhs_sensitivity",
 )
 OPERATIONS = {
-    "rhs": (66, 6),
-    "jacobian": (111, 6),
-    "parameter_jacobian": (215, 9),
-    "outputs": (18, 2),
-    "outputs_jacobian": (32, 2),
-    "outputs_parameter_jacobian": (28, 3),
-    "energy": (38, 5),
-    "multipliers": (231, 21),
-    "mass_matrix": (30, 3),
-    "positions": (15, 2),
-    "points": (17, 4),
-    "hamiltonian_state": (31, 3),
-    "rhs_hamiltonian": (67, 7),
-    "jacobian_hamiltonian": (111, 7),
-    "energy_hamiltonian": (39, 7),
-    "lagrangian_state": (33, 4),
-    "rational_state": (2, 0),
-    "rhs_rational": (66, 6),
-    "rhs_variational": (116, 6),
-    "rhs_sensitivity": (260, 11),
+    "rhs": (66, 6), "jacobian": (111, 6), "parameter_jacobian": (215, 9),
+    "outputs": (18, 2), "outputs_jacobian": (32, 2), "outputs_parameter_jacobian": (28, 3),
+    "energy": (38, 5), "multipliers": (231, 21), "mass_matrix": (30, 3),
+    "positions": (15, 2), "points": (17, 4), "hamiltonian_state": (31, 3),
+    "rhs_hamiltonian": (67, 7), "jacobian_hamiltonian": (111, 7),
+    "energy_hamiltonian": (39, 7), "lagrangian_state": (33, 4), "rational_state": (2, 0),
+    "rhs_rational": (66, 6), "rhs_variational": (116, 6), "rhs_sensitivity": (260, 11),
 }
 UNITS = {
-    "r": "m",
-    "l": "m",
-    "m1": "kg",
-    "m2": "kg",
-    "M": "kg",
-    "g": "m/s^2",
-    "phi": "rad",
-    "phi_dot": "rad/s",
-    "p_phi": "J s",
-    "delta_phi": "rad",
-    "delta_phi_dot": "rad/s",
-    "sin_phi": "1",
-    "cos_phi": "1",
-    "guide": "N",
-    "rod": "N",
+    "r": "m", "l": "m", "m1": "kg", "m2": "kg", "M": "kg", "g": "m/s^2", "phi": "rad",
+    "phi_dot": "rad/s", "p_phi": "J s", "delta_phi": "rad", "delta_phi_dot": "rad/s",
+    "sin_phi": "1", "cos_phi": "1", "guide": "N", "rod": "N",
 }
 
 
@@ -258,43 +210,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (phi_dot, 0.5*x12)
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = g*(m1 + m2)
-    # intermediate terms
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c1 - c2*x0
-    sqrt_x1 = sqrt(x1)
-    x2 = r*cos_phi/sqrt_x1
-    x3 = 2.0 + x2
-    x4 = sqrt_x1*sqrt_x1
-    x5 = cos_phi*cos_phi
-    x6 = c2*x5
-    x7 = r*(x4 - x6)*x0/(sqrt_x1*x4)
-    x8 = 1.0 + x2
-    x9 = M*x8
-    x10 = (
-        0.5*m2*(cos_phi - x3*(cos_phi*x3 - x7)) + (1.0/6.0)*c3*cos_phi*(x1 - x6)/(x1*x1)
-        - 2.0*(cos_phi*x8 - x7)*x9
-    )
-    x11 = (1.0/3.0)*m1 + 0.25*m2*(x5 + x3*x3*x0) + x8*x0*x9 + (1.0/12.0)*c3*x5/x1
-    x12 = c0*((r*phi_dot*phi_dot*sin_phi*x10 - c4*cos_phi)/x11)
-    # outputs
-    return _stacked((2,), y[0], phi_dot, 0.5*x12)
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -361,257 +276,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((0.0, 1.0), (0.5*c0*(x26/x25), c0*(x22*x24/x25)))
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = g*(m1 + m2)
-    # intermediate terms
-    cos_phi = cos(phi)
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c2*x0
-    x2 = c1 - x1
-    sqrt_x2 = sqrt(x2)
-    x3 = r*cos_phi/sqrt_x2
-    x4 = 2.0 + x3
-    x5 = sqrt_x2*sqrt_x2
-    x6 = cos_phi*cos_phi
-    x7 = c2*x6
-    x8 = r*(x5 - x7)
-    x9 = sqrt_x2*x5
-    x10 = x8*x0/x9
-    x11 = cos_phi*x4 - x10
-    x12 = c3*(x2 - x7)
-    x13 = x2*x2
-    x14 = 1.0 + x3
-    x15 = cos_phi*x14 - x10
-    x16 = M*x14
-    x17 = 0.5*m2*(cos_phi - x4*x11) + (1.0/6.0)*cos_phi*x12/x13 - 2.0*x15*x16
-    x18 = cos_phi*x8
-    x19 = x18/x9
-    x20 = x18*(3.0*x1 + 2.0*x5)/(x5*x9)
-    x21 = (
-        0.5*m2*(1.0 - (x11*x8/x9 + x4*(x4 + x19 + x20)))
-        + (1.0/6.0)*(x2 - 4.0*x7)*x12/(x2*x13) - 2.0*M*(x15*x8/x9 + x14*(x20 + (x14 + x19)))
-    )
-    x22 = r*phi_dot
-    x23 = phi_dot*x22
-    x24 = sin_phi*x17
-    x25 = (1.0/3.0)*m1 + 0.25*m2*(x6 + x4*x4*x0) + x14*x0*x16 + (1.0/12.0)*c3*x6/x2
-    x26 = (cos_phi*x17 - x21*x0)*x23 + c4*sin_phi + (x24*x23 - c4*cos_phi)/x25*x24
-    # outputs
-    return _stacked((2, 2), y[0], 0.0, 1.0, 0.5*c0*(x26/x25), c0*(x22*x24/x25))
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    215 operations, 9 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        phi in rad; phi_dot in rad/s.
-    params : iterable of 6 floats
-        r, l in m; m1, m2, M in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    phi, phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    r, l, m1, m2, M, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = r*m2
-    c5 = c1*c4
-    c6 = m1 + m2
-    c7 = g*c6
-    c8 = r*M
-    # intermediate terms
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    x0 = r*cos_phi
-    x1 = sin_phi*sin_phi
-    x2 = c2*x1
-    x3 = c1 - x2
-    sqrt_x3 = sqrt(x3)
-    x4 = x0/sqrt_x3
-    x5 = 2.0 + x4
-    x6 = sqrt_x3*sqrt_x3
-    x7 = cos_phi*cos_phi
-    x8 = c2*x7
-    x9 = x6 - x8
-    x10 = sqrt_x3*x6
-    x11 = r*x9*x1/x10
-    x12 = cos_phi*x5 - x11
-    x13 = cos_phi - x5*x12
-    x14 = x3 - x8
-    x15 = cos_phi*x14
-    x16 = x3*x3
-    x17 = 1.0 + x4
-    x18 = cos_phi*x17 - x11
-    x19 = M*x17
-    x20 = 0.5*m2*x13 + (1.0/6.0)*c3*x15/x16 - 2.0*x18*x19
-    x21 = x2 + x6
-    x22 = cos_phi*x6
-    x23 = x12*x22
-    x24 = x7*x6
-    x25 = x7 + x1
-    x26 = x21*x24 - x1*(x6*x9 + 3.0*x2*x9 - 2.0*c2*x6*x25)
-    x27 = x6*x10
-    x28 = x18*x22
-    x29 = c5*cos_phi
-    x30 = x3*x16
-    x31 = (
-        0.5*m2*(x21*x23 + x5*x26)/x27 + 2.0*M*(x21*x28 + x17*x26)/x27
-        - (1.0/3.0)*(2.0*x14*x1 - x3*x25)*x29/x30
-    )
-    x32 = phi_dot*phi_dot
-    x33 = x5*x1
-    x34 = x7 + x5*x33
-    x35 = x17*x1
-    x36 = (1.0/3.0)*m1 + 0.25*m2*x34 + x19*x35 + (1.0/12.0)*c3*x7/x3
-    x37 = 0.5*m2*x5*x21/x10 + 2.0*x21*x19/x10 + (1.0/6.0)*x29/x16
-    x38 = r*x32
-    x39 = sin_phi*x38
-    x40 = (x20*x39 - c7*cos_phi)/x36
-    x41 = sin_phi*(x20 - r*x31)*x32 - c0*(x36 + x0*x1*x37)*x40
-    x42 = x24 - x1*(3.0*x9 - 2.0*x6)
-    x43 = m2*cos_phi
-    x44 = (
-        0.5*c4*(x23 + x5*x42)/x27 + 2.0*c8*(x28 + x17*x42)/x27
-        + (1.0/3.0)*(x3*x14 + c1*x3 - 2.0*c1*x14)*x43/x30
-    )
-    x45 = 0.5*c4*x33/x10 + 2.0*c8*x35/x10 - (1.0/6.0)*(x3 - c1)*x43/x16
-    x46 = g*cos_phi
-    x47 = x46 - 0.5*(x13 + (1.0/3.0)*c1*x15/x16)*x39 + 0.25*x40*(x34 + (1.0/3.0)*c1*x7/x3)
-    x48 = sin_phi*x17
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (
-            0.5*c0*(x41/x36),
-            0.5*c0*(l*(x44*x39 + cos_phi*x40*x45)/x36),
-            -0.5*c0*(((1.0/3.0)*x40 + x46)/x36),
-            -0.5*c0*(x47/x36),
-            -c0*((x18*x38 + 0.5*x40*x48)*x48/x36),
-            -0.5*c0*(c6*cos_phi/x36),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (2, 6, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = r*m2
-    c5 = c1*c4
-    c6 = m1 + m2
-    c7 = g*c6
-    c8 = r*M
-    # intermediate terms
-    sin_phi = sin(phi)
-    cos_phi = cos(phi)
-    x0 = r*cos_phi
-    x1 = sin_phi*sin_phi
-    x2 = c2*x1
-    x3 = c1 - x2
-    sqrt_x3 = sqrt(x3)
-    x4 = x0/sqrt_x3
-    x5 = 2.0 + x4
-    x6 = sqrt_x3*sqrt_x3
-    x7 = cos_phi*cos_phi
-    x8 = c2*x7
-    x9 = x6 - x8
-    x10 = sqrt_x3*x6
-    x11 = r*x9*x1/x10
-    x12 = cos_phi*x5 - x11
-    x13 = cos_phi - x5*x12
-    x14 = x3 - x8
-    x15 = cos_phi*x14
-    x16 = x3*x3
-    x17 = 1.0 + x4
-    x18 = cos_phi*x17 - x11
-    x19 = M*x17
-    x20 = 0.5*m2*x13 + (1.0/6.0)*c3*x15/x16 - 2.0*x18*x19
-    x21 = x2 + x6
-    x22 = cos_phi*x6
-    x23 = x12*x22
-    x24 = x7*x6
-    x25 = x7 + x1
-    x26 = x21*x24 - x1*(x6*x9 + 3.0*x2*x9 - 2.0*c2*x6*x25)
-    x27 = x6*x10
-    x28 = x18*x22
-    x29 = c5*cos_phi
-    x30 = x3*x16
-    x31 = (
-        0.5*m2*(x21*x23 + x5*x26)/x27 + 2.0*M*(x21*x28 + x17*x26)/x27
-        - (1.0/3.0)*(2.0*x14*x1 - x3*x25)*x29/x30
-    )
-    x32 = phi_dot*phi_dot
-    x33 = x5*x1
-    x34 = x7 + x5*x33
-    x35 = x17*x1
-    x36 = (1.0/3.0)*m1 + 0.25*m2*x34 + x19*x35 + (1.0/12.0)*c3*x7/x3
-    x37 = 0.5*m2*x5*x21/x10 + 2.0*x21*x19/x10 + (1.0/6.0)*x29/x16
-    x38 = r*x32
-    x39 = sin_phi*x38
-    x40 = (x20*x39 - c7*cos_phi)/x36
-    x41 = sin_phi*(x20 - r*x31)*x32 - c0*(x36 + x0*x1*x37)*x40
-    x42 = x24 - x1*(3.0*x9 - 2.0*x6)
-    x43 = m2*cos_phi
-    x44 = (
-        0.5*c4*(x23 + x5*x42)/x27 + 2.0*c8*(x28 + x17*x42)/x27
-        + (1.0/3.0)*(x3*x14 + c1*x3 - 2.0*c1*x14)*x43/x30
-    )
-    x45 = 0.5*c4*x33/x10 + 2.0*c8*x35/x10 - (1.0/6.0)*(x3 - c1)*x43/x16
-    x46 = g*cos_phi
-    x47 = x46 - 0.5*(x13 + (1.0/3.0)*c1*x15/x16)*x39 + 0.25*x40*(x34 + (1.0/3.0)*c1*x7/x3)
-    x48 = sin_phi*x17
-    # outputs
-    return _stacked(
-        (2, 6),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.5*c0*(x41/x36),
-        0.5*c0*(l*(x44*x39 + cos_phi*x40*x45)/x36),
-        -0.5*c0*(((1.0/3.0)*x40 + x46)/x36),
-        -0.5*c0*(x47/x36),
-        -c0*((x18*x38 + 0.5*x40*x48)*x48/x36),
-        -0.5*c0*(c6*cos_phi/x36),
-    )
-
-
 def outputs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Outputs w, u, w_dot, u_dot, x.
 
@@ -647,228 +311,6 @@ def outputs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (-r*sin_phi, x1, -phi_dot*x2, -phi_dot*cos_phi*x0/x1, x1 + x2)
 
 
-def outputs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`outputs` over arrays: the result has shape (5, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, _, _, _, _ = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = r*r
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = c1*sin_phi
-    x1 = sqrt(c0 - sin_phi*x0)
-    cos_phi = cos(phi)
-    x2 = r*cos_phi
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        -r*sin_phi,
-        x1,
-        -phi_dot*x2,
-        -phi_dot*cos_phi*x0/x1,
-        x1 + x2,
-    )
-
-
-def outputs_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `outputs` with respect to the state.
-
-    32 operations, 2 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        phi in rad; phi_dot in rad/s.
-    params : iterable of 6 floats
-        r, l in m; m1, m2, M in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of output i with respect to y[j].
-    """
-    # inputs
-    phi, phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    r, l, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = r*r
-    c1 = l*l
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = r*cos_phi
-    x1 = -x0
-    sin_phi = sin(phi)
-    x2 = sin_phi*sin_phi
-    x3 = c0*x2
-    x4 = sqrt(c1 - x3)
-    x5 = -c0*cos_phi*sin_phi/x4
-    x6 = r*sin_phi
-    x7 = x4*x4
-    x8 = cos_phi*cos_phi
-    # outputs
-    return (
-        (x1, 0.0),
-        (x5, 0.0),
-        (phi_dot*x6, x1),
-        (-c0*phi_dot*(x7*x8 + x3*x8 - x2*x7)/(x4*x7), x5),
-        (-(1.0 + x0/x4)*x6, 0.0),
-    )
-
-
-def outputs_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`outputs_jacobian` over arrays: the result has shape (5, 2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, _, _, _, _ = params
-    # terms of the parameters alone
-    c0 = r*r
-    c1 = l*l
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = r*cos_phi
-    x1 = -x0
-    sin_phi = sin(phi)
-    x2 = sin_phi*sin_phi
-    x3 = c0*x2
-    x4 = sqrt(c1 - x3)
-    x5 = -c0*cos_phi*sin_phi/x4
-    x6 = r*sin_phi
-    x7 = x4*x4
-    x8 = cos_phi*cos_phi
-    # outputs
-    return _stacked(
-        (5, 2),
-        y[0],
-        x1,
-        0.0,
-        x5,
-        0.0,
-        phi_dot*x6,
-        x1,
-        -c0*phi_dot*(x7*x8 + x3*x8 - x2*x7)/(x4*x7),
-        x5,
-        -(1.0 + x0/x4)*x6,
-        0.0,
-    )
-
-
-def outputs_parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `outputs` with respect to the parameters, with inputs.
-
-    28 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        phi in rad; phi_dot in rad/s.
-    params : iterable of 6 floats
-        r, l in m; m1, m2, M in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of output i with respect to params[j].
-    """
-    # inputs
-    phi, phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    r, l, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = r*r
-    c2 = l*c1
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c1*x0
-    x2 = sqrt(c0 - x1)
-    x3 = r*x0/x2
-    x4 = l/x2
-    cos_phi = cos(phi)
-    x5 = phi_dot*cos_phi
-    x6 = x2*x2
-    x7 = sin_phi*x5
-    x8 = x2*x6
-    # outputs
-    return (
-        (-sin_phi, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-x3, x4, 0.0, 0.0, 0.0, 0.0),
-        (-x5, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-r*(x1 + 2.0*x6)*x7/x8, c2*x7/x8, 0.0, 0.0, 0.0, 0.0),
-        (cos_phi - x3, x4, 0.0, 0.0, 0.0, 0.0),
-    )
-
-
-def outputs_parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`outputs_parameter_jacobian` over arrays: the result has shape (5, 6, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, _, _, _, _ = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = r*r
-    c2 = l*c1
-    # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c1*x0
-    x2 = sqrt(c0 - x1)
-    x3 = r*x0/x2
-    x4 = l/x2
-    cos_phi = cos(phi)
-    x5 = phi_dot*cos_phi
-    x6 = x2*x2
-    x7 = sin_phi*x5
-    x8 = x2*x6
-    # outputs
-    return _stacked(
-        (5, 6),
-        y[0],
-        -sin_phi,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x3,
-        x4,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -x5,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -r*(x1 + 2.0*x6)*x7/x8,
-        c2*x7/x8,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        cos_phi - x3,
-        x4,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -891,32 +333,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     phi, phi_dot = y.tolist() if hasattr(y, "tolist") else y
     r, l, m1, m2, M, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = r*r
-    c2 = m2*c0
-    c3 = g*(m1 + m2)
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = cos_phi*cos_phi
-    sin_phi = sin(phi)
-    x1 = sin_phi*sin_phi
-    x2 = c0 - c1*x1
-    x3 = r*cos_phi/sqrt(x2)
-    x4 = 2.0 + x3
-    x5 = 1.0 + x3
-    x6 = (1.0/3.0)*m1 + 0.25*m2*(x0 + x4*x4*x1) + M*x5*x5*x1 + (1.0/12.0)*c2*x0/x2
-    # outputs
-    return 0.5*r*(r*phi_dot*phi_dot*x6 + c3*sin_phi)
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, m1, m2, M, g = params
     # terms of the parameters alone
     c0 = l*l
     c1 = r*r
@@ -1042,97 +458,6 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     return (x46, l*x45/sqrt_x2)
 
 
-def multipliers_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`multipliers` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 0.5*m2 + M
-    c1 = g*c0
-    c2 = l*l
-    c3 = r*r
-    c4 = m2*c2
-    c5 = g*(m2 + m1)
-    c6 = 0.25*m2 + M
-    c7 = c3*c3
-    c8 = r*c4
-    c9 = c7*c8
-    c10 = c3*c7
-    c11 = c3*c8
-    c12 = c3*c9
-    c13 = c3*c4
-    c14 = c0*r
-    c15 = r*c9
-    c16 = c4*c7
-    c17 = c3*c15
-    # intermediate terms
-    cos_phi = cos(phi)
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c3*x0
-    x2 = c2 - x1
-    sqrt_x2 = sqrt(x2)
-    x3 = r*cos_phi/sqrt_x2
-    x4 = 2.0 + x3
-    x5 = sqrt_x2*sqrt_x2
-    x6 = cos_phi*cos_phi
-    x7 = c3*x6
-    x8 = sqrt_x2*x5
-    x9 = r*(x5 - x7)*x0/x8
-    x10 = x2*x2
-    x11 = 1.0 + x3
-    x12 = M*x11
-    x13 = (
-        0.5*m2*(cos_phi - x4*(cos_phi*x4 - x9)) + (1.0/6.0)*c4*cos_phi*(x2 - x7)/x10
-        - 2.0*(cos_phi*x11 - x9)*x12
-    )
-    x14 = phi_dot*phi_dot
-    x15 = sin_phi*x14
-    x16 = r*x15
-    x17 = (1.0/3.0)*m1 + 0.25*m2*(x6 + x4*x4*x0) + x11*x0*x12 + (1.0/12.0)*c4*x6/x2
-    x18 = (x13*x16 - c5*cos_phi)/x17
-    x19 = cos_phi*x18
-    x20 = x16 - 0.5*x19
-    x21 = 1.0 + x1/x2
-    x22 = x21*x21
-    x23 = x6*x15
-    x24 = c9*x0*x23
-    x25 = sqrt_x2*x8
-    x26 = x0*x0
-    x27 = c10*x0*x26
-    x28 = c7*x26
-    x29 = sqrt_x2*x25 + x27/sqrt_x2 + 3.0*(x1*x8 + sqrt_x2*x28)
-    x30 = c11*x23
-    x31 = x1*x2
-    x32 = x26*x23
-    x33 = x27 + x2*x10 + 3.0*(x1*x10 + x2*x28)
-    x34 = x10 + x28 + 2.0*x31
-    x35 = x30/(sqrt_x2*(x8 + x28/sqrt_x2 + 2.0*x1*sqrt_x2))
-    x36 = x30/(x10 + x27/x2 + 3.0*(x28 + x31)) + c12*x32/(x2*x33) - x24/(x2*x34) - x35
-    x37 = r*(x6*x5 + x6*x1 - x5*x0)*x14 + 0.5*sin_phi*x5*x19
-    x38 = x6*x14
-    x39 = c15*x26*x38
-    x40 = x2*sqrt_x2
-    x41 = c16*x0*x38
-    x42 = x5*x25
-    x43 = c17*sin_phi*x32/((x27 + x42 + 3.0*(x1*x25 + x5*x28))*x40)
-    x44 = x39/((x25 + 2.0*x1*x5 + x28)*x40) + x41/(sqrt_x2*x34) - x41/x29 - x43
-    x45 = (
-        r*x37*(c6 + (1.0/12.0)*c13*x0/(x10*x22))/x8 + 0.5*c0*sin_phi*x18 + c14*cos_phi*x14
-        + (1.0/6.0)*x44 - (1.0/12.0)*c8*sin_phi*x20/(x8*x22) - (1.0/3.0)*x39/(sqrt_x2*x33)
-    )
-    x46 = (
-        c1 + 0.5*c0*x19 + x20*(c6 + (1.0/12.0)*c4/(x2*x22)) + (1.0/3.0)*x24/(sqrt_x2*x29)
-        + (1.0/6.0)*x36 - r*sin_phi*x45/sqrt_x2 - c14*x15
-        - (1.0/12.0)*c13*sin_phi*x37/(x42*x22)
-    )
-    # outputs
-    return _stacked((2,), y[0], x46, l*x45/sqrt_x2)
-
-
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Mass matrix M(q): the kinetic energy is qdot M qdot / 2.
 
@@ -1173,31 +498,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((c0*x6,),)
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (1, 1, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, _ = y
-    r, l, m1, m2, M, _ = params
-    # terms of the parameters alone
-    c0 = r*r
-    c1 = l*l
-    c2 = m2*c1
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = cos_phi*cos_phi
-    sin_phi = sin(phi)
-    x1 = sin_phi*sin_phi
-    x2 = c1 - c0*x1
-    x3 = r*cos_phi/sqrt(x2)
-    x4 = 2.0 + x3
-    x5 = 1.0 + x3
-    x6 = (1.0/3.0)*m1 + 0.25*m2*(x0 + x4*x4*x1) + M*x5*x5*x1 + (1.0/12.0)*c2*x0/x2
-    # outputs
-    return _stacked((1, 1), y[0], c0*x6)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -1230,25 +530,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x2 = sqrt(c0 - c1*sin_phi*sin_phi)
     # outputs
     return ((0.5*x0, x1), (x0 + x2, 0.0), (x0 + 0.5*x2, x1))
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (3, 2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, _ = y
-    r, l, _, _, _, _ = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = r*r
-    # intermediate terms
-    x0 = r*cos(phi)
-    sin_phi = sin(phi)
-    x1 = 0.5*r*sin_phi
-    x2 = sqrt(c0 - c1*sin_phi*sin_phi)
-    # outputs
-    return _stacked((3, 2), y[0], 0.5*x0, x1, x0 + x2, 0.0, x0 + 0.5*x2, x1)
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -1297,47 +578,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (8, 2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, _ = y
-    r, l, _, _, _, _ = params
-    # terms of the parameters alone
-    c0 = l*l
-    c1 = r*r
-    c2 = -0.25*r
-    c3 = 0.25*r
-    # intermediate terms
-    x0 = r*cos(phi)
-    sin_phi = sin(phi)
-    x1 = x0 + sqrt(c0 - c1*sin_phi*sin_phi)
-    x2 = x1 - 0.5*r
-    x3 = 0.5*r + x1
-    # outputs
-    return _stacked(
-        (8, 2),
-        y[0],
-        0.0,
-        0.0,
-        x0,
-        r*sin_phi,
-        x1,
-        0.0,
-        1.0,
-        0.0,
-        x2,
-        c2,
-        x3,
-        c2,
-        x3,
-        c3,
-        x2,
-        c3,
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -1376,31 +616,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     x6 = (1.0/3.0)*m1 + 0.25*m2*(x0 + x4*x4*x1) + M*x5*x5*x1 + (1.0/12.0)*c2*x0/x2
     # outputs
     return (phi, c0*phi_dot*x6)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, phi_dot = y
-    r, l, m1, m2, M, _ = params
-    # terms of the parameters alone
-    c0 = r*r
-    c1 = l*l
-    c2 = m2*c1
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = cos_phi*cos_phi
-    sin_phi = sin(phi)
-    x1 = sin_phi*sin_phi
-    x2 = c1 - c0*x1
-    x3 = r*cos_phi/sqrt(x2)
-    x4 = 2.0 + x3
-    x5 = 1.0 + x3
-    x6 = (1.0/3.0)*m1 + 0.25*m2*(x0 + x4*x4*x1) + M*x5*x5*x1 + (1.0/12.0)*c2*x0/x2
-    # outputs
-    return _stacked((2,), y[0], phi, c0*phi_dot*x6)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1455,162 +670,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     return (c0*x8, -0.5*(c4*cos_phi + sin_phi*x8*x8*x12))
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, p_phi = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = r*g*(m1 + m2)
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = cos_phi*cos_phi
-    sin_phi = sin(phi)
-    x1 = sin_phi*sin_phi
-    x2 = c1 - c2*x1
-    sqrt_x2 = sqrt(x2)
-    x3 = r*cos_phi/sqrt_x2
-    x4 = 2.0 + x3
-    x5 = 1.0 + x3
-    x6 = M*x5
-    x7 = (1.0/3.0)*m1 + 0.25*m2*(x0 + x4*x4*x1) + x5*x1*x6 + (1.0/12.0)*c3*x0/x2
-    x8 = c0*p_phi/x7
-    x9 = sqrt_x2*sqrt_x2
-    x10 = c2*x0
-    x11 = r*(x9 - x10)*x1/(sqrt_x2*x9)
-    x12 = (
-        0.5*m2*(cos_phi - x4*(cos_phi*x4 - x11)) + (1.0/6.0)*c3*cos_phi*(x2 - x10)/(x2*x2)
-        - 2.0*(cos_phi*x5 - x11)*x6
-    )
-    # outputs
-    return _stacked((2,), y[0], c0*x8, -0.5*(c4*cos_phi + sin_phi*x8*x8*x12))
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    111 operations, 7 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 2 floats
-        phi in rad; p_phi in J s.
-    params : iterable of 6 floats
-        r, l in m; m1, m2, M in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    phi, p_phi = y.tolist() if hasattr(y, "tolist") else y
-    r, l, m1, m2, M, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = r*g*(m1 + m2)
-    # intermediate terms
-    cos_phi = cos(phi)
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c2*x0
-    x2 = c1 - x1
-    sqrt_x2 = sqrt(x2)
-    x3 = r*cos_phi/sqrt_x2
-    x4 = 2.0 + x3
-    x5 = sqrt_x2*sqrt_x2
-    x6 = cos_phi*cos_phi
-    x7 = c2*x6
-    x8 = r*(x5 - x7)
-    x9 = sqrt_x2*x5
-    x10 = x8*x0/x9
-    x11 = cos_phi*x4 - x10
-    x12 = c3*(x2 - x7)
-    x13 = x2*x2
-    x14 = 1.0 + x3
-    x15 = cos_phi*x14 - x10
-    x16 = M*x14
-    x17 = 0.5*m2*(cos_phi - x4*x11) + (1.0/6.0)*cos_phi*x12/x13 - 2.0*x15*x16
-    x18 = (1.0/3.0)*m1 + 0.25*m2*(x6 + x4*x4*x0) + x14*x0*x16 + (1.0/12.0)*c3*x6/x2
-    x19 = c0*p_phi/x18
-    x20 = x17*(sin_phi*x19)
-    x21 = x20/x18
-    x22 = c0*x21
-    x23 = cos_phi*x8
-    x24 = x23/x9
-    x25 = x23*(3.0*x1 + 2.0*x5)/(x5*x9)
-    x26 = (
-        0.5*m2*(1.0 - (x11*x8/x9 + x4*(x4 + x24 + x25)))
-        + (1.0/6.0)*(x2 - 4.0*x7)*x12/(x2*x13) - 2.0*M*(x15*x8/x9 + x14*(x25 + (x14 + x24)))
-    )
-    x27 = x20*x21 + 0.5*(x19*x19*(cos_phi*x17 - x26*x0) - c4*sin_phi)
-    # outputs
-    return ((x22, c0*(c0/x18)), (-x27, -x22))
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, p_phi = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = r*g*(m1 + m2)
-    # intermediate terms
-    cos_phi = cos(phi)
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = c2*x0
-    x2 = c1 - x1
-    sqrt_x2 = sqrt(x2)
-    x3 = r*cos_phi/sqrt_x2
-    x4 = 2.0 + x3
-    x5 = sqrt_x2*sqrt_x2
-    x6 = cos_phi*cos_phi
-    x7 = c2*x6
-    x8 = r*(x5 - x7)
-    x9 = sqrt_x2*x5
-    x10 = x8*x0/x9
-    x11 = cos_phi*x4 - x10
-    x12 = c3*(x2 - x7)
-    x13 = x2*x2
-    x14 = 1.0 + x3
-    x15 = cos_phi*x14 - x10
-    x16 = M*x14
-    x17 = 0.5*m2*(cos_phi - x4*x11) + (1.0/6.0)*cos_phi*x12/x13 - 2.0*x15*x16
-    x18 = (1.0/3.0)*m1 + 0.25*m2*(x6 + x4*x4*x0) + x14*x0*x16 + (1.0/12.0)*c3*x6/x2
-    x19 = c0*p_phi/x18
-    x20 = x17*(sin_phi*x19)
-    x21 = x20/x18
-    x22 = c0*x21
-    x23 = cos_phi*x8
-    x24 = x23/x9
-    x25 = x23*(3.0*x1 + 2.0*x5)/(x5*x9)
-    x26 = (
-        0.5*m2*(1.0 - (x11*x8/x9 + x4*(x4 + x24 + x25)))
-        + (1.0/6.0)*(x2 - 4.0*x7)*x12/(x2*x13) - 2.0*M*(x15*x8/x9 + x14*(x25 + (x14 + x24)))
-    )
-    x27 = x20*x21 + 0.5*(x19*x19*(cos_phi*x17 - x26*x0) - c4*sin_phi)
-    # outputs
-    return _stacked((2, 2), y[0], x22, c0*(c0/x18), -x27, -x22)
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -1633,34 +692,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     phi, p_phi = y.tolist() if hasattr(y, "tolist") else y
     r, l, m1, m2, M, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = r*g*(m1 + m2)
-    # intermediate terms
-    x0 = c0*p_phi
-    cos_phi = cos(phi)
-    x1 = cos_phi*cos_phi
-    sin_phi = sin(phi)
-    x2 = sin_phi*sin_phi
-    x3 = c1 - c2*x2
-    x4 = r*cos_phi/sqrt(x3)
-    x5 = 2.0 + x4
-    x6 = 1.0 + x4
-    x7 = (1.0/3.0)*m1 + 0.25*m2*(x1 + x5*x5*x2) + M*x6*x6*x2 + (1.0/12.0)*c3*x1/x3
-    # outputs
-    return 0.5*(x0*(x0/x7) + c4*sin_phi)
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, p_phi = y
-    r, l, m1, m2, M, g = params
     # terms of the parameters alone
     c0 = 1.0/r
     c1 = l*l
@@ -1723,32 +754,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (phi, c0*(c0*p_phi/x6))
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin, sqrt
-
-    # inputs
-    phi, p_phi = y
-    r, l, m1, m2, M, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    # intermediate terms
-    cos_phi = cos(phi)
-    x0 = cos_phi*cos_phi
-    sin_phi = sin(phi)
-    x1 = sin_phi*sin_phi
-    x2 = c1 - c2*x1
-    x3 = r*cos_phi/sqrt(x2)
-    x4 = 2.0 + x3
-    x5 = 1.0 + x3
-    x6 = (1.0/3.0)*m1 + 0.25*m2*(x0 + x4*x4*x1) + M*x5*x5*x1 + (1.0/12.0)*c3*x0/x2
-    # outputs
-    return _stacked((2,), y[0], phi, c0*(c0*p_phi/x6))
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -1772,16 +777,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     phi, phi_dot = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (sin(phi), cos(phi), phi_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    phi, phi_dot = y
-    # outputs
-    return _stacked((3,), y[0], sin(phi), cos(phi), phi_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1834,393 +829,72 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     return (phi_dot*cos_phi, -x0, 0.5*c0*((r*phi_dot*x0*x11 - c4*cos_phi)/x12))
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (3, ...)."""
-    from numpy import sqrt
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    # inputs
-    sin_phi, cos_phi, phi_dot = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = g*(m1 + m2)
-    # intermediate terms
-    x0 = phi_dot*sin_phi
-    x1 = sin_phi*sin_phi
-    x2 = c1 - c2*x1
-    sqrt_x2 = sqrt(x2)
-    x3 = r*cos_phi/sqrt_x2
-    x4 = 2.0 + x3
-    x5 = sqrt_x2*sqrt_x2
-    x6 = cos_phi*cos_phi
-    x7 = c2*x6
-    x8 = r*(x5 - x7)*x1/(sqrt_x2*x5)
-    x9 = 1.0 + x3
-    x10 = M*x9
-    x11 = (
-        0.5*m2*(cos_phi - x4*(cos_phi*x4 - x8)) + 2.0*(x8 - cos_phi*x9)*x10
-        + (1.0/6.0)*c3*cos_phi*(x2 - x7)/(x2*x2)
-    )
-    x12 = (1.0/3.0)*m1 + 0.25*m2*(x6 + x4*x4*x1) + x9*x1*x10 + (1.0/12.0)*c3*x6/x2
-    # outputs
-    return _stacked(
-        (3,),
-        y[0],
-        phi_dot*cos_phi,
-        -x0,
-        0.5*c0*((r*phi_dot*x0*x11 - c4*cos_phi)/x12),
-    )
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin, "sqrt": numpy.sqrt}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    116 operations, 6 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 5 floats
-        sin_phi, cos_phi in 1; phi_dot in rad/s; delta_phi in rad; delta_phi_dot in rad/s.
-    params : iterable of 6 floats
-        r, l in m; m1, m2, M in kg; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_phi, cos_phi, phi_dot, delta_phi, delta_phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    r, l, m1, m2, M, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = g*(m2 + m1)
-    # intermediate terms
-    x0 = phi_dot*sin_phi
-    x1 = r*phi_dot
-    x2 = sin_phi*sin_phi
-    x3 = c2*x2
-    x4 = c1 - x3
-    sqrt_x4 = sqrt(x4)
-    x5 = r*cos_phi/sqrt_x4
-    x6 = 2.0 + x5
-    x7 = sqrt_x4*sqrt_x4
-    x8 = cos_phi*cos_phi
-    x9 = c2*x8
-    x10 = r*(x7 - x9)
-    x11 = sqrt_x4*x7
-    x12 = x2*x10/x11
-    x13 = cos_phi*x6 - x12
-    x14 = 1.0 + x5
-    x15 = x12 - cos_phi*x14
-    x16 = M*x14
-    x17 = c3*(x4 - x9)
-    x18 = x4*x4
-    x19 = 0.5*m2*(cos_phi - x6*x13) + 2.0*x15*x16 + (1.0/6.0)*cos_phi*x17/x18
-    x20 = x0*x19
-    x21 = (1.0/3.0)*m1 + 0.25*m2*(x8 + x6*x6*x2) + x14*x2*x16 + (1.0/12.0)*c3*x8/x4
-    x22 = (x1*x20 - c4*cos_phi)/x21
-    x23 = cos_phi*x10
-    x24 = x23/x11
-    x25 = x23*(3.0*x3 + 2.0*x7)/(x7*x11)
-    x26 = (
-        0.5*m2*(1.0 - (x13*x10/x11 + x6*(x6 + x24 + x25)))
-        + 2.0*M*(x15*x10/x11 - x14*(x25 + (x14 + x24)))
-        + (1.0/6.0)*(x4 - 4.0*x9)*x17/(x4*x18)
-    )
-    x27 = phi_dot*(cos_phi*x19 - x26*x2)*x1 + c4*sin_phi + sin_phi*x19*x22
-    x28 = c0*((0.5*delta_phi*x27 + r*delta_phi_dot*x20)/x21)
-    # outputs
-    return (phi_dot*cos_phi, -x0, 0.5*c0*x22, delta_phi_dot, x28)
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+outputs_many = _over_arrays(outputs)
+energy_many = _over_arrays(energy)
+multipliers_many = _over_arrays(multipliers)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (5, ...)."""
-    from numpy import sqrt
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    # inputs
-    sin_phi, cos_phi, phi_dot, delta_phi, delta_phi_dot = y
-    r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = g*(m2 + m1)
-    # intermediate terms
-    x0 = phi_dot*sin_phi
-    x1 = r*phi_dot
-    x2 = sin_phi*sin_phi
-    x3 = c2*x2
-    x4 = c1 - x3
-    sqrt_x4 = sqrt(x4)
-    x5 = r*cos_phi/sqrt_x4
-    x6 = 2.0 + x5
-    x7 = sqrt_x4*sqrt_x4
-    x8 = cos_phi*cos_phi
-    x9 = c2*x8
-    x10 = r*(x7 - x9)
-    x11 = sqrt_x4*x7
-    x12 = x2*x10/x11
-    x13 = cos_phi*x6 - x12
-    x14 = 1.0 + x5
-    x15 = x12 - cos_phi*x14
-    x16 = M*x14
-    x17 = c3*(x4 - x9)
-    x18 = x4*x4
-    x19 = 0.5*m2*(cos_phi - x6*x13) + 2.0*x15*x16 + (1.0/6.0)*cos_phi*x17/x18
-    x20 = x0*x19
-    x21 = (1.0/3.0)*m1 + 0.25*m2*(x8 + x6*x6*x2) + x14*x2*x16 + (1.0/12.0)*c3*x8/x4
-    x22 = (x1*x20 - c4*cos_phi)/x21
-    x23 = cos_phi*x10
-    x24 = x23/x11
-    x25 = x23*(3.0*x3 + 2.0*x7)/(x7*x11)
-    x26 = (
-        0.5*m2*(1.0 - (x13*x10/x11 + x6*(x6 + x24 + x25)))
-        + 2.0*M*(x15*x10/x11 - x14*(x25 + (x14 + x24)))
-        + (1.0/6.0)*(x4 - 4.0*x9)*x17/(x4*x18)
-    )
-    x27 = phi_dot*(cos_phi*x19 - x26*x2)*x1 + c4*sin_phi + sin_phi*x19*x22
-    x28 = c0*((0.5*delta_phi*x27 + r*delta_phi_dot*x20)/x21)
-    # outputs
-    return _stacked((5,), y[0], phi_dot*cos_phi, -x0, 0.5*c0*x22, delta_phi_dot, x28)
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    260 operations, 11 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 5 floats
-        sin_phi, cos_phi in 1; phi_dot in rad/s; delta_phi in rad; delta_phi_dot in rad/s.
-    params : iterable of 12 floats
-        delta_r, delta_l in m; delta_m1, delta_m2, delta_M in kg; delta_g in m/s^2; r, l in
-        m; m1, m2, M in kg; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_phi, cos_phi, phi_dot, delta_phi, delta_phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_r, delta_l, delta_m1, delta_m2, delta_M, delta_g, r, l, m1, m2, M, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = m2 + m1
-    c5 = g*c4
-    c6 = r*m2
-    c7 = c1*c6
-    c8 = l*delta_l
-    c9 = r*M
-    c10 = c4*delta_g
-    # intermediate terms
-    x0 = phi_dot*phi_dot
-    x1 = r*x0
-    x2 = r*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = c2*x3
-    x5 = c1 - x4
-    sqrt_x5 = sqrt(x5)
-    x6 = x2/sqrt_x5
-    x7 = 2.0 + x6
-    x8 = sqrt_x5*sqrt_x5
-    x9 = cos_phi*cos_phi
-    x10 = c2*x9
-    x11 = x8 - x10
-    x12 = r*x11
-    x13 = sqrt_x5*x8
-    x14 = x3*x12/x13
-    x15 = cos_phi*x7 - x14
-    x16 = cos_phi - x7*x15
-    x17 = 1.0 + x6
-    x18 = x14 - cos_phi*x17
-    x19 = M*x17
-    x20 = x5 - x10
-    x21 = cos_phi*x20
-    x22 = x5*x5
-    x23 = 0.5*m2*x16 + 2.0*x18*x19 + (1.0/6.0)*c3*x21/x22
-    x24 = sin_phi*x23
-    x25 = x7*x3
-    x26 = x9 + x7*x25
-    x27 = x17*x3
-    x28 = (1.0/3.0)*m1 + 0.25*m2*x26 + x19*x27 + (1.0/12.0)*c3*x9/x5
-    x29 = (x1*x24 - c5*cos_phi)/x28
-    x30 = c0*x29
-    x31 = sin_phi*x17
-    x32 = cos_phi*x12
-    x33 = x32/x13
-    x34 = x8*x13
-    x35 = x32*(3.0*x4 + 2.0*x8)/x34
-    x36 = x5*x22
-    x37 = (
-        0.5*m2*(1.0 - (x15*x12/x13 + x7*(x7 + x33 + x35)))
-        + 2.0*M*(x18*x12/x13 - x17*(x35 + (x17 + x33)))
-        + (1.0/6.0)*c3*x20*(x5 - 4.0*x10)/x36
-    )
-    x38 = delta_phi*((cos_phi*x23 - x37*x3)*x1 + c5*sin_phi + x29*x24)
-    x39 = x4 + x8
-    x40 = cos_phi*x8
-    x41 = x18*x40
-    x42 = x8*x9
-    x43 = x9 + x3
-    x44 = x39*x42 - x3*(x8*x11 + 3.0*x4*x11 - 2.0*c2*x8*x43)
-    x45 = c7*cos_phi
-    x46 = x15*x40
-    x47 = (
-        2.0*M*(x39*x41 - x17*x44)/x34 + (1.0/3.0)*(2.0*x20*x3 - x5*x43)*x45/x36
-        - 0.5*m2*(x39*x46 + x7*x44)/x34
-    )
-    x48 = 0.5*m2*x7*x39/x13 + 2.0*x39*x19/x13 + (1.0/6.0)*x45/x22
-    x49 = delta_r*(sin_phi*(x23 + r*x47)*x0 - x30*(x28 + x2*x3*x48))
-    x50 = x42 + x3*(2.0*x8 - 3.0*x11)
-    x51 = m2*cos_phi
-    x52 = (
-        0.5*c6*(x46 + x7*x50)/x34 + (1.0/3.0)*(x5*x20 + c1*x5 - 2.0*c1*x20)*x51/x36
-        - 2.0*c9*(x41 - x17*x50)/x34
-    )
-    x53 = sin_phi*x1
-    x54 = 0.5*c6*x25/x13 + 2.0*c9*x27/x13 + (1.0/6.0)*(c1 - x5)*x51/x22
-    x55 = g*cos_phi
-    x56 = x55 - 0.5*(x16 + (1.0/3.0)*c1*x21/x22)*x53 + 0.25*x29*(x26 + (1.0/3.0)*c1*x9/x5)
-    x57 = (
-        x38 + x49 + c8*(x52*x53 + cos_phi*x29*x54) - delta_m1*((1.0/3.0)*x29 + x55)
-        - delta_m2*x56 - c10*cos_phi
-    )
-    x58 = r*phi_dot*delta_phi_dot*x24 + delta_M*(x18*x1 - 0.5*x29*x31)*x31 + 0.5*x57
-    # outputs
-    return (
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        0.5*x30,
-        delta_phi_dot,
-        c0*(x58/x28),
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (5, ...)."""
-    from numpy import sqrt
-
-    # inputs
-    sin_phi, cos_phi, phi_dot, delta_phi, delta_phi_dot = y
-    delta_r, delta_l, delta_m1, delta_m2, delta_M, delta_g, r, l, m1, m2, M, g = params
-    # terms of the parameters alone
-    c0 = 1.0/r
-    c1 = l*l
-    c2 = r*r
-    c3 = m2*c1
-    c4 = m2 + m1
-    c5 = g*c4
-    c6 = r*m2
-    c7 = c1*c6
-    c8 = l*delta_l
-    c9 = r*M
-    c10 = c4*delta_g
-    # intermediate terms
-    x0 = phi_dot*phi_dot
-    x1 = r*x0
-    x2 = r*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = c2*x3
-    x5 = c1 - x4
-    sqrt_x5 = sqrt(x5)
-    x6 = x2/sqrt_x5
-    x7 = 2.0 + x6
-    x8 = sqrt_x5*sqrt_x5
-    x9 = cos_phi*cos_phi
-    x10 = c2*x9
-    x11 = x8 - x10
-    x12 = r*x11
-    x13 = sqrt_x5*x8
-    x14 = x3*x12/x13
-    x15 = cos_phi*x7 - x14
-    x16 = cos_phi - x7*x15
-    x17 = 1.0 + x6
-    x18 = x14 - cos_phi*x17
-    x19 = M*x17
-    x20 = x5 - x10
-    x21 = cos_phi*x20
-    x22 = x5*x5
-    x23 = 0.5*m2*x16 + 2.0*x18*x19 + (1.0/6.0)*c3*x21/x22
-    x24 = sin_phi*x23
-    x25 = x7*x3
-    x26 = x9 + x7*x25
-    x27 = x17*x3
-    x28 = (1.0/3.0)*m1 + 0.25*m2*x26 + x19*x27 + (1.0/12.0)*c3*x9/x5
-    x29 = (x1*x24 - c5*cos_phi)/x28
-    x30 = c0*x29
-    x31 = sin_phi*x17
-    x32 = cos_phi*x12
-    x33 = x32/x13
-    x34 = x8*x13
-    x35 = x32*(3.0*x4 + 2.0*x8)/x34
-    x36 = x5*x22
-    x37 = (
-        0.5*m2*(1.0 - (x15*x12/x13 + x7*(x7 + x33 + x35)))
-        + 2.0*M*(x18*x12/x13 - x17*(x35 + (x17 + x33)))
-        + (1.0/6.0)*c3*x20*(x5 - 4.0*x10)/x36
-    )
-    x38 = delta_phi*((cos_phi*x23 - x37*x3)*x1 + c5*sin_phi + x29*x24)
-    x39 = x4 + x8
-    x40 = cos_phi*x8
-    x41 = x18*x40
-    x42 = x8*x9
-    x43 = x9 + x3
-    x44 = x39*x42 - x3*(x8*x11 + 3.0*x4*x11 - 2.0*c2*x8*x43)
-    x45 = c7*cos_phi
-    x46 = x15*x40
-    x47 = (
-        2.0*M*(x39*x41 - x17*x44)/x34 + (1.0/3.0)*(2.0*x20*x3 - x5*x43)*x45/x36
-        - 0.5*m2*(x39*x46 + x7*x44)/x34
-    )
-    x48 = 0.5*m2*x7*x39/x13 + 2.0*x39*x19/x13 + (1.0/6.0)*x45/x22
-    x49 = delta_r*(sin_phi*(x23 + r*x47)*x0 - x30*(x28 + x2*x3*x48))
-    x50 = x42 + x3*(2.0*x8 - 3.0*x11)
-    x51 = m2*cos_phi
-    x52 = (
-        0.5*c6*(x46 + x7*x50)/x34 + (1.0/3.0)*(x5*x20 + c1*x5 - 2.0*c1*x20)*x51/x36
-        - 2.0*c9*(x41 - x17*x50)/x34
-    )
-    x53 = sin_phi*x1
-    x54 = 0.5*c6*x25/x13 + 2.0*c9*x27/x13 + (1.0/6.0)*(c1 - x5)*x51/x22
-    x55 = g*cos_phi
-    x56 = x55 - 0.5*(x16 + (1.0/3.0)*c1*x21/x22)*x53 + 0.25*x29*(x26 + (1.0/3.0)*c1*x9/x5)
-    x57 = (
-        x38 + x49 + c8*(x52*x53 + cos_phi*x29*x54) - delta_m1*((1.0/3.0)*x29 + x55)
-        - delta_m2*x56 - c10*cos_phi
-    )
-    x58 = r*phi_dot*delta_phi_dot*x24 + delta_M*(x18*x1 - 0.5*x29*x31)*x31 + 0.5*x57
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        0.5*x30,
-        delta_phi_dot,
-        c0*(x58/x28),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -26,30 +26,6 @@ State y in functions of the rational form:
     theta_dot [rad/s]
     phi_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_theta [1]
-    cos_theta [1]
-    sin_phi [1]
-    cos_phi [1]
-    theta_dot [rad/s]
-    phi_dot [rad/s]
-    delta_theta [rad]
-    delta_phi [rad]
-    delta_theta_dot [rad/s]
-    delta_phi_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_theta [1]
-    cos_theta [1]
-    sin_phi [1]
-    cos_phi [1]
-    theta_dot [rad/s]
-    phi_dot [rad/s]
-    delta_theta [rad]
-    delta_phi [rad]
-    delta_theta_dot [rad/s]
-    delta_phi_dot [rad/s]
-
 Parameters params:
     m [kg] > 0, default 1.0: mass of the bob
     l [m] > 0, default 1.0: length
@@ -77,56 +53,32 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "346985d9bb183c7d"
+DIGEST = "afbdc2944abb2f1f"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
     "lagrangian": ("theta", "phi", "theta_dot", "phi_dot"),
     "hamiltonian": ("theta", "phi", "p_theta", "p_phi"),
-    "rational": (
-        "sin_theta",
-        "cos_theta",
-        "sin_phi",
-        "cos_phi",
-        "theta_dot",
-        "phi_dot",
-    ),
+    "rational": ("sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot"),
     "variational": (
-        "sin_theta",
-        "cos_theta",
-        "sin_phi",
-        "cos_phi",
-        "theta_dot",
-        "phi_dot",
-        "delta_theta",
-        "delta_phi",
-        "delta_theta_dot",
-        "delta_phi_dot",
+        "sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot", "delta_theta",
+        "delta_phi", "delta_theta_dot", "delta_phi_dot",
     ),
     "sensitivity": (
-        "sin_theta",
-        "cos_theta",
-        "sin_phi",
-        "cos_phi",
-        "theta_dot",
-        "phi_dot",
-        "delta_theta",
-        "delta_phi",
-        "delta_theta_dot",
-        "delta_phi_dot",
+        "sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot", "delta_theta",
+        "delta_phi", "delta_theta_dot", "delta_phi_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("m", "l", "g")
@@ -134,56 +86,23 @@ DEFAULTS: tuple[float, ...] = (1.0, 1.0, 9.81)
 POSITIVE = ("m", "l")
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (13, 1),
-    "jacobian": (33, 1),
-    "parameter_jacobian": (15, 1),
-    "energy": (14, 1),
-    "mass_matrix": (5, 2),
-    "positions": (9, 0),
-    "hamiltonian_state": (7, 2),
-    "rhs_hamiltonian": (19, 4),
-    "jacobian_hamiltonian": (32, 5),
-    "energy_hamiltonian": (18, 4),
-    "lagrangian_state": (10, 3),
-    "rational_state": (4, 0),
-    "rhs_rational": (18, 1),
-    "rhs_variational": (44, 1),
-    "rhs_sensitivity": (49, 1),
-    "equilibrium": (0, 0),
-    "linear": (3, 3),
+    "rhs": (13, 1), "jacobian": (31, 1), "parameter_jacobian": (15, 1), "energy": (14, 1),
+    "mass_matrix": (5, 2), "positions": (9, 0), "hamiltonian_state": (7, 2),
+    "rhs_hamiltonian": (19, 4), "jacobian_hamiltonian": (32, 5),
+    "energy_hamiltonian": (18, 4), "lagrangian_state": (10, 3), "rational_state": (4, 0),
+    "rhs_rational": (18, 1), "rhs_variational": (42, 1), "rhs_sensitivity": (47, 1),
+    "equilibrium": (0, 0), "linear": (3, 3),
 }
 UNITS = {
-    "m": "kg",
-    "l": "m",
-    "g": "m/s^2",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
-    "cos_theta": "1",
-    "phi": "rad",
-    "phi_dot": "rad/s",
-    "p_phi": "J s",
-    "delta_phi": "rad",
-    "delta_phi_dot": "rad/s",
-    "sin_phi": "1",
-    "cos_phi": "1",
+    "m": "kg", "l": "m", "g": "m/s^2", "theta": "rad", "theta_dot": "rad/s",
+    "p_theta": "J s", "delta_theta": "rad", "delta_theta_dot": "rad/s", "sin_theta": "1",
+    "cos_theta": "1", "phi": "rad", "phi_dot": "rad/s", "p_phi": "J s", "delta_phi": "rad",
+    "delta_phi_dot": "rad/s", "sin_phi": "1", "cos_phi": "1",
 }
 
 
@@ -241,33 +160,10 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, theta_dot, phi_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = cos(theta)*(l*phi_dot)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        theta_dot,
-        phi_dot,
-        c0*(sin_theta*(phi_dot*x0 - g)),
-        -2.0*c0*(theta_dot*x0)/sin_theta,
-    )
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    33 operations, 1 of them on parameters alone.
+    31 operations, 1 of them on parameters alone.
 
     Parameters
     ----------
@@ -306,121 +202,11 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
             2.0*c0*(sin_theta*x1),
         ),
         (
-            2.0*c0*(l*x3)/sin_theta,
+            2.0*x3/sin_theta,
             0.0,
             -2.0*c0*x1/sin_theta,
             -2.0*c0*(theta_dot*x0)/sin_theta,
         ),
-    )
-
-
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, theta_dot, phi_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    cos_theta = cos(theta)
-    x0 = l*cos_theta
-    x1 = phi_dot*x0
-    sin_theta = sin(theta)
-    x2 = phi_dot*sin_theta
-    x3 = theta_dot*x2 + c0*cos_theta*(theta_dot*x1)/sin_theta
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        c0*(cos_theta*(phi_dot*x1 - g) - l*x2*x2),
-        0.0,
-        0.0,
-        2.0*c0*(sin_theta*x1),
-        2.0*c0*(l*x3)/sin_theta,
-        0.0,
-        -2.0*c0*x1/sin_theta,
-        -2.0*c0*(theta_dot*x0)/sin_theta,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    15 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta, phi in rad; theta_dot, phi_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    theta, _, _, phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = cos(theta)*(phi_dot*phi_dot)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (
-            0.0,
-            -c0*(c0*(sin_theta*(l*x0 - g)) - sin_theta*x0),
-            -c0*sin_theta,
-        ),
-        (0.0, 0.0, 0.0),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, _, phi_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = cos(theta)*(phi_dot*phi_dot)
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -c0*(c0*(sin_theta*(l*x0 - g)) - sin_theta*x0),
-        -c0*sin_theta,
-        0.0,
-        0.0,
-        0.0,
     )
 
 
@@ -446,22 +232,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, _, theta_dot, phi_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = l*theta_dot*theta_dot + l*phi_dot*phi_dot*sin_theta*sin_theta
-    # outputs
-    return c0*(0.5*x0 - g*cos(theta))
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, theta_dot, phi_dot = y
-    m, l, g = params
     # terms of the parameters alone
     c0 = m*l
     # intermediate terms
@@ -501,21 +271,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((c0, 0.0), (0.0, c0*sin_theta*sin_theta))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, _, _, _ = y
-    m, l, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # intermediate terms
-    sin_theta = sin(theta)
-    # outputs
-    return _stacked((2, 2), y[0], c0, 0.0, 0.0, c0*sin_theta*sin_theta)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -542,19 +297,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     x0 = l*sin(theta)
     # outputs
     return ((cos(phi)*x0, sin(phi)*x0, -l*cos(theta)),)
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (1, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, phi, _, _ = y
-    _, l, _ = params
-    # intermediate terms
-    x0 = l*sin(theta)
-    # outputs
-    return _stacked((1, 3), y[0], cos(phi)*x0, sin(phi)*x0, -l*cos(theta))
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -585,28 +327,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     sin_theta = sin(theta)
     # outputs
     return (theta, phi, c0*theta_dot, c0*phi_dot*sin_theta*sin_theta)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, phi, theta_dot, phi_dot = y
-    m, l, _ = params
-    # terms of the parameters alone
-    c0 = m*l*l
-    # intermediate terms
-    sin_theta = sin(theta)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        theta,
-        phi,
-        c0*theta_dot,
-        c0*phi_dot*sin_theta*sin_theta,
-    )
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -647,118 +367,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, p_theta, p_phi = y
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/(l*m)
-    c2 = l*g
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = c1*p_phi/sin_theta
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        c0*(c1*p_theta),
-        c0*x0/sin_theta,
-        -m*(c2*sin_theta - x0*x0*cos(theta)/sin_theta),
-        0.0,
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    32 operations, 5 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        theta, phi in rad; p_theta, p_phi in J s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    theta, _, _, p_phi = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(l*m)
-    c1 = 1.0/l
-    c2 = l*g
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = c0*p_phi/sin_theta
-    cos_theta = cos(theta)
-    x1 = x0*cos_theta
-    x2 = x1/sin_theta
-    x3 = c1*x2/sin_theta
-    x4 = sin_theta*sin_theta
-    x5 = x0*x0*(x4 - cos_theta*cos_theta)/x4 + 4.0*x1*x2/sin_theta + c2*cos_theta
-    # outputs
-    return (
-        (0.0, 0.0, c0*c1, 0.0),
-        (-2.0*x3, 0.0, 0.0, c1*(c0/sin_theta)/sin_theta),
-        (-m*x5, 0.0, 0.0, 2.0*x3),
-        (0.0, 0.0, 0.0, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, _, p_phi = y
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(l*m)
-    c1 = 1.0/l
-    c2 = l*g
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = c0*p_phi/sin_theta
-    cos_theta = cos(theta)
-    x1 = x0*cos_theta
-    x2 = x1/sin_theta
-    x3 = c1*x2/sin_theta
-    x4 = sin_theta*sin_theta
-    x5 = x0*x0*(x4 - cos_theta*cos_theta)/x4 + 4.0*x1*x2/sin_theta + c2*cos_theta
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        c0*c1,
-        0.0,
-        -2.0*x3,
-        0.0,
-        0.0,
-        c1*(c0/sin_theta)/sin_theta,
-        -m*x5,
-        0.0,
-        0.0,
-        2.0*x3,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -781,25 +389,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     theta, _, p_theta, p_phi = y.tolist() if hasattr(y, "tolist") else y
     m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = l*m
-    c2 = 1.0/c1
-    c3 = c1*g
-    # intermediate terms
-    sin_theta = sin(theta)
-    x0 = c0*p_theta*(c2*p_theta) + c0*p_phi*(c2*p_phi/sin_theta)/sin_theta
-    # outputs
-    return 0.5*x0 - c3*cos(theta)
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, _, p_theta, p_phi = y
-    m, l, g = params
     # terms of the parameters alone
     c0 = 1.0/l
     c1 = l*m
@@ -843,29 +432,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (theta, phi, c0*(c1*p_theta), c0*(c1*p_phi/sin_theta)/sin_theta)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import sin
-
-    # inputs
-    theta, phi, p_theta, p_phi = y
-    m, l, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    c1 = 1.0/(l*m)
-    # intermediate terms
-    sin_theta = sin(theta)
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        theta,
-        phi,
-        c0*(c1*p_theta),
-        c0*(c1*p_phi/sin_theta)/sin_theta,
-    )
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -891,25 +457,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (sin(theta), cos(theta), sin(phi), cos(phi), theta_dot, phi_dot)
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    theta, phi, theta_dot, phi_dot = y
-    # outputs
-    return _stacked(
-        (6,),
-        y[0],
-        sin(theta),
-        cos(theta),
-        sin(phi),
-        cos(phi),
-        theta_dot,
-        phi_dot,
-    )
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -930,38 +477,16 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = l*phi_dot
-    # outputs
-    return (
-        x0,
-        -theta_dot*sin_theta,
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        -c0*(sin_theta*(g - cos_theta*phi_dot*x1)),
-        -2.0*c0*(x0*x1)/sin_theta,
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot = y
-    _, l, g = params
+    _, l, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/l
     # intermediate terms
     x0 = theta_dot*cos_theta
     x1 = l*phi_dot
     # outputs
-    return _stacked(
-        (6,),
-        y[0],
+    return (
         x0,
         -theta_dot*sin_theta,
         phi_dot*cos_phi,
@@ -971,247 +496,69 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    44 operations, 1 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta, cos_theta, sin_phi, cos_phi in 1; theta_dot, phi_dot in rad/s;
-        delta_theta, delta_phi in rad; delta_theta_dot, delta_phi_dot in rad/s.
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = theta_dot*sin_theta
-    x2 = cos_theta*phi_dot
-    x3 = l*x2
-    x4 = g - phi_dot*x3
-    x5 = c0*(theta_dot*x3)
-    x6 = cos_theta*x4 + l*sin_theta*sin_theta*phi_dot*phi_dot
-    x7 = c0*(delta_theta*x6 - 2.0*sin_theta*delta_phi_dot*x3)
-    x8 = delta_theta*(x1*phi_dot + cos_theta*x5/sin_theta)
-    x9 = c0*(l*(delta_theta_dot*x2 + x0*delta_phi_dot - x8))
-    # outputs
-    return (
-        x0,
-        -x1,
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        -c0*(sin_theta*x4),
-        -2.0*x5/sin_theta,
-        delta_theta_dot,
-        delta_phi_dot,
-        -x7,
-        -2.0*x9/sin_theta,
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y
-    _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = theta_dot*sin_theta
-    x2 = cos_theta*phi_dot
-    x3 = l*x2
-    x4 = g - phi_dot*x3
-    x5 = c0*(theta_dot*x3)
-    x6 = cos_theta*x4 + l*sin_theta*sin_theta*phi_dot*phi_dot
-    x7 = c0*(delta_theta*x6 - 2.0*sin_theta*delta_phi_dot*x3)
-    x8 = delta_theta*(x1*phi_dot + cos_theta*x5/sin_theta)
-    x9 = c0*(l*(delta_theta_dot*x2 + x0*delta_phi_dot - x8))
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        x0,
-        -x1,
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        -c0*(sin_theta*x4),
-        -2.0*x5/sin_theta,
-        delta_theta_dot,
-        delta_phi_dot,
-        -x7,
-        -2.0*x9/sin_theta,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    49 operations, 1 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_theta, cos_theta, sin_phi, cos_phi in 1; theta_dot, phi_dot in rad/s;
-        delta_theta, delta_phi in rad; delta_theta_dot, delta_phi_dot in rad/s.
-    params : iterable of 6 floats
-        delta_m in kg; delta_l in m; delta_g in m/s^2; m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, delta_l, delta_g, _, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = cos_theta*phi_dot
-    x2 = l*x1
-    x3 = g - phi_dot*x2
-    x4 = c0*(sin_theta*x3)
-    x5 = c0*(theta_dot*x2)
-    x6 = sin_theta*phi_dot
-    x7 = (
-        delta_theta*(cos_theta*x3 + l*x6*x6) + delta_g*sin_theta
-        - 2.0*sin_theta*delta_phi_dot*x2 - delta_l*(x4 + x1*x6)
-    )
-    x8 = delta_theta*(theta_dot*x6 + cos_theta*x5/sin_theta)
-    x9 = c0*(l*(delta_theta_dot*x1 + x0*delta_phi_dot - x8))
-    # outputs
-    return (
-        x0,
-        -theta_dot*sin_theta,
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        -x4,
-        -2.0*x5/sin_theta,
-        delta_theta_dot,
-        delta_phi_dot,
-        -c0*x7,
-        -2.0*x9/sin_theta,
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_theta, cos_theta, sin_phi, cos_phi, theta_dot, phi_dot, delta_theta, _, delta_theta_dot, delta_phi_dot = y
-    _, delta_l, delta_g, _, l, g = params
-    # terms of the parameters alone
-    c0 = 1.0/l
-    # intermediate terms
-    x0 = theta_dot*cos_theta
-    x1 = cos_theta*phi_dot
-    x2 = l*x1
-    x3 = g - phi_dot*x2
-    x4 = c0*(sin_theta*x3)
-    x5 = c0*(theta_dot*x2)
-    x6 = sin_theta*phi_dot
-    x7 = (
-        delta_theta*(cos_theta*x3 + l*x6*x6) + delta_g*sin_theta
-        - 2.0*sin_theta*delta_phi_dot*x2 - delta_l*(x4 + x1*x6)
-    )
-    x8 = delta_theta*(theta_dot*x6 + cos_theta*x5/sin_theta)
-    x9 = c0*(l*(delta_theta_dot*x1 + x0*delta_phi_dot - x8))
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        x0,
-        -theta_dot*sin_theta,
-        phi_dot*cos_phi,
-        -phi_dot*sin_phi,
-        -x4,
-        -2.0*x5/sin_theta,
-        delta_theta_dot,
-        delta_phi_dot,
-        -c0*x7,
-        -2.0*x9/sin_theta,
-    )
-
-
-def equilibrium(params: Numbers) -> Vector:
-    """Coordinates at the equilibrium.
-
-    0 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        q = (0, 0).
-    """
-    # inputs
-    # outputs
-    return (0.0, 0.0)
-
-
-def equilibrium_many(params: Arrays) -> Array:
-    """`equilibrium` over arrays: the result has shape (2, ...)."""
-    # inputs
-    # outputs
-    return _stacked((2,), params[0], 0.0, 0.0)
-
-
-def linear(params: Numbers) -> tuple[Matrix, ...]:
-    """Matrices of small displacements x from the equilibrium q = (0, 0).
-
-    3 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    params : iterable of 3 floats
-        m in kg; l in m; g in m/s^2.
-
-    Returns
-    -------
-    tuple[Matrix, ...]
-        M0 and K of M0 xddot + K x = 0.
-    """
-    # inputs
-    m, l, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return (((l*c0, 0.0), (0.0, 0.0)), ((g*c0, 0.0), (0.0, 0.0)))
-
-
-def linear_many(params: Arrays) -> Array:
-    """`linear` over arrays: the result has shape (2, 2, 2, ...)."""
-    # inputs
-    m, l, g = params
-    # terms of the parameters alone
-    c0 = m*l
-    # outputs
-    return _stacked((2, 2, 2), params[0], l*c0, 0.0, 0.0, 0.0, g*c0, 0.0, 0.0, 0.0)
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -25,28 +25,6 @@ State y in functions of the rational form:
     r_dot [m/s]
     theta_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    r [m]
-    sin_theta [1]
-    cos_theta [1]
-    r_dot [m/s]
-    theta_dot [rad/s]
-    delta_r [m]
-    delta_theta [rad]
-    delta_r_dot [m/s]
-    delta_theta_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    r [m]
-    sin_theta [1]
-    cos_theta [1]
-    r_dot [m/s]
-    theta_dot [rad/s]
-    delta_r [m]
-    delta_theta [rad]
-    delta_r_dot [m/s]
-    delta_theta_dot [rad/s]
-
 Parameters params:
     M [kg] > 0, default 3.0: mass that moves vertically
     m [kg] > 0, default 1.0: mass that swings
@@ -75,19 +53,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "6057cd57b75ab059"
+DIGEST = "fa30fc2c63c674de"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -96,26 +73,12 @@ STATES = {
     "hamiltonian": ("r", "theta", "p_r", "p_theta"),
     "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
     "variational": (
-        "r",
-        "sin_theta",
-        "cos_theta",
-        "r_dot",
-        "theta_dot",
-        "delta_r",
-        "delta_theta",
-        "delta_r_dot",
-        "delta_theta_dot",
+        "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
+        "delta_r_dot", "delta_theta_dot",
     ),
     "sensitivity": (
-        "r",
-        "sin_theta",
-        "cos_theta",
-        "r_dot",
-        "theta_dot",
-        "delta_r",
-        "delta_theta",
-        "delta_r_dot",
-        "delta_theta_dot",
+        "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
+        "delta_r_dot", "delta_theta_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("M", "m", "g")
@@ -124,50 +87,21 @@ POSITIVE = ("M", "m", "r")
 LINKS = (("thread", (0, 1, 2, 3)), ("ring", (1, 4, 5)), ("ring", (2, 6, 7)))
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "parameter_jacobian",
-    "energy",
-    "positions",
-    "points",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "rational_state",
+    "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "points",
+    "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (18, 2),
-    "jacobian": (25, 4),
-    "parameter_jacobian": (24, 2),
-    "energy": (17, 3),
-    "mass_matrix": (3, 1),
-    "positions": (6, 0),
-    "points": (6, 0),
-    "hamiltonian_state": (5, 1),
-    "rhs_hamiltonian": (21, 4),
-    "jacobian_hamiltonian": (26, 4),
-    "energy_hamiltonian": (17, 3),
-    "lagrangian_state": (7, 3),
-    "rational_state": (2, 0),
-    "rhs_rational": (19, 2),
-    "rhs_variational": (42, 3),
-    "rhs_sensitivity": (58, 3),
+    "rhs": (18, 2), "jacobian": (25, 4), "parameter_jacobian": (24, 2), "energy": (17, 3),
+    "mass_matrix": (3, 1), "positions": (6, 0), "points": (6, 0),
+    "hamiltonian_state": (5, 1), "rhs_hamiltonian": (21, 4),
+    "jacobian_hamiltonian": (26, 4), "energy_hamiltonian": (17, 3),
+    "lagrangian_state": (7, 3), "rational_state": (2, 0), "rhs_rational": (19, 2),
+    "rhs_variational": (42, 3), "rhs_sensitivity": (58, 3),
 }
 UNITS = {
-    "M": "kg",
-    "m": "kg",
-    "g": "m/s^2",
-    "r": "m",
-    "r_dot": "m/s",
-    "p_r": "kg m/s",
-    "delta_r": "m",
-    "delta_r_dot": "m/s",
-    "theta": "rad",
-    "theta_dot": "rad/s",
-    "p_theta": "J s",
-    "delta_theta": "rad",
-    "delta_theta_dot": "rad/s",
-    "sin_theta": "1",
+    "M": "kg", "m": "kg", "g": "m/s^2", "r": "m", "r_dot": "m/s", "p_r": "kg m/s",
+    "delta_r": "m", "delta_r_dot": "m/s", "theta": "rad", "theta_dot": "rad/s",
+    "p_theta": "J s", "delta_theta": "rad", "delta_theta_dot": "rad/s", "sin_theta": "1",
     "cos_theta": "1",
 }
 
@@ -220,28 +154,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (r_dot, theta_dot, x0, -(2.0*r_dot*theta_dot + g*sin(theta))/r)
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    # intermediate terms
-    x0 = c0*(m*theta_dot*theta_dot*r - g*(M - m*cos(theta)))
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        r_dot,
-        theta_dot,
-        x0,
-        -(2.0*r_dot*theta_dot + g*sin(theta))/r,
-    )
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -284,113 +196,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = m*(1.0/(m + M))
-    c1 = c0*g
-    # intermediate terms
-    x0 = c0*theta_dot
-    sin_theta = sin(theta)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        theta_dot*x0,
-        -c1*sin_theta,
-        0.0,
-        2.0*r*x0,
-        (2.0*theta_dot*r_dot + g*sin_theta)/r/r,
-        -g*cos(theta)/r,
-        -2.0*theta_dot/r,
-        -2.0*r_dot/r,
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    24 operations, 2 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        r in m; theta in rad; r_dot in m/s; theta_dot in rad/s.
-    params : iterable of 3 floats
-        M, m in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    r, theta, _, theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    # intermediate terms
-    x0 = theta_dot*(r*theta_dot)
-    cos_theta = cos(theta)
-    x1 = M - m*cos_theta
-    x2 = c0*(m*x0 - g*x1)
-    # outputs
-    return (
-        (0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0),
-        (-c0*(g + x2), -c0*(x2 - (x0 + g*cos_theta)), -c0*x1),
-        (0.0, 0.0, -sin(theta)/r),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 3, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, theta_dot = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    # intermediate terms
-    x0 = theta_dot*(r*theta_dot)
-    cos_theta = cos(theta)
-    x1 = M - m*cos_theta
-    x2 = c0*(m*x0 - g*x1)
-    # outputs
-    return _stacked(
-        (4, 3),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -c0*(g + x2),
-        -c0*(x2 - (x0 + g*cos_theta)),
-        -c0*x1,
-        0.0,
-        0.0,
-        -sin(theta)/r,
-    )
-
-
 def energy(t: float, y: Numbers, params: Numbers) -> float:
     """Total energy T + V.
 
@@ -413,23 +218,6 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     r, theta, r_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = M*g
-    c1 = M + m
-    c2 = m*g
-    # intermediate terms
-    x0 = c0*r + 0.5*(c1*r_dot*r_dot + m*r*r*theta_dot*theta_dot) - c2*r*cos(theta)
-    # outputs
-    return x0
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    M, m, g = params
     # terms of the parameters alone
     c0 = M*g
     c1 = M + m
@@ -466,15 +254,6 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     return ((M + m, 0.0), (0.0, m*r*r))
 
 
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    # inputs
-    r, _, _, _ = y
-    M, m, _ = params
-    # outputs
-    return _stacked((2, 2), y[0], M + m, 0.0, 0.0, m*r*r)
-
-
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Positions of the masses.
 
@@ -498,16 +277,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     r, theta, _, _ = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return ((-1.0, r - 2.0), (r*sin(theta), -r*cos(theta)))
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, _ = y
-    # outputs
-    return _stacked((2, 2), y[0], -1.0, r - 2.0, r*sin(theta), -r*cos(theta))
 
 
 def points(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -544,35 +313,6 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (8, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, _ = y
-    # outputs
-    return _stacked(
-        (8, 2),
-        y[0],
-        -1.0,
-        r - 2.0,
-        -1.0,
-        0.0,
-        0.0,
-        0.0,
-        r*sin(theta),
-        -r*cos(theta),
-        (-19.0/20.0),
-        0.0,
-        -1.0,
-        (1.0/20.0),
-        (1.0/20.0),
-        0.0,
-        0.0,
-        (1.0/20.0),
-    )
-
-
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, p) of the Hamiltonian form at y = (q, qdot).
 
@@ -599,17 +339,6 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     c0 = M + m
     # outputs
     return (r, theta, c0*r_dot, m*r*r*theta_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    M, m, _ = params
-    # terms of the parameters alone
-    c0 = M + m
-    # outputs
-    return _stacked((4,), y[0], r, theta, c0*r_dot, m*r*r*theta_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -649,107 +378,6 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, p_r, p_theta = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    c1 = 1.0/m
-    c2 = m*g
-    # intermediate terms
-    x0 = c1*p_theta/r
-    # outputs
-    return _stacked(
-        (4,),
-        y[0],
-        c0*p_r,
-        x0/r,
-        -(g*(M - m*cos(theta)) - m*x0*x0/r),
-        -c2*r*sin(theta),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    26 operations, 4 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        r in m; theta in rad; p_r in kg m/s; p_theta in J s.
-    params : iterable of 3 floats
-        M, m in kg; g in m/s^2.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    r, theta, _, p_theta = y.tolist() if hasattr(y, "tolist") else y
-    M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = c0*p_theta/r
-    x1 = x0/r
-    x2 = x1/r
-    x3 = -c1*sin(theta)
-    # outputs
-    return (
-        (0.0, 0.0, 1.0/(M + m), 0.0),
-        (-2.0*x2, 0.0, 0.0, c0/r/r),
-        (m*x0*(x0 - 4.0*r*x1)/(r*r), x3, 0.0, 2.0*x2),
-        (x3, -c1*r*cos(theta), 0.0, 0.0),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, _, p_theta = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/m
-    c1 = m*g
-    # intermediate terms
-    x0 = c0*p_theta/r
-    x1 = x0/r
-    x2 = x1/r
-    x3 = -c1*sin(theta)
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0/(M + m),
-        0.0,
-        -2.0*x2,
-        0.0,
-        0.0,
-        c0/r/r,
-        m*x0*(x0 - 4.0*r*x1)/(r*r),
-        x3,
-        0.0,
-        2.0*x2,
-        x3,
-        -c1*r*cos(theta),
-        0.0,
-        0.0,
-    )
-
-
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
@@ -772,22 +400,6 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # inputs
     r, theta, p_r, p_theta = y.tolist() if hasattr(y, "tolist") else y
     M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    c1 = 1.0/m
-    # intermediate terms
-    x0 = g*r*(M - m*cos(theta)) + 0.5*(p_r*(c0*p_r) + p_theta*(c1*p_theta/r)/r)
-    # outputs
-    return x0
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos
-
-    # inputs
-    r, theta, p_r, p_theta = y
-    M, m, g = params
     # terms of the parameters alone
     c0 = 1.0/(M + m)
     c1 = 1.0/m
@@ -826,18 +438,6 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (r, theta, c0*p_r, c1*p_theta/r/r)
 
 
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    # inputs
-    r, theta, p_r, p_theta = y
-    M, m, _ = params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    c1 = 1.0/m
-    # outputs
-    return _stacked((4,), y[0], r, theta, c0*p_r, c1*p_theta/r/r)
-
-
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State of the rational form at y = (q, qdot).
 
@@ -861,16 +461,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     r, theta, r_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     # outputs
     return (r, sin(theta), cos(theta), r_dot, theta_dot)
-
-
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (5, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    r, theta, r_dot, theta_dot = y
-    # outputs
-    return _stacked((5,), y[0], r, sin(theta), cos(theta), r_dot, theta_dot)
 
 
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -909,206 +499,70 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     )
 
 
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (5, ...)."""
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(M + m)
-    # intermediate terms
-    x0 = c0*(m*theta_dot*theta_dot*r - g*(M - m*cos_theta))
-    # outputs
-    return _stacked(
-        (5,),
-        y[0],
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        x0,
-        -(2.0*r_dot*theta_dot + g*sin_theta)/r,
-    )
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
+
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
+
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
+
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
-
-    42 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 9 floats
-        r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
-        delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
-    params : iterable of 3 floats
-        M, m in kg; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(m + M)
-    c1 = m*c0
-    # intermediate terms
-    x0 = theta_dot*r
-    x1 = g*sin_theta
-    x2 = 2.0*r_dot*theta_dot + x1
-    x3 = theta_dot*theta_dot*delta_r + 2.0*delta_theta_dot*x0 - x1*delta_theta
-    x4 = (
-        g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot)
-        - x2*delta_r
-    )
-    # outputs
-    return (
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        c0*(m*theta_dot*x0 - g*(M - m*cos_theta)),
-        -x2/r,
-        delta_r_dot,
-        delta_theta_dot,
-        c1*x3,
-        -x4/r/r,
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+energy_many = _over_arrays(energy)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (9, ...)."""
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
-    M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(m + M)
-    c1 = m*c0
-    # intermediate terms
-    x0 = theta_dot*r
-    x1 = g*sin_theta
-    x2 = 2.0*r_dot*theta_dot + x1
-    x3 = theta_dot*theta_dot*delta_r + 2.0*delta_theta_dot*x0 - x1*delta_theta
-    x4 = (
-        g*cos_theta*r*delta_theta + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot)
-        - x2*delta_r
-    )
-    # outputs
-    return _stacked(
-        (9,),
-        y[0],
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        c0*(m*theta_dot*x0 - g*(M - m*cos_theta)),
-        -x2/r,
-        delta_r_dot,
-        delta_theta_dot,
-        c1*x3,
-        -x4/r/r,
-    )
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
-
-    58 operations, 3 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 9 floats
-        r in m; sin_theta, cos_theta in 1; r_dot in m/s; theta_dot in rad/s; delta_r in m;
-        delta_theta in rad; delta_r_dot in m/s; delta_theta_dot in rad/s.
-    params : iterable of 6 floats
-        delta_M, delta_m in kg; delta_g in m/s^2; M, m in kg; g in m/s^2.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_M, delta_m, delta_g, M, m, g = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = 1.0/(m + M)
-    c1 = m*g
-    # intermediate terms
-    x0 = theta_dot*r
-    x1 = m*theta_dot
-    x2 = M - m*cos_theta
-    x3 = c0*(x0*x1 - g*x2)
-    x4 = 2.0*r_dot*theta_dot + g*sin_theta
-    x5 = g*cos_theta
-    x6 = (
-        c1*sin_theta*delta_theta + delta_M*(g + x3) + delta_m*(x3 - (theta_dot*x0 + x5))
-        + delta_g*x2 - theta_dot*delta_r*x1 - 2.0*m*delta_theta_dot*x0
-    )
-    x7 = (
-        r*delta_theta*x5 + delta_g*sin_theta*r
-        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
-    )
-    # outputs
-    return (
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        x3,
-        -x4/r,
-        delta_r_dot,
-        delta_theta_dot,
-        -c0*x6,
-        -x7/r/r,
-    )
-
-
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (9, ...)."""
-    # inputs
-    r, sin_theta, cos_theta, r_dot, theta_dot, delta_r, delta_theta, delta_r_dot, delta_theta_dot = y
-    delta_M, delta_m, delta_g, M, m, g = params
-    # terms of the parameters alone
-    c0 = 1.0/(m + M)
-    c1 = m*g
-    # intermediate terms
-    x0 = theta_dot*r
-    x1 = m*theta_dot
-    x2 = M - m*cos_theta
-    x3 = c0*(x0*x1 - g*x2)
-    x4 = 2.0*r_dot*theta_dot + g*sin_theta
-    x5 = g*cos_theta
-    x6 = (
-        c1*sin_theta*delta_theta + delta_M*(g + x3) + delta_m*(x3 - (theta_dot*x0 + x5))
-        + delta_g*x2 - theta_dot*delta_r*x1 - 2.0*m*delta_theta_dot*x0
-    )
-    x7 = (
-        r*delta_theta*x5 + delta_g*sin_theta*r
-        + 2.0*(delta_r_dot*x0 + r_dot*r*delta_theta_dot) - x4*delta_r
-    )
-    # outputs
-    return _stacked(
-        (9,),
-        y[0],
-        r_dot,
-        theta_dot*cos_theta,
-        -theta_dot*sin_theta,
-        x3,
-        -x4/r,
-        delta_r_dot,
-        delta_theta_dot,
-        -c0*x6,
-        -x7/r/r,
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

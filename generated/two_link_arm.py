@@ -26,30 +26,6 @@ State y in functions of the rational form:
     q1_dot [rad/s]
     q2_dot [rad/s]
 
-State y of `rhs_variational`: a motion and its linear perturbation:
-    sin_q1 [1]
-    cos_q1 [1]
-    sin_q2 [1]
-    cos_q2 [1]
-    q1_dot [rad/s]
-    q2_dot [rad/s]
-    delta_q1 [rad]
-    delta_q2 [rad]
-    delta_q1_dot [rad/s]
-    delta_q2_dot [rad/s]
-
-State y of `rhs_sensitivity`: the same:
-    sin_q1 [1]
-    cos_q1 [1]
-    sin_q2 [1]
-    cos_q2 [1]
-    q1_dot [rad/s]
-    q2_dot [rad/s]
-    delta_q1 [rad]
-    delta_q2 [rad]
-    delta_q1_dot [rad/s]
-    delta_q2_dot [rad/s]
-
 Parameters params:
     l1 [m] > 0, default 0.4: length of link 1
     l2 [m] > 0, default 0.3: length of link 2
@@ -67,8 +43,8 @@ Inputs, the last of params:
 
 Masses and their positions:
     m1 at (c1*cos(q1), c1*sin(q1)), moment of inertia I1, orientation q1
-    m2 at (c2*cos(q1 + q2) + l1*cos(q1), c2*sin(q1 + q2) + l1*sin(q1)), moment of inertia I2, orientation q1
-        + q2
+    m2 at (c2*cos(q1 + q2) + l1*cos(q1), c2*sin(q1 + q2) + l1*sin(q1)),
+        moment of inertia I2, orientation q1 + q2
 
 Lagrangian:
     L = -c2*g*m2*sin(q1 + q2) - g*(c1*m1 + l1*m2)*sin(q1)
@@ -95,19 +71,18 @@ from math import cos, sin
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
     from typing import Any
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
-    Numbers = Iterable[float]
-    Arrays = Sequence[Any] | NDArray[Any]
     Array = NDArray[Any]
+    Numbers = Iterable[float]
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "05307f1cee9c9f5d"
+DIGEST = "380e0af8abae2e21"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -116,28 +91,12 @@ STATES = {
     "hamiltonian": ("q1", "q2", "p_q1", "p_q2"),
     "rational": ("sin_q1", "cos_q1", "sin_q2", "cos_q2", "q1_dot", "q2_dot"),
     "variational": (
-        "sin_q1",
-        "cos_q1",
-        "sin_q2",
-        "cos_q2",
-        "q1_dot",
-        "q2_dot",
-        "delta_q1",
-        "delta_q2",
-        "delta_q1_dot",
-        "delta_q2_dot",
+        "sin_q1", "cos_q1", "sin_q2", "cos_q2", "q1_dot", "q2_dot", "delta_q1", "delta_q2",
+        "delta_q1_dot", "delta_q2_dot",
     ),
     "sensitivity": (
-        "sin_q1",
-        "cos_q1",
-        "sin_q2",
-        "cos_q2",
-        "q1_dot",
-        "q2_dot",
-        "delta_q1",
-        "delta_q2",
-        "delta_q1_dot",
-        "delta_q2_dot",
+        "sin_q1", "cos_q1", "sin_q2", "cos_q2", "q1_dot", "q2_dot", "delta_q1", "delta_q2",
+        "delta_q1_dot", "delta_q2_dot",
     ),
 }
 PARAMETERS: tuple[str, ...] = ("l1", "l2", "c1", "c2", "m1", "m2", "I1", "I2", "g", "tau1", "tau2")
@@ -148,73 +107,27 @@ OUTPUTS = ("x", "y")
 LINKS = (("rod", (0, 1)), ("rod", (1, 2)))
 TIMED = ()
 CALLS_FUNCTIONS = (
-    "rhs",
-    "jacobian",
-    "input_jacobian",
-    "parameter_jacobian",
-    "outputs",
-    "outputs_jacobian",
-    "outputs_parameter_jacobian",
-    "energy",
-    "mass_matrix",
-    "positions",
-    "points",
-    "hamiltonian_state",
-    "rhs_hamiltonian",
-    "jacobian_hamiltonian",
-    "energy_hamiltonian",
-    "lagrangian_state",
-    "rational_state",
+    "rhs", "jacobian", "input_jacobian", "parameter_jacobian", "outputs",
+    "outputs_jacobian", "outputs_parameter_jacobian", "energy", "mass_matrix", "positions",
+    "points", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
+    "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (56, 16),
-    "jacobian": (108, 17),
-    "input_jacobian": (33, 12),
-    "parameter_jacobian": (158, 18),
-    "outputs": (11, 0),
-    "outputs_jacobian": (13, 0),
-    "outputs_parameter_jacobian": (5, 0),
-    "energy": (41, 15),
-    "power": (3, 0),
-    "mass_matrix": (21, 11),
-    "positions": (13, 0),
-    "points": (11, 0),
-    "hamiltonian_state": (27, 11),
-    "rhs_hamiltonian": (54, 16),
-    "jacobian_hamiltonian": (84, 16),
-    "energy_hamiltonian": (45, 14),
-    "lagrangian_state": (31, 12),
-    "rational_state": (4, 0),
-    "rhs_rational": (60, 16),
-    "rhs_variational": (107, 17),
-    "rhs_sensitivity": (187, 23),
+    "rhs": (56, 16), "jacobian": (108, 17), "input_jacobian": (33, 12),
+    "parameter_jacobian": (158, 18), "outputs": (11, 0), "outputs_jacobian": (13, 0),
+    "outputs_parameter_jacobian": (5, 0), "energy": (41, 15), "power": (3, 0),
+    "mass_matrix": (21, 11), "positions": (13, 0), "points": (11, 0),
+    "hamiltonian_state": (27, 11), "rhs_hamiltonian": (54, 16),
+    "jacobian_hamiltonian": (84, 16), "energy_hamiltonian": (45, 14),
+    "lagrangian_state": (31, 12), "rational_state": (4, 0), "rhs_rational": (60, 16),
+    "rhs_variational": (107, 17), "rhs_sensitivity": (187, 23),
 }
 UNITS = {
-    "l1": "m",
-    "l2": "m",
-    "c1": "m",
-    "c2": "m",
-    "m1": "kg",
-    "m2": "kg",
-    "I1": "kg m^2",
-    "I2": "kg m^2",
-    "g": "m/s^2",
-    "tau1": "N m",
-    "tau2": "N m",
-    "q1": "rad",
-    "q1_dot": "rad/s",
-    "p_q1": "J s",
-    "delta_q1": "rad",
-    "delta_q1_dot": "rad/s",
-    "sin_q1": "1",
-    "cos_q1": "1",
-    "q2": "rad",
-    "q2_dot": "rad/s",
-    "p_q2": "J s",
-    "delta_q2": "rad",
-    "delta_q2_dot": "rad/s",
-    "sin_q2": "1",
-    "cos_q2": "1",
+    "l1": "m", "l2": "m", "c1": "m", "c2": "m", "m1": "kg", "m2": "kg", "I1": "kg m^2",
+    "I2": "kg m^2", "g": "m/s^2", "tau1": "N m", "tau2": "N m", "q1": "rad",
+    "q1_dot": "rad/s", "p_q1": "J s", "delta_q1": "rad", "delta_q1_dot": "rad/s",
+    "sin_q1": "1", "cos_q1": "1", "q2": "rad", "q2_dot": "rad/s", "p_q2": "J s",
+    "delta_q2": "rad", "delta_q2_dot": "rad/s", "sin_q2": "1", "cos_q2": "1",
 }
 
 
@@ -257,7 +170,8 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """
     # inputs
     q1, q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
+    params = params.tolist() if hasattr(params, "tolist") else params
+    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
     # terms of the parameters alone
     c0 = m2*c2
     c3 = l1*c0
@@ -281,36 +195,6 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     return (q1_dot, q2_dot, x6, -c7*(x3 + x4*x6))
 
 
-def rhs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, q1_dot, q2_dot = y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = l1*c0
-    c4 = m1*c1
-    c5 = c4 + m2*l1
-    c6 = c0*g
-    c7 = 1.0/(I2 + c2*c0)
-    c8 = I1 + I2 + c1*c4
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    # intermediate terms
-    x0 = c3*sin(q2)
-    x1 = cos(q2 + q1)
-    x2 = tau1 + q2_dot*(2.0*q1_dot + q2_dot)*x0 - g*(c5*cos(q1) + c0*x1)
-    x3 = q1_dot*q1_dot*x0 + c6*x1 - tau2
-    cos_q2 = cos(q2)
-    x4 = I2 + c0*(c2 + l1*cos_q2)
-    x5 = c7*x4
-    x6 = (x2 + x3*x5)/(c8 + m2*(c9 + 2.0*c10*cos_q2) - x4*x5)
-    # outputs
-    return _stacked((4,), y[0], q1_dot, q2_dot, x6, -c7*(x3 + x4*x6))
-
-
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
@@ -332,7 +216,8 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """
     # inputs
     q1, q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
+    params = params.tolist() if hasattr(params, "tolist") else params
+    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
     # terms of the parameters alone
     c0 = m1*c1
     c3 = c0 + m2*l1
@@ -384,340 +269,6 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     )
 
 
-def jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, q1_dot, q2_dot = y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
-    # terms of the parameters alone
-    c0 = m1*c1
-    c3 = c0 + m2*l1
-    c4 = m2*c2
-    c5 = 1.0/(I2 + c2*c4)
-    c6 = c4*c5
-    c7 = I1 + I2 + c1*c0
-    c8 = c2*c2 + l1*l1
-    c9 = c2*l1
-    c10 = l1*c4
-    c11 = c4*g
-    # intermediate terms
-    sin_q1 = sin(q1)
-    cos_q2 = cos(q2)
-    sin_q2 = sin(q2)
-    cos_q1 = cos(q1)
-    x0 = cos_q2*sin_q1 + sin_q2*cos_q1
-    x1 = l1*cos_q2
-    x2 = I2 + c4*(c2 + x1)
-    x3 = c5*x2
-    x4 = c7 + m2*(c8 + 2.0*c9*cos_q2) - x2*x3
-    x5 = g*(c3*sin_q1 + c4*x0 - c6*x2*x0)/x4
-    x6 = g*x0
-    x7 = q2_dot + 2.0*q1_dot
-    x8 = q2_dot*x7
-    x9 = c10*sin_q2
-    x10 = cos_q2*cos_q1 - sin_q1*sin_q2
-    x11 = q1_dot*q1_dot
-    x12 = x9*x11 + c11*x10 - tau2
-    x13 = (tau1 + x9*x8 - g*(c3*cos_q1 + c4*x10) + x12*x3)/x4
-    x14 = l1*sin_q2
-    x15 = x13*x14
-    x16 = x15 + (x6 - x1*x11)
-    x17 = x6 + x1*x8 + 2.0*x15 - c5*(x12 + x2*x13)*x14 - x16*x3
-    x18 = c4*x17/x4
-    x19 = (q2_dot + q1_dot*x3)*x9/x4
-    x20 = (q2_dot + x7)*x9/x4
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        x5,
-        x18,
-        2.0*x19,
-        x20,
-        c5*(c11*x0 - x2*x5),
-        c5*(c4*x16 - x2*x18),
-        -2.0*c5*(q1_dot*x9 + x2*x19),
-        -x20*x3,
-    )
-
-
-def input_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the inputs.
-
-    33 operations, 12 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        q1, q2 in rad; q1_dot, q2_dot in rad/s.
-    params : iterable of 11 floats
-        l1, l2, c1, c2 in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to input j.
-    """
-    # inputs
-    _, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = I1 + I2 + m1*c1*c1
-    c3 = c2*c2 + l1*l1
-    c4 = c2*l1
-    c5 = m2*c2
-    c6 = 1.0/(I2 + c2*c5)
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c5*(c2 + l1*cos_q2)
-    x1 = c6*x0
-    x2 = c0 + m2*(c3 + 2.0*c4*cos_q2) - x0*x1
-    x3 = 1.0/x2
-    x4 = x1/x2
-    # outputs
-    return ((0.0, 0.0), (0.0, 0.0), (x3, -x4), (-x3*x1, c6*(1.0 + x0*x4)))
-
-
-def input_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`input_jacobian` over arrays: the result has shape (4, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    _, q2, _, _ = y
-    l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params
-    # terms of the parameters alone
-    c0 = I1 + I2 + m1*c1*c1
-    c3 = c2*c2 + l1*l1
-    c4 = c2*l1
-    c5 = m2*c2
-    c6 = 1.0/(I2 + c2*c5)
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c5*(c2 + l1*cos_q2)
-    x1 = c6*x0
-    x2 = c0 + m2*(c3 + 2.0*c4*cos_q2) - x0*x1
-    x3 = 1.0/x2
-    x4 = x1/x2
-    # outputs
-    return _stacked(
-        (4, 2),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x3,
-        -x4,
-        -x3*x1,
-        c6*(1.0 + x0*x4),
-    )
-
-
-def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `rhs` with respect to the parameters, without inputs.
-
-    158 operations, 18 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        q1, q2 in rad; q1_dot, q2_dot in rad/s.
-    params : iterable of 11 floats
-        l1, l2, c1, c2 in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs[i] with respect to parameter j.
-    """
-    # inputs
-    q1, q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = 1.0/(I2 + c2*c0)
-    c4 = l1*c0
-    c5 = c0*g
-    c6 = m1*c1
-    c7 = c6 + m2*l1
-    c8 = I1 + I2 + c1*c6
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    c11 = c2*c3
-    c12 = c0*c3
-    # intermediate terms
-    sin_q2 = sin(q2)
-    x0 = (q2_dot + 2.0*q1_dot)*(q2_dot*sin_q2)
-    cos_q1 = cos(q1)
-    x1 = g*cos_q1
-    cos_q2 = cos(q2)
-    x2 = q1_dot*(sin_q2*q1_dot)
-    x3 = cos(q2 + q1)
-    x4 = c4*x2 + c5*x3 - tau2
-    x5 = c2 + l1*cos_q2
-    x6 = I2 + c0*x5
-    x7 = c0*x3
-    x8 = c7*cos_q1 + x7
-    x9 = c3*x6
-    x10 = c9 + 2.0*c10*cos_q2
-    x11 = c8 + m2*x10 - x6*x9
-    x12 = (tau1 + c4*x0 - g*x8 + x4*x9)/x11
-    x13 = c3*(x4 + x6*x12)
-    x14 = c2*x13
-    x15 = c2*x0 - x1 + cos_q2*x14 - 2.0*(l1 + c2*cos_q2)*x12
-    x16 = x2 + cos_q2*x12
-    x17 = c11*x6
-    x18 = m2*(x15 + x16*x17)/x11
-    x19 = c1*x12
-    x20 = m1*(x1 + 2.0*x19)/x11
-    x21 = g*x3
-    x22 = c2 + x5
-    x23 = x5*x12
-    x24 = x21 + l1*x2
-    x25 = x24 + x12*x22 - 2.0*x14
-    x26 = m2*(l1*x0 - x21 + x13*x22 - 2.0*x23 + x25*x9)/x11
-    x27 = c1*(x1 + x19)/x11
-    x28 = c10*x0 - g*(l1*cos_q1 + c2*x3) + x5*x14 - x10*x12
-    x29 = x23 + x24 - x14
-    x30 = (x28 + x29*x17)/x11
-    x31 = x12/x11
-    x32 = x12 - x13
-    x33 = x32*(1.0 - x9)/x11
-    x34 = (x8 - c12*x6*x3)/x11
-    # outputs
-    return (
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (x18, 0.0, -x20, x26, -x27, x30, -x31, -x33, -x34),
-        (
-            -c3*(c0*x16 + x6*x18),
-            0.0,
-            x20*x9,
-            -c3*(m2*x25 + x6*x26),
-            x27*x9,
-            -c3*(c2*x29 + x6*x30),
-            x31*x9,
-            -c3*(x32 - x6*x33),
-            -c3*(x7 - x6*x34),
-        ),
-    )
-
-
-def parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`parameter_jacobian` over arrays: the result has shape (4, 9, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, q1_dot, q2_dot = y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = 1.0/(I2 + c2*c0)
-    c4 = l1*c0
-    c5 = c0*g
-    c6 = m1*c1
-    c7 = c6 + m2*l1
-    c8 = I1 + I2 + c1*c6
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    c11 = c2*c3
-    c12 = c0*c3
-    # intermediate terms
-    sin_q2 = sin(q2)
-    x0 = (q2_dot + 2.0*q1_dot)*(q2_dot*sin_q2)
-    cos_q1 = cos(q1)
-    x1 = g*cos_q1
-    cos_q2 = cos(q2)
-    x2 = q1_dot*(sin_q2*q1_dot)
-    x3 = cos(q2 + q1)
-    x4 = c4*x2 + c5*x3 - tau2
-    x5 = c2 + l1*cos_q2
-    x6 = I2 + c0*x5
-    x7 = c0*x3
-    x8 = c7*cos_q1 + x7
-    x9 = c3*x6
-    x10 = c9 + 2.0*c10*cos_q2
-    x11 = c8 + m2*x10 - x6*x9
-    x12 = (tau1 + c4*x0 - g*x8 + x4*x9)/x11
-    x13 = c3*(x4 + x6*x12)
-    x14 = c2*x13
-    x15 = c2*x0 - x1 + cos_q2*x14 - 2.0*(l1 + c2*cos_q2)*x12
-    x16 = x2 + cos_q2*x12
-    x17 = c11*x6
-    x18 = m2*(x15 + x16*x17)/x11
-    x19 = c1*x12
-    x20 = m1*(x1 + 2.0*x19)/x11
-    x21 = g*x3
-    x22 = c2 + x5
-    x23 = x5*x12
-    x24 = x21 + l1*x2
-    x25 = x24 + x12*x22 - 2.0*x14
-    x26 = m2*(l1*x0 - x21 + x13*x22 - 2.0*x23 + x25*x9)/x11
-    x27 = c1*(x1 + x19)/x11
-    x28 = c10*x0 - g*(l1*cos_q1 + c2*x3) + x5*x14 - x10*x12
-    x29 = x23 + x24 - x14
-    x30 = (x28 + x29*x17)/x11
-    x31 = x12/x11
-    x32 = x12 - x13
-    x33 = x32*(1.0 - x9)/x11
-    x34 = (x8 - c12*x6*x3)/x11
-    # outputs
-    return _stacked(
-        (4, 9),
-        y[0],
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        x18,
-        0.0,
-        -x20,
-        x26,
-        -x27,
-        x30,
-        -x31,
-        -x33,
-        -x34,
-        -c3*(c0*x16 + x6*x18),
-        0.0,
-        x20*x9,
-        -c3*(m2*x25 + x6*x26),
-        x27*x9,
-        -c3*(c2*x29 + x6*x30),
-        x31*x9,
-        -c3*(x32 - x6*x33),
-        -c3*(x7 - x6*x34),
-    )
-
-
 def outputs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Outputs x, y.
 
@@ -739,150 +290,12 @@ def outputs(t: float, y: Numbers, params: Numbers) -> Vector:
     """
     # inputs
     q1, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    l1, l2, _, _, _, _, _, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
+    params = params.tolist() if hasattr(params, "tolist") else params
+    l1, l2, _, _, _, _, _, _, _, _, _ = params
     # intermediate terms
     x0 = q1 + q2
     # outputs
     return (l1*cos(q1) + l2*cos(x0), l1*sin(q1) + l2*sin(x0))
-
-
-def outputs_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`outputs` over arrays: the result has shape (2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, _, _ = y
-    l1, l2, _, _, _, _, _, _, _, _, _ = params
-    # intermediate terms
-    x0 = q1 + q2
-    # outputs
-    return _stacked((2,), y[0], l1*cos(q1) + l2*cos(x0), l1*sin(q1) + l2*sin(x0))
-
-
-def outputs_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `outputs` with respect to the state.
-
-    13 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        q1, q2 in rad; q1_dot, q2_dot in rad/s.
-    params : iterable of 11 floats
-        l1, l2, c1, c2 in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of output i with respect to y[j].
-    """
-    # inputs
-    q1, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    l1, l2, _, _, _, _, _, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # intermediate terms
-    x0 = q1 + q2
-    x1 = l2*sin(x0)
-    x2 = l2*cos(x0)
-    # outputs
-    return (
-        (-(l1*sin(q1) + x1), -x1, 0.0, 0.0),
-        (l1*cos(q1) + x2, x2, 0.0, 0.0),
-    )
-
-
-def outputs_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`outputs_jacobian` over arrays: the result has shape (2, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, _, _ = y
-    l1, l2, _, _, _, _, _, _, _, _, _ = params
-    # intermediate terms
-    x0 = q1 + q2
-    x1 = l2*sin(x0)
-    x2 = l2*cos(x0)
-    # outputs
-    return _stacked(
-        (2, 4),
-        y[0],
-        -(l1*sin(q1) + x1),
-        -x1,
-        0.0,
-        0.0,
-        l1*cos(q1) + x2,
-        x2,
-        0.0,
-        0.0,
-    )
-
-
-def outputs_parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Derivatives of `outputs` with respect to the parameters, with inputs.
-
-    5 operations, 0 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        q1, q2 in rad; q1_dot, q2_dot in rad/s.
-    params : iterable of 11 floats
-        l1, l2, c1, c2 in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of output i with respect to params[j].
-    """
-    # inputs
-    q1, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    # intermediate terms
-    x0 = q1 + q2
-    # outputs
-    return (
-        (cos(q1), cos(x0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (sin(q1), sin(x0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-    )
-
-
-def outputs_parameter_jacobian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`outputs_parameter_jacobian` over arrays: the result has shape (2, 11, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, _, _ = y
-    # intermediate terms
-    x0 = q1 + q2
-    # outputs
-    return _stacked(
-        (2, 11),
-        y[0],
-        cos(q1),
-        cos(x0),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        sin(q1),
-        sin(x0),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-    )
 
 
 def energy(t: float, y: Numbers, params: Numbers) -> float:
@@ -906,30 +319,7 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     """
     # inputs
     q1, q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m1*c1
-    c3 = g*(c0 + m2*l1)
-    c4 = m2*c2
-    c5 = g*c4
-    c6 = I1 + I2 + c1*c0
-    c7 = c2*c2 + l1*l1
-    c8 = c2*l1
-    c9 = I2 + c2*c4
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = q1_dot*q1_dot*(c6 + m2*(c7 + 2.0*c8*cos_q2)) + c9*q2_dot*q2_dot
-    x1 = c3*sin(q1) + q1_dot*q2_dot*(I2 + c4*(c2 + l1*cos_q2)) + c5*sin(q2 + q1) + 0.5*x0
-    # outputs
-    return x1
-
-
-def energy_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, q1_dot, q2_dot = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, g, _, _ = params
     # terms of the parameters alone
     c0 = m1*c1
@@ -969,15 +359,7 @@ def power(t: float, y: Numbers, params: Numbers) -> float:
     """
     # inputs
     _, _, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    _, _, _, _, _, _, _, _, _, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
-    # outputs
-    return tau1*q1_dot + tau2*q2_dot
-
-
-def power_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`power` over arrays: the result has shape (...)."""
-    # inputs
-    _, _, q1_dot, q2_dot = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     _, _, _, _, _, _, _, _, _, tau1, tau2 = params
     # outputs
     return tau1*q1_dot + tau2*q2_dot
@@ -1004,25 +386,7 @@ def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
     """
     # inputs
     _, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = I1 + I2 + m1*c1*c1
-    c3 = c2*c2 + l1*l1
-    c4 = c2*l1
-    c5 = m2*c2
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c5*(c2 + l1*cos_q2)
-    # outputs
-    return ((c0 + m2*(c3 + 2.0*c4*cos_q2), x0), (x0, I2 + c2*c5))
-
-
-def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`mass_matrix` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos
-
-    # inputs
-    _, q2, _, _ = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params
     # terms of the parameters alone
     c0 = I1 + I2 + m1*c1*c1
@@ -1033,7 +397,7 @@ def mass_matrix_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     cos_q2 = cos(q2)
     x0 = I2 + c5*(c2 + l1*cos_q2)
     # outputs
-    return _stacked((2, 2), y[0], c0 + m2*(c3 + 2.0*c4*cos_q2), x0, x0, I2 + c2*c5)
+    return ((c0 + m2*(c3 + 2.0*c4*cos_q2), x0), (x0, I2 + c2*c5))
 
 
 def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -1057,7 +421,8 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     """
     # inputs
     q1, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, _, _, _, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
+    params = params.tolist() if hasattr(params, "tolist") else params
+    l1, _, c1, c2, _, _, _, _, _, _, _ = params
     # intermediate terms
     cos_q1 = cos(q1)
     sin_q1 = sin(q1)
@@ -1066,28 +431,6 @@ def positions(t: float, y: Numbers, params: Numbers) -> Matrix:
     return (
         (c1*cos_q1, c1*sin_q1),
         (c2*cos(x0) + l1*cos_q1, c2*sin(x0) + l1*sin_q1),
-    )
-
-
-def positions_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`positions` over arrays: the result has shape (2, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, _, _ = y
-    l1, _, c1, c2, _, _, _, _, _, _, _ = params
-    # intermediate terms
-    cos_q1 = cos(q1)
-    sin_q1 = sin(q1)
-    x0 = q1 + q2
-    # outputs
-    return _stacked(
-        (2, 2),
-        y[0],
-        c1*cos_q1,
-        c1*sin_q1,
-        c2*cos(x0) + l1*cos_q1,
-        c2*sin(x0) + l1*sin_q1,
     )
 
 
@@ -1112,28 +455,14 @@ def points(t: float, y: Numbers, params: Numbers) -> Matrix:
     """
     # inputs
     q1, q2, _, _ = y.tolist() if hasattr(y, "tolist") else y
-    l1, l2, _, _, _, _, _, _, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # intermediate terms
-    x0 = l1*cos(q1)
-    x1 = l1*sin(q1)
-    x2 = q1 + q2
-    # outputs
-    return ((0.0, 0.0), (x0, x1), (x0 + l2*cos(x2), x1 + l2*sin(x2)))
-
-
-def points_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`points` over arrays: the result has shape (3, 2, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, _, _ = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, l2, _, _, _, _, _, _, _, _, _ = params
     # intermediate terms
     x0 = l1*cos(q1)
     x1 = l1*sin(q1)
     x2 = q1 + q2
     # outputs
-    return _stacked((3, 2), y[0], 0.0, 0.0, x0, x1, x0 + l2*cos(x2), x1 + l2*sin(x2))
+    return ((0.0, 0.0), (x0, x1), (x0 + l2*cos(x2), x1 + l2*sin(x2)))
 
 
 def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1157,27 +486,7 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """
     # inputs
     q1, q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = I2 + I1 + m1*c1*c1
-    c4 = c2*c2 + l1*l1
-    c5 = c2*l1
-    c6 = I2 + c2*c0
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = q2_dot*x0 + q1_dot*(c3 + m2*(c4 + 2.0*c5*cos_q2))
-    # outputs
-    return (q1, q2, x1, c6*q2_dot + x0*q1_dot)
-
-
-def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`hamiltonian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos
-
-    # inputs
-    q1, q2, q1_dot, q2_dot = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params
     # terms of the parameters alone
     c0 = m2*c2
@@ -1190,7 +499,7 @@ def hamiltonian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x0 = I2 + c0*(c2 + l1*cos_q2)
     x1 = q2_dot*x0 + q1_dot*(c3 + m2*(c4 + 2.0*c5*cos_q2))
     # outputs
-    return _stacked((4,), y[0], q1, q2, x1, c6*q2_dot + x0*q1_dot)
+    return (q1, q2, x1, c6*q2_dot + x0*q1_dot)
 
 
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1214,40 +523,7 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """
     # inputs
     q1, q2, p_q1, p_q2 = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = 1.0/(I2 + c2*c0)
-    c4 = m1*c1
-    c5 = I1 + I2 + c1*c4
-    c6 = c2*c2 + l1*l1
-    c7 = c2*l1
-    c8 = c4 + m2*l1
-    c9 = c0*g
-    c10 = l1*c0
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = c3*x0
-    x2 = (p_q1 - p_q2*x1)/(c5 + m2*(c6 + 2.0*c7*cos_q2) - x0*x1)
-    x3 = c3*(p_q2 - x0*x2)
-    x4 = cos(q2 + q1)
-    x5 = c10*(x2*sin(q2))
-    # outputs
-    return (
-        x2,
-        x3,
-        -(g*(c8*cos(q1) + c0*x4) - tau1),
-        -(c9*x4 + x2*x5 + x3*x5 - tau2),
-    )
-
-
-def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_hamiltonian` over arrays: the result has shape (4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, p_q1, p_q2 = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
     # terms of the parameters alone
     c0 = m2*c2
@@ -1268,132 +544,11 @@ def rhs_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x4 = cos(q2 + q1)
     x5 = c10*(x2*sin(q2))
     # outputs
-    return _stacked(
-        (4,),
-        y[0],
+    return (
         x2,
         x3,
         -(g*(c8*cos(q1) + c0*x4) - tau1),
         -(c9*x4 + x2*x5 + x3*x5 - tau2),
-    )
-
-
-def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
-    """Jacobian of `rhs_hamiltonian`.
-
-    84 operations, 16 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 4 floats
-        q1, q2 in rad; p_q1, p_q2 in J s.
-    params : iterable of 11 floats
-        l1, l2, c1, c2 in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
-
-    Returns
-    -------
-    Matrix
-        Entry [i][j] is the derivative of rhs_hamiltonian[i] with respect to y[j].
-    """
-    # inputs
-    q1, q2, p_q1, p_q2 = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = 1.0/(I2 + c2*c0)
-    c4 = m1*c1
-    c5 = I1 + I2 + c1*c4
-    c6 = c2*c2 + l1*l1
-    c7 = c2*l1
-    c8 = l1*c0
-    c9 = c4 + m2*l1
-    c10 = c0*g
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = c3*x0
-    x2 = c5 + m2*(c6 + 2.0*c7*cos_q2) - x0*x1
-    x3 = (p_q1 - p_q2*x1)/x2
-    x4 = c3*(p_q2 - x0*x3)
-    sin_q2 = sin(q2)
-    x5 = c8*sin_q2
-    x6 = (2.0*x3 + x4 - x3*x1)*x5/x2
-    x7 = 1.0/x2
-    x8 = x1/x2
-    x9 = c3*(x3*x5 - x0*x6)
-    x10 = sin(q2 + q1)
-    x11 = c10*x10
-    x12 = l1*x3
-    x13 = cos_q2*x12
-    x14 = sin_q2*x6
-    x15 = x3*x13 + x4*x13 + 2.0*x12*x14 + l1*x4*x14 + sin_q2*x9*x12 - g*x10
-    # outputs
-    return (
-        (0.0, x6, x7, -x8),
-        (0.0, x9, -x7*x1, c3*(1.0 + x0*x8)),
-        (g*(c9*sin(q1) + c0*x10), x11, 0.0, 0.0),
-        (x11, -c0*x15, -x6, -x9),
-    )
-
-
-def jacobian_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`jacobian_hamiltonian` over arrays: the result has shape (4, 4, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, p_q1, p_q2 = y
-    l1, _, c1, c2, m1, m2, I1, I2, g, _, _ = params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = 1.0/(I2 + c2*c0)
-    c4 = m1*c1
-    c5 = I1 + I2 + c1*c4
-    c6 = c2*c2 + l1*l1
-    c7 = c2*l1
-    c8 = l1*c0
-    c9 = c4 + m2*l1
-    c10 = c0*g
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = c3*x0
-    x2 = c5 + m2*(c6 + 2.0*c7*cos_q2) - x0*x1
-    x3 = (p_q1 - p_q2*x1)/x2
-    x4 = c3*(p_q2 - x0*x3)
-    sin_q2 = sin(q2)
-    x5 = c8*sin_q2
-    x6 = (2.0*x3 + x4 - x3*x1)*x5/x2
-    x7 = 1.0/x2
-    x8 = x1/x2
-    x9 = c3*(x3*x5 - x0*x6)
-    x10 = sin(q2 + q1)
-    x11 = c10*x10
-    x12 = l1*x3
-    x13 = cos_q2*x12
-    x14 = sin_q2*x6
-    x15 = x3*x13 + x4*x13 + 2.0*x12*x14 + l1*x4*x14 + sin_q2*x9*x12 - g*x10
-    # outputs
-    return _stacked(
-        (4, 4),
-        y[0],
-        0.0,
-        x6,
-        x7,
-        -x8,
-        0.0,
-        x9,
-        -x7*x1,
-        c3*(1.0 + x0*x8),
-        g*(c9*sin(q1) + c0*x10),
-        x11,
-        0.0,
-        0.0,
-        x11,
-        -c0*x15,
-        -x6,
-        -x9,
     )
 
 
@@ -1418,31 +573,7 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """
     # inputs
     q1, q2, p_q1, p_q2 = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m1*c1
-    c3 = c0 + m2*l1
-    c4 = m2*c2
-    c5 = 1.0/(I2 + c2*c4)
-    c6 = I1 + I2 + c1*c0
-    c7 = c2*c2 + l1*l1
-    c8 = c2*l1
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c4*(c2 + l1*cos_q2)
-    x1 = c5*x0
-    x2 = (p_q1 - p_q2*x1)/(c6 + m2*(c7 + 2.0*c8*cos_q2) - x0*x1)
-    x3 = g*(c3*sin(q1) + c4*sin(q2 + q1)) + 0.5*(p_q1*x2 + p_q2*(c5*(p_q2 - x0*x2)))
-    # outputs
-    return x3
-
-
-def energy_hamiltonian_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`energy_hamiltonian` over arrays: the result has shape (...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, p_q1, p_q2 = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, g, _, _ = params
     # terms of the parameters alone
     c0 = m1*c1
@@ -1483,28 +614,7 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """
     # inputs
     q1, q2, p_q1, p_q2 = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = 1.0/(I2 + c2*c0)
-    c4 = I1 + I2 + m1*c1*c1
-    c5 = c2*c2 + l1*l1
-    c6 = c2*l1
-    # intermediate terms
-    cos_q2 = cos(q2)
-    x0 = I2 + c0*(c2 + l1*cos_q2)
-    x1 = c3*x0
-    x2 = (p_q1 - p_q2*x1)/(c4 + m2*(c5 + 2.0*c6*cos_q2) - x0*x1)
-    # outputs
-    return (q1, q2, x2, c3*(p_q2 - x0*x2))
-
-
-def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`lagrangian_state` over arrays: the result has shape (4, ...)."""
-    from numpy import cos
-
-    # inputs
-    q1, q2, p_q1, p_q2 = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, _, _, _ = params
     # terms of the parameters alone
     c0 = m2*c2
@@ -1518,7 +628,7 @@ def lagrangian_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x1 = c3*x0
     x2 = (p_q1 - p_q2*x1)/(c4 + m2*(c5 + 2.0*c6*cos_q2) - x0*x1)
     # outputs
-    return _stacked((4,), y[0], q1, q2, x2, c3*(p_q2 - x0*x2))
+    return (q1, q2, x2, c3*(p_q2 - x0*x2))
 
 
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -1546,16 +656,6 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
     return (sin(q1), cos(q1), sin(q2), cos(q2), q1_dot, q2_dot)
 
 
-def rational_state_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rational_state` over arrays: the result has shape (6, ...)."""
-    from numpy import cos, sin
-
-    # inputs
-    q1, q2, q1_dot, q2_dot = y
-    # outputs
-    return _stacked((6,), y[0], sin(q1), cos(q1), sin(q2), cos(q2), q1_dot, q2_dot)
-
-
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
@@ -1576,41 +676,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         Time derivative of y.
     """
     # inputs
-    sin_q1, cos_q1, sin_q2, cos_q2, q1_dot, q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = l1*c0
-    c4 = m1*c1
-    c5 = c4 + m2*l1
-    c6 = c0*g
-    c7 = 1.0/(I2 + c2*c0)
-    c8 = I1 + I2 + c1*c4
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    # intermediate terms
-    x0 = q2_dot*sin_q2
-    x1 = cos_q1*cos_q2 - sin_q1*sin_q2
-    x2 = tau1 + c3*x0*(2.0*q1_dot + q2_dot) - g*(c5*cos_q1 + c0*x1)
-    x3 = c3*q1_dot*q1_dot*sin_q2 + c6*x1 - tau2
-    x4 = I2 + c0*(c2 + l1*cos_q2)
-    x5 = c7*x4
-    x6 = (x2 + x3*x5)/(c8 + m2*(c9 + 2.0*c10*cos_q2) - x4*x5)
-    # outputs
-    return (
-        q1_dot*cos_q1,
-        -q1_dot*sin_q1,
-        q2_dot*cos_q2,
-        -x0,
-        x6,
-        -c7*(x3 + x4*x6),
-    )
-
-
-def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_rational` over arrays: the result has shape (6, ...)."""
-    # inputs
+    y = y.tolist() if hasattr(y, "tolist") else y
     sin_q1, cos_q1, sin_q2, cos_q2, q1_dot, q2_dot = y
+    params = params.tolist() if hasattr(params, "tolist") else params
     l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
     # terms of the parameters alone
     c0 = m2*c2
@@ -1631,9 +699,7 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     x5 = c7*x4
     x6 = (x2 + x3*x5)/(c8 + m2*(c9 + 2.0*c10*cos_q2) - x4*x5)
     # outputs
-    return _stacked(
-        (6,),
-        y[0],
+    return (
         q1_dot*cos_q1,
         -q1_dot*sin_q1,
         q2_dot*cos_q2,
@@ -1643,325 +709,72 @@ def rhs_rational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
     )
 
 
-def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
-    """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
+def _over_arrays(function: Any) -> Any:
+    """`function` over arrays: its code with NumPy's functions."""
+    from functools import wraps
 
-    107 operations, 17 of them on parameters alone.
+    names = function.__code__.co_varnames[: function.__code__.co_argcount]
 
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_q1, cos_q1, sin_q2, cos_q2 in 1; q1_dot, q2_dot in rad/s; delta_q1, delta_q2 in
-        rad; delta_q1_dot, delta_q2_dot in rad/s.
-    params : iterable of 11 floats
-        l1, l2, c1, c2 in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
+    @wraps(function)
+    def many(*values: Any, **named: Any) -> Array:
+        import numpy
 
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_q1, cos_q1, sin_q2, cos_q2, q1_dot, q2_dot, delta_q1, delta_q2, delta_q1_dot, delta_q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = l1*c0
-    c4 = m1*c1
-    c5 = c4 + m2*l1
-    c6 = c0*g
-    c7 = 1.0/(I2 + c2*c0)
-    c8 = I1 + I2 + c1*c4
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    c11 = c0*c7
-    # intermediate terms
-    x0 = c3*sin_q2
-    x1 = 2.0*q1_dot + q2_dot
-    x2 = q2_dot*x1
-    x3 = cos_q1*cos_q2 - sin_q1*sin_q2
-    x4 = q1_dot*q1_dot
-    x5 = x0*x4 + c6*x3 - tau2
-    x6 = l1*cos_q2
-    x7 = I2 + c0*(c2 + x6)
-    x8 = c7*x7
-    x9 = c8 + m2*(c9 + 2.0*c10*cos_q2) - x7*x8
-    x10 = (tau1 + x0*x2 - g*(c5*cos_q1 + c0*x3) + x5*x8)/x9
-    x11 = c7*(x5 + x7*x10)
-    x12 = sin_q1*cos_q2 + cos_q1*sin_q2
-    x13 = g*delta_q1
-    x14 = g*x12
-    x15 = l1*sin_q2
-    x16 = x10*x15
-    x17 = (
-        (c5*sin_q1 + c0*x12)*x13 + c0*delta_q2*(x14 + x6*x2 + 2.0*x16 - x11*x15)
-        + 2.0*q2_dot*delta_q1_dot*x0 + delta_q2_dot*(q2_dot + x1)*x0
-    )
-    x18 = x12*x13 + delta_q2*(x16 + (x14 - x6*x4)) - 2.0*q1_dot*delta_q1_dot*x15
-    x19 = (x17 - c11*x7*x18)/x9
-    # outputs
-    return (
-        q1_dot*cos_q1,
-        -q1_dot*sin_q1,
-        q2_dot*cos_q2,
-        -q2_dot*sin_q2,
-        x10,
-        -x11,
-        delta_q1_dot,
-        delta_q2_dot,
-        x19,
-        c7*(c0*x18 - x7*x19),
-    )
+        arguments = dict(zip(names, values)) | named
+        # an array, but not a tuple, would be converted to numbers
+        taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
+        functions = {"cos": numpy.cos, "sin": numpy.sin}
+        result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
+        shape: tuple[int, ...] = ()
+        results = [result]
+        while isinstance(results[0], tuple):
+            shape += (len(results[0]),)
+            results = [value for row in results for value in row]
+        if not shape:
+            return result
+        like = taken.get("y", taken["params"])[:1] or (0.0,)
+        _, *arrays = numpy.broadcast_arrays(*like, *results)
+        return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+
+    many.__name__ = many.__qualname__ = f"{function.__name__}_many"
+    many.__doc__ = f"`{function.__name__}` over arrays, whose first axis is the state."
+    return many
 
 
-def rhs_variational_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_variational` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_q1, cos_q1, sin_q2, cos_q2, q1_dot, q2_dot, delta_q1, delta_q2, delta_q1_dot, delta_q2_dot = y
-    l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = l1*c0
-    c4 = m1*c1
-    c5 = c4 + m2*l1
-    c6 = c0*g
-    c7 = 1.0/(I2 + c2*c0)
-    c8 = I1 + I2 + c1*c4
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    c11 = c0*c7
-    # intermediate terms
-    x0 = c3*sin_q2
-    x1 = 2.0*q1_dot + q2_dot
-    x2 = q2_dot*x1
-    x3 = cos_q1*cos_q2 - sin_q1*sin_q2
-    x4 = q1_dot*q1_dot
-    x5 = x0*x4 + c6*x3 - tau2
-    x6 = l1*cos_q2
-    x7 = I2 + c0*(c2 + x6)
-    x8 = c7*x7
-    x9 = c8 + m2*(c9 + 2.0*c10*cos_q2) - x7*x8
-    x10 = (tau1 + x0*x2 - g*(c5*cos_q1 + c0*x3) + x5*x8)/x9
-    x11 = c7*(x5 + x7*x10)
-    x12 = sin_q1*cos_q2 + cos_q1*sin_q2
-    x13 = g*delta_q1
-    x14 = g*x12
-    x15 = l1*sin_q2
-    x16 = x10*x15
-    x17 = (
-        (c5*sin_q1 + c0*x12)*x13 + c0*delta_q2*(x14 + x6*x2 + 2.0*x16 - x11*x15)
-        + 2.0*q2_dot*delta_q1_dot*x0 + delta_q2_dot*(q2_dot + x1)*x0
-    )
-    x18 = x12*x13 + delta_q2*(x16 + (x14 - x6*x4)) - 2.0*q1_dot*delta_q1_dot*x15
-    x19 = (x17 - c11*x7*x18)/x9
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        q1_dot*cos_q1,
-        -q1_dot*sin_q1,
-        q2_dot*cos_q2,
-        -q2_dot*sin_q2,
-        x10,
-        -x11,
-        delta_q1_dot,
-        delta_q2_dot,
-        x19,
-        c7*(c0*x18 - x7*x19),
-    )
+rhs_many = _over_arrays(rhs)
+jacobian_many = _over_arrays(jacobian)
+outputs_many = _over_arrays(outputs)
+energy_many = _over_arrays(energy)
+power_many = _over_arrays(power)
+mass_matrix_many = _over_arrays(mass_matrix)
+positions_many = _over_arrays(positions)
+points_many = _over_arrays(points)
+hamiltonian_state_many = _over_arrays(hamiltonian_state)
+rhs_hamiltonian_many = _over_arrays(rhs_hamiltonian)
+energy_hamiltonian_many = _over_arrays(energy_hamiltonian)
+lagrangian_state_many = _over_arrays(lagrangian_state)
+rational_state_many = _over_arrays(rational_state)
+rhs_rational_many = _over_arrays(rhs_rational)
 
 
-def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
-    """`rhs_variational` with perturbed parameters, whose perturbations precede them.
+def __getattr__(name: str) -> Any:
+    """A function of the file of derivatives, which is loaded when one is first used."""
+    if name.removesuffix("_many") not in OPERATIONS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib.util import module_from_spec, spec_from_file_location
 
-    187 operations, 23 of them on parameters alone.
-
-    Parameters
-    ----------
-    t : float
-        Time in s; not used.
-    y : iterable of 10 floats
-        sin_q1, cos_q1, sin_q2, cos_q2 in 1; q1_dot, q2_dot in rad/s; delta_q1, delta_q2 in
-        rad; delta_q1_dot, delta_q2_dot in rad/s.
-    params : iterable of 22 floats
-        delta_l1, delta_l2, delta_c1, delta_c2 in m; delta_m1, delta_m2 in kg; delta_I1,
-        delta_I2 in kg m^2; delta_g in m/s^2; delta_tau1, delta_tau2 in N m; l1, l2, c1, c2
-        in m; m1, m2 in kg; I1, I2 in kg m^2; g in m/s^2; tau1, tau2 in N m.
-
-    Returns
-    -------
-    Vector
-        Time derivative of y: of the motion, then of the perturbation.
-    """
-    # inputs
-    sin_q1, cos_q1, sin_q2, cos_q2, q1_dot, q2_dot, delta_q1, delta_q2, delta_q1_dot, delta_q2_dot = y.tolist() if hasattr(y, "tolist") else y
-    delta_l1, _, delta_c1, delta_c2, delta_m1, delta_m2, delta_I1, delta_I2, delta_g, delta_tau1, delta_tau2, l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params.tolist() if hasattr(params, "tolist") else params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = l1*c0
-    c4 = m1*c1
-    c5 = c4 + m2*l1
-    c6 = c0*g
-    c7 = 1.0/(I2 + c2*c0)
-    c8 = I1 + I2 + c1*c4
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    c11 = m2*delta_l1
-    c12 = m2*delta_c2
-    c13 = m1*delta_c1
-    c14 = c1*delta_m1
-    c15 = c0*delta_l1
-    c16 = c2*delta_m2
-    c17 = c0*delta_g
-    # intermediate terms
-    x0 = q2_dot*sin_q2
-    x1 = 2.0*q1_dot + q2_dot
-    x2 = x0*x1
-    x3 = cos_q1*cos_q2 - sin_q1*sin_q2
-    x4 = c5*cos_q1 + c0*x3
-    x5 = q1_dot*q1_dot
-    x6 = c3*sin_q2
-    x7 = x5*x6 + c6*x3 - tau2
-    x8 = l1*cos_q2
-    x9 = c2 + x8
-    x10 = I2 + c0*x9
-    x11 = c7*x10
-    x12 = c9 + 2.0*c10*cos_q2
-    x13 = c8 + m2*x12 - x10*x11
-    x14 = (tau1 + c3*x2 - g*x4 + x7*x11)/x13
-    x15 = c7*(x7 + x10*x14)
-    x16 = sin_q1*cos_q2 + cos_q1*sin_q2
-    x17 = g*x16
-    x18 = l1*sin_q2
-    x19 = x14*x18
-    x20 = c0*delta_q2
-    x21 = g*cos_q1
-    x22 = c2*x15
-    x23 = c2*x2 - x21 + cos_q2*x22 - 2.0*x14*(l1 + c2*cos_q2)
-    x24 = g*x3
-    x25 = c2 + x9
-    x26 = x9*x14
-    x27 = c10*x2 - g*(l1*cos_q1 + c2*x3) + x9*x22 - x12*x14
-    x28 = c1*x14
-    x29 = delta_I2*(x14 - x15)
-    x30 = (
-        delta_tau1 + g*delta_q1*(c5*sin_q1 + c0*x16)
-        + (x17 + q2_dot*x8*x1 + 2.0*x19 - x15*x18)*x20 + 2.0*c3*x0*delta_q1_dot
-        + delta_q2_dot*(q2_dot + x1)*x6 + c11*x23 + c12*(l1*x2 - x24 + x15*x25 - 2.0*x26)
-        + delta_m2*x27 - c13*(x21 + 2.0*x28) - c14*(x21 + x28) - delta_I1*x14 - x29
-        - delta_g*x4
-    )
-    x31 = x24 + x5*x18
-    x32 = (
-        x29 + 2.0*q1_dot*delta_q1_dot*x6 + c15*(sin_q2*x5 + cos_q2*x14)
-        + c12*(x31 + x14*x25 - 2.0*x22) + c16*(x26 + x31 - x22) + c17*x3 - delta_tau2
-        - c6*delta_q1*x16 - (x19 + (x17 - x8*x5))*x20
-    )
-    x33 = (x30 + x32*x11)/x13
-    # outputs
-    return (
-        q1_dot*cos_q1,
-        -q1_dot*sin_q1,
-        q2_dot*cos_q2,
-        -x0,
-        x14,
-        -x15,
-        delta_q1_dot,
-        delta_q2_dot,
-        x33,
-        -c7*(x32 + x10*x33),
-    )
+    path = f"{__file__.removesuffix('.py')}_derivatives.py"
+    spec: Any = spec_from_file_location(f"{__name__}_derivatives", path)
+    derivatives = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(derivatives)
+    except FileNotFoundError as error:
+        raise AttributeError(f"{name} is in {path}, which is missing") from error
+    for key in OPERATIONS.keys() & vars(derivatives).keys():
+        function = globals()[key] = getattr(derivatives, key)
+        function.__module__ = __name__
+        globals()[f"{key}_many"] = _over_arrays(function)
+    return globals()[name]
 
 
-def rhs_sensitivity_many(t: ArrayLike, y: Arrays, params: Arrays) -> Array:
-    """`rhs_sensitivity` over arrays: the result has shape (10, ...)."""
-    # inputs
-    sin_q1, cos_q1, sin_q2, cos_q2, q1_dot, q2_dot, delta_q1, delta_q2, delta_q1_dot, delta_q2_dot = y
-    delta_l1, _, delta_c1, delta_c2, delta_m1, delta_m2, delta_I1, delta_I2, delta_g, delta_tau1, delta_tau2, l1, _, c1, c2, m1, m2, I1, I2, g, tau1, tau2 = params
-    # terms of the parameters alone
-    c0 = m2*c2
-    c3 = l1*c0
-    c4 = m1*c1
-    c5 = c4 + m2*l1
-    c6 = c0*g
-    c7 = 1.0/(I2 + c2*c0)
-    c8 = I1 + I2 + c1*c4
-    c9 = c2*c2 + l1*l1
-    c10 = c2*l1
-    c11 = m2*delta_l1
-    c12 = m2*delta_c2
-    c13 = m1*delta_c1
-    c14 = c1*delta_m1
-    c15 = c0*delta_l1
-    c16 = c2*delta_m2
-    c17 = c0*delta_g
-    # intermediate terms
-    x0 = q2_dot*sin_q2
-    x1 = 2.0*q1_dot + q2_dot
-    x2 = x0*x1
-    x3 = cos_q1*cos_q2 - sin_q1*sin_q2
-    x4 = c5*cos_q1 + c0*x3
-    x5 = q1_dot*q1_dot
-    x6 = c3*sin_q2
-    x7 = x5*x6 + c6*x3 - tau2
-    x8 = l1*cos_q2
-    x9 = c2 + x8
-    x10 = I2 + c0*x9
-    x11 = c7*x10
-    x12 = c9 + 2.0*c10*cos_q2
-    x13 = c8 + m2*x12 - x10*x11
-    x14 = (tau1 + c3*x2 - g*x4 + x7*x11)/x13
-    x15 = c7*(x7 + x10*x14)
-    x16 = sin_q1*cos_q2 + cos_q1*sin_q2
-    x17 = g*x16
-    x18 = l1*sin_q2
-    x19 = x14*x18
-    x20 = c0*delta_q2
-    x21 = g*cos_q1
-    x22 = c2*x15
-    x23 = c2*x2 - x21 + cos_q2*x22 - 2.0*x14*(l1 + c2*cos_q2)
-    x24 = g*x3
-    x25 = c2 + x9
-    x26 = x9*x14
-    x27 = c10*x2 - g*(l1*cos_q1 + c2*x3) + x9*x22 - x12*x14
-    x28 = c1*x14
-    x29 = delta_I2*(x14 - x15)
-    x30 = (
-        delta_tau1 + g*delta_q1*(c5*sin_q1 + c0*x16)
-        + (x17 + q2_dot*x8*x1 + 2.0*x19 - x15*x18)*x20 + 2.0*c3*x0*delta_q1_dot
-        + delta_q2_dot*(q2_dot + x1)*x6 + c11*x23 + c12*(l1*x2 - x24 + x15*x25 - 2.0*x26)
-        + delta_m2*x27 - c13*(x21 + 2.0*x28) - c14*(x21 + x28) - delta_I1*x14 - x29
-        - delta_g*x4
-    )
-    x31 = x24 + x5*x18
-    x32 = (
-        x29 + 2.0*q1_dot*delta_q1_dot*x6 + c15*(sin_q2*x5 + cos_q2*x14)
-        + c12*(x31 + x14*x25 - 2.0*x22) + c16*(x26 + x31 - x22) + c17*x3 - delta_tau2
-        - c6*delta_q1*x16 - (x19 + (x17 - x8*x5))*x20
-    )
-    x33 = (x30 + x32*x11)/x13
-    # outputs
-    return _stacked(
-        (10,),
-        y[0],
-        q1_dot*cos_q1,
-        -q1_dot*sin_q1,
-        q2_dot*cos_q2,
-        -x0,
-        x14,
-        -x15,
-        delta_q1_dot,
-        delta_q2_dot,
-        x33,
-        -c7*(x32 + x10*x33),
-    )
-
-
-def _stacked(shape: tuple[int, ...], like: ArrayLike, *values: ArrayLike) -> Array:
-    """The values, broadcast together and to `like`, as one array: the axes of `shape` first."""
-    import numpy
-
-    _, *arrays = numpy.broadcast_arrays(like, *values)
-    return numpy.stack(arrays).reshape(shape + arrays[0].shape)
+def __dir__() -> list[str]:
+    return [*globals(), *OPERATIONS, *(f"{name}_many" for name in OPERATIONS)]

@@ -28,7 +28,11 @@ class Backend(Notation, ABC):
 
     @abstractmethod
     def file(self, contents: Contents) -> str:
-        """The text of the generated file of a system."""
+        """The text of one file with all contents."""
+
+    def files(self, contents: Contents) -> dict[str, str]:
+        """The texts of the generated files of a system, by name."""
+        return {f"{contents.system.name}{self.suffix}": self.file(contents)}
 
     @abstractmethod
     def function(self, function: Function) -> str:

@@ -12,7 +12,7 @@ from functools import reduce
 from math import gcd, lcm
 
 from derive.codegen.graph import Graph
-from derive.codegen.node import Let, Node
+from derive.codegen.node import Leaf, Let, Node
 
 Rows = Sequence[Sequence[Node]]
 
@@ -65,7 +65,9 @@ class Factorisation:
         self.pivots, self._inverses = [zero] * n, [zero] * n  # all pivots are positive
         self._multipliers: dict[tuple[int, int], Node] = {}
         for k in reversed(range(n)):
-            self.pivots[k] = graph.let(rows[k][k])
+            # products of parameters are not named, so that they are cancelled
+            is_short = all(isinstance(factor, Leaf) for factor in rows[k][k].exponents())
+            self.pivots[k] = rows[k][k] if is_short else graph.let(rows[k][k])
             coupled = [i for i in range(k) if not rows[i][k].is_number(0)]
             self._inverses[k] = self._inverse(self.pivots[k], bool(coupled))
             for i in coupled:

@@ -139,8 +139,7 @@ SPECS = (
         "Changes of coordinates, angles among them, and of velocities.",
         exists=lambda derivation: not _is_free(derivation)),
     FunctionSpec("correction_variational", "variational", "4 q",
-        "`correction` of the motion, and changes that make its perturbation tangent to the "
-        "constraints.",
+        "`correction` of the motion, and changes that make its perturbation tangent.",
         "Changes of coordinates, of velocities, and of the perturbations of both.",
         exists=lambda derivation: not _is_free(derivation)),
     FunctionSpec("correction_sensitivity", "sensitivity", "4 q",

@@ -1,7 +1,7 @@
 """The functions of a generated module, each with its operations."""
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cache
 
 from derive.codegen.equations_of_motion import EquationsOfMotion
@@ -45,6 +45,12 @@ class Function:
         return {state: self.state, "params": self.parameters}
 
     @property
+    def is_derivative(self) -> bool:
+        """Whether it is of perturbations, about an equilibrium or a rare derivative."""
+        is_jacobian = "jacobian" in self.name and self.name != "jacobian"
+        return is_jacobian or self.form in ("variational", "sensitivity", "parameters")
+
+    @property
     def depends_on_time(self) -> bool:
         """Whether the result depends on time."""
         return TIME.name in self.lowering.inputs
@@ -64,6 +70,7 @@ class Contents:
     names: tuple[str, ...]  # of the functions of the system, in these files or in others
     states: dict[Form, tuple[str, ...]]  # components of the state in each form that exists
     functions: tuple[Function, ...]
+    is_complete: bool = False  # whether these are all files of a system
 
     @property
     def system(self) -> System:
@@ -76,6 +83,14 @@ class Contents:
         names = ((spec.name, spec.form) for spec in SPECS if spec.name in self.names)
         forms = {form for name, form in names if name.startswith("rhs")}
         return tuple(form for form in self.states if form in forms)
+
+
+def split(functions: Iterable[Function]) -> tuple[list[Function], list[Function]]:
+    """The functions that every motion may need, and the derivatives that few need."""
+    first, derivatives = list[Function](), list[Function]()
+    for function in functions:
+        (derivatives if function.is_derivative else first).append(function)
+    return first, derivatives
 
 
 class Functions:
@@ -96,7 +111,7 @@ class Functions:
     def contents(self, only: Collection[str] | None = None) -> Contents:
         """The contents of files of all functions, or of a system with `only` some."""
         names = tuple(name for name in self.names if only is None or name in only)
-        return self._contents(names, names)
+        return replace(self._contents(names, names), is_complete=only is None)
 
     def part(self, names: Collection[str]) -> Contents:
         """The contents of files of some functions of a system that has all."""

@@ -153,7 +153,22 @@ class Graph:
                     powers[node] = powers.get(node, 0) + inner * power
         if not coefficient:
             return self.zero
+        self._cancel(powers)
         return self._scale(self._monomial(powers), coefficient)
+
+    def _cancel(self, powers: dict[Node, int]) -> None:
+        """Replace named products of at most two factors by these where one is cancelled."""
+        for node in [one for one in powers if isinstance(one, Let)]:
+            count = powers[node]
+            parts = [
+                (part.value if isinstance(part, Let) and part.value in powers else part, power)
+                for part, power in node.value.factors()
+            ]
+            is_cancelled = (powers.get(part, 0) * power * count < 0 for part, power in parts)
+            if len(parts) <= 2 and any(is_cancelled):
+                del powers[node]
+                for part, power in parts:
+                    powers[part] = powers.get(part, 0) + power * count
 
     def _monomial(self, powers: Mapping[Node, int]) -> Node:
         nonzero = sorted(((n, p) for n, p in powers.items() if p), key=lambda item: item[0].rank)

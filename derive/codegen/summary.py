@@ -41,21 +41,26 @@ def units(system: System) -> dict[str, str]:
     return rows | {one.name: one.unit for one in system.all_conditions}
 
 
-def summary(contents: Contents) -> str:
-    """Coordinates, states, parameters, positions, Lagrangian and equations of motion."""
-    return _summary(contents.derivation, tuple(contents.states.items()))
+def summary(contents: Contents, forms: Iterable[Form]) -> str:
+    """Coordinates, states of these forms, parameters, Lagrangian and equations of motion."""
+    coordinates = [
+        f"{c.symbol} [{c.unit}]{' > 0' if c.symbol.is_positive else ''}: {c.meaning}"
+        for c in contents.system.coordinates
+    ]
+    parts = _section("Coordinates q", coordinates), states(contents, forms)
+    return "\n\n".join([*parts, _equations(contents.derivation)])
+
+
+def states(contents: Contents, forms: Iterable[Form]) -> str:
+    """The components of the state in these forms, with units."""
+    unit = units(contents.system)
+    rows = {form: [f"{name} [{unit[name]}]" for name in contents.states[form]] for form in forms}
+    return "\n\n".join(_section(STATES[form], lines) for form, lines in rows.items())
 
 
 @lru_cache(maxsize=1)  # for the files of all languages, and of parts of a module
-def _summary(derivation: Derivation, states: tuple[tuple[Form, tuple[str, ...]], ...]) -> str:
-    system, unit = derivation.system, units(derivation.system)
-    coordinates = [
-        f"{c.symbol} [{c.unit}]{' > 0' if c.symbol.is_positive else ''}: {c.meaning}"
-        for c in system.coordinates
-    ]
-    sections = {"Coordinates q": coordinates}
-    for form, state in states:
-        sections[STATES[form]] = [f"{name} [{unit[name]}]" for name in state]
+def _equations(derivation: Derivation) -> str:
+    system, sections = derivation.system, dict[str, list[str]]()
     sections["Parameters params"] = [
         f"{p.symbol} [{p.unit}] {'> 0' if p.symbol.is_positive else 'real'}, "
         f"default {p.default}: {p.meaning}"
@@ -119,19 +124,33 @@ def _names(symbols: Iterable[sp.Symbol]) -> str:
 
 
 def broken_sum(text: str, width: int) -> str:
-    """A long expression on several lines, broken before signs outside brackets."""
+    """A long expression on several lines, broken before signs and after commas.
+
+    It is broken outside of brackets where lines become short enough, else inside of some, too.
+    """
+    lines = [text]
+    for depth in range(text.count("(") + 1):
+        lines = _broken_outside(text, width, depth)
+        if max(map(len, lines)) <= width:
+            break
+    return "\n".join(lines)
+
+
+def _broken_outside(text: str, width: int, most: int) -> list[str]:
+    """Lines of an expression, broken in at `most` so many brackets."""
     lines, depth, start = [""], 0, 0
     for i, letter in enumerate(text):
         depth += (letter == "(") - (letter == ")")
         last = i + 1 == len(text)
-        if last or (depth == 0 and letter == " " and text[i + 1] in "+-"):
+        is_between = letter == " " and (last or text[i + 1] in "+-" or text[i - 1] == ",")
+        if last or (depth <= most and is_between):
             piece = text[start:] if last else text[start:i]
             if lines[-1] and len(lines[-1]) + len(piece) > width:
                 lines.append(piece.lstrip())
             else:
                 lines[-1] += piece
             start = i
-    return "\n".join(lines)
+    return lines
 
 
 def _text(expression: sp.Expr) -> str:

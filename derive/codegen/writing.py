@@ -23,8 +23,9 @@ def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str
 
 def files(generated: Contents) -> dict[str, str]:
     """The texts of the generated files by name, in every target language, with their digest."""
-    name = generated.system.name
-    parts = {f"{name}{backend.suffix}": backend.file(generated) for backend in find_backends()}
+    parts = {
+        name: text for backend in find_backends() for name, text in backend.files(generated).items()
+    }
     digest = sha256("".join(parts.values()).encode()).hexdigest()[:DIGITS]
     return {file: text.replace(DIGEST, digest) for file, text in parts.items()}
 

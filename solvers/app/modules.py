@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING, cast
 
 from solvers.equations.arguments import checked
@@ -80,7 +79,7 @@ def _shipped(name: str) -> GeneratedModule | None:
     """The module of this name in `generated`; None if it is not there."""
     try:
         package = import_module("generated")
-        if name in {module.name for module in iter_modules(package.__path__)}:
+        if name in package.__all__:
             return import_module(f"generated.{name}")
     except Exception as error:  # whatever a damaged file raises
         if isinstance(error, ModuleNotFoundError) and error.name == "generated":

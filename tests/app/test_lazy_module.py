@@ -12,7 +12,7 @@ from sympy import besselj, symbols
 from derive import Coordinate, Derivation, Parameter, PointMass, System, reduced
 from derive.codegen import functions as codegen
 from derive.codegen.translation import UnsupportedFunctionError
-from derive.codegen.writing import texts
+from derive.codegen.writing import files as files_of
 from derive.system import catalogue
 from solvers import integrate, load
 from solvers.app.modules import build
@@ -80,7 +80,8 @@ def test_only_functions_that_are_used_are_generated(generated: list[str]) -> Non
 def test_functions_in_parts_are_those_of_the_whole_module(name: str) -> None:
     system = catalogue.load(name)
     lazy, whole = build(system), ModuleType(name)
-    files = texts(Derivation(reduced(system)))
+    functions = codegen.Functions(Derivation(reduced(system)))
+    files = files_of(functions.part(functions.names))
     exec(compile(files[f"{name}.py"], f"<{name}>", "exec"), vars(whole))
     module = cast("GeneratedModule", whole)
     public = {key for key in vars(whole) if not key.startswith("_") and key not in dir(math)}

@@ -1,6 +1,7 @@
 """Generated files: the same bytes everywhere, checked, and complete at all times."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -81,12 +82,12 @@ def test_the_bytes_do_not_depend_on_what_was_derived_before() -> None:
 def test_the_committed_files_are_what_the_generator_writes() -> None:
     run = derive("--check")
     assert run.returncode == 0, run.stdout
-    assert run.stdout.startswith(f"{2 * len(generated.__all__) + 2} files in ")
+    assert run.stdout.startswith(f"{3 * len(generated.__all__) + 2} files in ")
 
 
 def test_files_contain_no_path_version_or_date() -> None:
     for path in (ROOT / "generated").glob("*.py"):
-        text = path.read_text()
+        text = re.sub("DIGEST = .*", "", path.read_text())  # which has any digits
         for foreign in (str(ROOT), os.uname().nodename, "1.14", "202"):
             assert foreign not in text
 

@@ -15,6 +15,9 @@ import pytest
 from folders import ROOT
 
 import generated.single_pendulum as sp
+from derive import Derivation, load
+from derive.codegen.functions import Functions
+from derive.codegen.writing import files
 from solvers.app.cli import main
 from solvers.equations.module import header
 from solvers.equations.module_cache import cached_module
@@ -270,10 +273,8 @@ def test_where_nothing_can_be_written_it_runs_in_python_with_one_notice(
     assert len(notices) == 2
     assert len({str(notice.message) for notice in notices}) == 1  # which is shown once
     kernel.cache_clear()
-    texts = {
-        f"single_pendulum{end}": Path(sp.__file__).with_suffix(end).read_text()
-        for end in (".py", ".h")
-    }
+    functions = Functions(Derivation(load("single_pendulum")))
+    texts = files(functions.part(functions.names))
     with pytest.warns(UserWarning, match=text):
         module = cached_module("single_pendulum", "key", lambda: texts)
     assert header(module) is None

@@ -23,7 +23,8 @@ HEADER = """\
    Each function writes its results, row by row, to `result`. It allocates no memory and has no
    state of its own. Include this file from C99 or C++ and link with -lm:
 
-       double state[{length}] = {{...}}, rate[{length}], params[{count}] = {{{defaults}}};
+       double state[{length}] = {{...}}, rate[{length}];
+       double params[{count}] = {{{defaults}}};
        {system.name}_rhs(0.0, state, params, rate);
 
    Indices have names: state[{guard}_LAGRANGIAN_{system.q[0]}].
@@ -285,7 +286,7 @@ class CBackend(Backend):
             digest=DIGEST,
             system=system,
             guard=guard,
-            summary=indent(summary(contents), "   "),
+            summary=indent(summary(contents, contents.states), "   "),
             length=2 * len(system.q),
             count=len(system.params),
             defaults=", ".join(repr(float(p.default)) for p in system.parameters_and_inputs),
