@@ -31,7 +31,7 @@ def files(generated: Contents) -> dict[str, str]:
 
 
 def write(system: System, folder: str | PathLike[str]) -> Path:
-    """Write the module and the C header of a system, each completely or not at all.
+    """Write the module of a system, its derivatives and the C header, each whole or not at all.
 
     Coordinates that constraints determine are eliminated before (`reduced`).
 
