@@ -22,7 +22,7 @@ from sharing import Shared
 
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
-from solvers.integration import predictability
+from solvers.integration.checks import predictability
 from solvers.scenes.reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep

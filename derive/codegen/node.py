@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from derive.codegen.graph import Graph
+from typing import Protocol
 
 Number = int | Fraction
 Terms = tuple[tuple["Node", Fraction], ...]
@@ -15,11 +13,19 @@ Powers = tuple[tuple["Node", int], ...]
 ONE = Fraction(1)
 
 
+class Arithmetic(Protocol):
+    """Combines nodes to new ones: the graph that holds them."""
+
+    def node(self, value: Operand) -> Node: ...
+    def sum(self, terms: Iterable[tuple[Node, Number]]) -> Node: ...
+    def product(self, factors: Iterable[tuple[Node, int]]) -> Node: ...
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Node:
     """One value of a computation. Compare nodes by identity; combine them with ``+ - * /``."""
 
-    graph: Graph = field(kw_only=True, repr=False)
+    graph: Arithmetic = field(kw_only=True, repr=False)
     rank: int = field(kw_only=True)  # order of creation: operands have a lower one
 
     def __add__(self, other: Operand) -> Node:

@@ -15,7 +15,7 @@ from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module_cache import cached_module
-from solvers.integration import validation
+from solvers.integration.problem import validation
 from solvers.io.suggestion import did_you_mean
 from solvers.scenes.fitting import prediction, reading
 from solvers.scenes.fitting.fit import Fit, fitted

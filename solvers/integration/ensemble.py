@@ -12,19 +12,21 @@ from solvers.equations.mass_matrix import check_condition, examined
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import Values
-from solvers.integration import compiled_loop, memory, validation
-from solvers.integration.accuracy_warnings import ensemble_warnings
-from solvers.integration.ensemble_run import EnsembleRun
-from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.ensemble_times import EnsembleTimes
-from solvers.integration.events import Event, Extremum
-from solvers.integration.inputs import Controller, Held
-from solvers.integration.predictability import UnfinishedWarning, is_ignored
-from solvers.integration.problem import EventFunction, Options
-from solvers.integration.singularity import SingularityWarning, singularities
-from solvers.integration.solution import Interrupted, Status
-from solvers.integration.step_stability import StepWarning, mark_unstable
-from solvers.integration.stop_flag import StopFlag
+from solvers.integration.checks.accuracy_warnings import ensemble_warnings
+from solvers.integration.checks.predictability import UnfinishedWarning, is_ignored
+from solvers.integration.checks.singularity import SingularityWarning, singularities
+from solvers.integration.checks.step_stability import StepWarning, mark_unstable
+from solvers.integration.loops import compiled_loop
+from solvers.integration.loops.ensemble_loop import EnsembleRun
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem import memory, validation
+from solvers.integration.problem.events import Event, Extremum
+from solvers.integration.problem.inputs import Controller, Held
+from solvers.integration.problem.problem import EventFunction, Options
+from solvers.integration.problem.status import Status
+from solvers.integration.results.ensemble_solution import Ensemble
+from solvers.integration.results.ensemble_times import EnsembleTimes
+from solvers.integration.results.solution import Interrupted
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import shortened
 
@@ -100,16 +102,16 @@ def ensemble(
     ValueError
         When an argument is invalid; other errors, and the warnings, are those of `integrate`, of
         which predictability and mass matrices are examined for four motions, evenly distributed.
-    solvers.integration.solution.Interrupted
+    solvers.integration.results.solution.Interrupted
         When the user interrupts; it holds the `Ensemble` up to then.
 
     Warns
     -----
-    solvers.integration.predictability.UnfinishedWarning
+    solvers.integration.checks.predictability.UnfinishedWarning
         When motions do not reach their ends, for other reasons than the next two.
-    solvers.integration.step_stability.StepWarning
+    solvers.integration.checks.step_stability.StepWarning
         When fixed steps are too long for some motions, whose status is then ``UNSTABLE``.
-    solvers.integration.singularity.SingularityWarning
+    solvers.integration.checks.singularity.SingularityWarning
         When motions fail where coordinates are singular, as an orientation at gimbal lock.
     UserWarning
         When the motions are integrated in Python, one after another; it states the reason.

@@ -14,16 +14,24 @@ from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import NotFiniteNumberError, Values
-from solvers.integration import compiled_loop, passage, validation
-from solvers.integration.accuracy_warnings import accuracy_warnings
-from solvers.integration.global_error import global_error_estimate
-from solvers.integration.inputs import Controller, Held
-from solvers.integration.memory import limit_steps
-from solvers.integration.predictability import UnfinishedWarning, compile_perturbations, is_ignored
-from solvers.integration.problem import EventFunction, Options, Outcome, Problem
-from solvers.integration.singularity import singularity
-from solvers.integration.solution import Array, Interrupted, Solution, Status
-from solvers.integration.step_stability import step_instability
+from solvers.integration.checks.accuracy_warnings import accuracy_warnings
+from solvers.integration.checks.global_error import global_error_estimate
+from solvers.integration.checks.predictability import (
+    UnfinishedWarning,
+    compile_perturbations,
+    is_ignored,
+)
+from solvers.integration.checks.singularity import singularity
+from solvers.integration.checks.step_stability import step_instability
+from solvers.integration.loops import compiled_loop, passage
+from solvers.integration.problem import validation
+from solvers.integration.problem.inputs import Controller, Held
+from solvers.integration.problem.memory import limit_steps
+from solvers.integration.problem.problem import EventFunction, Options, Problem
+from solvers.integration.problem.status import Status
+from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.solution import Interrupted, Solution
+from solvers.runge_kutta.stepper import Array
 
 
 @known_names
@@ -83,7 +91,7 @@ def integrate(
         ``event(t, y)`` changes its sign where the event occurs. All changes within a step are
         located, unless the value between them is smaller than its error. Optional attributes are
         ``terminal`` (true: the integration ends there) and ``direction`` (1: upwards only, -1:
-        downwards only). An `solvers.integration.events.Event` runs in compiled loops, too.
+        downwards only). An `solvers.integration.problem.events.Event` runs in compiled loops, too.
     energy : bool, optional
         Whether to return the energy at these times.
     max_steps : int, optional
@@ -116,16 +124,16 @@ def integrate(
         When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
         When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.
-    solvers.integration.solution.Interrupted
+    solvers.integration.results.solution.Interrupted
         When the user interrupts; it holds the solution up to then.
 
     Warns
     -----
-    solvers.integration.predictability.UnfinishedWarning
+    solvers.integration.checks.predictability.UnfinishedWarning
         When the motion does not reach its end.
-    solvers.integration.predictability.PredictabilityWarning
+    solvers.integration.checks.predictability.PredictabilityWarning
         When errors grow to the size of the motion before its end.
-    solvers.integration.energy_change.EnergyWarning
+    solvers.integration.checks.energy_change.EnergyWarning
         When a motion that conserves its energy ends with another one.
     solvers.equations.mass_matrix.MassMatrixWarning
         When the mass matrix is nearly singular at the start, or where all coordinates are equal.

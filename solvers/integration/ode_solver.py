@@ -6,10 +6,9 @@ import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
 from solvers.equations.quantities import positive, real_number, real_numbers
-from solvers.integration.attempts import Accepted, Attempts, Point, Rejected
-from solvers.integration.problem import shortest_step
-from solvers.integration.subnormal import warn_if_flushed
-from solvers.integration.validation import tolerances
+from solvers.integration.loops.attempts import Accepted, Attempts, Point, Rejected
+from solvers.integration.problem.problem import shortest_step
+from solvers.integration.problem.validation import tolerances, warn_if_flushed
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import Array, Stepper, evaluated

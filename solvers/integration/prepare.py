@@ -20,17 +20,18 @@ from solvers.equations.module import (
 )
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import REAL, Values
-from solvers.integration import compiled_loop, validation
-from solvers.integration.accuracy_warnings import accuracy_warnings
+from solvers.integration.checks.accuracy_warnings import accuracy_warnings
+from solvers.integration.checks.singularity import singularity
+from solvers.integration.checks.step_stability import diagnosis
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
-from solvers.integration.inputs import given
-from solvers.integration.problem import SHORTEST, Options, Problem
-from solvers.integration.rerun import rerun
-from solvers.integration.singularity import singularity
-from solvers.integration.solution import Status
-from solvers.integration.step_stability import diagnosis
+from solvers.integration.loops import compiled_loop
+from solvers.integration.loops.rerun import rerun
+from solvers.integration.problem import validation
+from solvers.integration.problem.inputs import given
+from solvers.integration.problem.problem import SHORTEST, Options, Problem
+from solvers.integration.problem.status import Status
 
 Numbers: TypeAlias = Sequence[float] | Mapping[str, float]
 #: The result of the C function for a span or state that is not finite.

@@ -9,10 +9,13 @@ from itertools import pairwise
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration import python_loop, validation
+from solvers.integration.loops import python_loop
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.problem import Options, Outcome
-from solvers.integration.solution import Array, Status
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options
+from solvers.integration.problem.status import Status
+from solvers.integration.results.outcome import Outcome
+from solvers.runge_kutta.stepper import Array
 
 #: Largest number of steps of a timed run.
 MOST_STEPS = 10**8

@@ -13,8 +13,8 @@ from solvers.equations.module import GeneratedModule, has_function
 from solvers.io.units import with_unit
 from solvers.scenes.models.method_choice import MethodChoice, cheapest
 from solvers.scenes.models.motion import Array, Motion
-from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.scene import ENERGY, Scene
+from solvers.scenes.selection import ModelSelection, motion_of, select_model
 
 #: Takes a module, parameters and a method choice; returns the module for these parameters alone.
 Specialiser = Callable[[GeneratedModule, tuple[float, ...], MethodChoice], GeneratedModule]

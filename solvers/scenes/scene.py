@@ -11,7 +11,7 @@ from solvers.equations.consistent_start import consistent_start
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import positive
-from solvers.integration import validation
+from solvers.integration.problem import validation
 from solvers.io.arguments import check_texts, check_type
 from solvers.io.toml_input import whole
 from solvers.scenes import checks

@@ -13,9 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.integration import compiled_loop, validation
-from solvers.integration.problem import Options
-from solvers.integration.stop_flag import StopFlag
+from solvers.integration.loops import compiled_loop
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options
 from solvers.sweeps.axes import Array
 from solvers.sweeps.sweep import Sweep
 from solvers.sweeps.worker import computed, mean_evaluations, run_chunk

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.quantities import real_numbers
-from solvers.integration import validation
+from solvers.integration.problem import validation
 from solvers.io.arguments import check_type
 
 Array: TypeAlias = NDArray[np.float64]

@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.solution import Status
-from solvers.integration.stop_flag import StopFlag
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem.status import Status
+from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.axes import Array
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.maps import Motions

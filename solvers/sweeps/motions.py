@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from solvers.equations.mass_matrix import checked_before
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Status
-from solvers.integration.stop_flag import StopFlag
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem.status import Status
+from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.axes import Array
 from solvers.sweeps.sweep import Sweep
 

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.arguments import checked
-from solvers.integration import validation
-from solvers.integration.stop_flag import StopFlag
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem import validation
 from solvers.sweeps.arithmetic import first_motions, run_equal_chunk
 from solvers.sweeps.axes import Array
 from solvers.sweeps.sweep import Sweep

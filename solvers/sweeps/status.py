@@ -1,6 +1,6 @@
 """Statuses of motions."""
 
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 
 ENDS = (status.name.lower().replace("_", " ") for status in Status)
 #: Status of a motion, by its number in ``status.npy``.

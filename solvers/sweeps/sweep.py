@@ -16,8 +16,8 @@ from solvers.equations.forms import fastest_form
 from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
-from solvers.integration import validation
-from solvers.integration.problem import Options
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options
 from solvers.io.arguments import check_type
 from solvers.runge_kutta.catalogue import load, names
 from solvers.sweeps import checks

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.stop_flag import StopFlag
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.axes import Array
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.ladders import climbed

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from derive.verification.documents.files import judge_file
 from derive.verification.documents.hints import hints
+from derive.verification.files import judge_file
 from derive.verification.hand import judge
 from solvers.app.modules import load
 from solvers.equations.module import GeneratedModule
@@ -17,7 +17,7 @@ from solvers.integration.compiled.extended import integrate_extended
 from solvers.integration.compiled.native import NativeRhs, equations, native_rhs
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.references.taylor import SeriesError, taylor
 from solvers.runge_kutta.order_conditions import order
 
@@ -110,7 +110,7 @@ SMOOTH = "-tanh(3*x) - atan2(x, 2)**3 - (1 + x**2)**p/9 - cosh(x/3) + sinh(x_dot
 
 @pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("force", ["-max(0, x - a)*20 - x", SPRING, SMOOTH])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_all_loops_agree(force: str, tmp_path: Path) -> None:
     module = module_of(force.replace("x_dot", "v"), tmp_path)
     calls_library = force != "-max(0, x - a)*20 - x"
@@ -151,7 +151,7 @@ def test_series_end_at_a_kink(tmp_path: Path) -> None:
     ("force", "x"),
     [("sqrt(x)", -1.0), ("x**1.3", -1.0), ("max(sqrt(x), 1)", -1.0), ("x**(-p)", 0.0)],
 )
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_states_outside_of_the_domain_have_a_status(
     force: str, x: float, method: str, backend: str, tmp_path: Path
 ) -> None:

@@ -27,8 +27,8 @@ from derive.system.system import System
 from solvers.app.modules import generator_text, specialiser
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.specialise import required_functions, specialised_module
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.io.build_cache import cache_folder
 from solvers.scenes.models.method_choice import MethodChoice
 

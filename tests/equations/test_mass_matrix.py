@@ -11,11 +11,11 @@ from handwritten import handwritten
 
 import generated.double_pendulum as dp
 from solvers.equations.mass_matrix import MassMatrixWarning, check_condition
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.run import sweep

@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image
 
 import generated.double_pendulum as dp
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.player.page import Page
 from solvers.player.track import Track
 

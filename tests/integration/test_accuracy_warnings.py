@@ -16,12 +16,12 @@ import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 import generated.swinging_atwood as atwood
-from solvers.integration.energy_change import EnergyWarning
+from solvers.integration.checks.energy_change import EnergyWarning
+from solvers.integration.checks.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 
 pytestmark = pytest.mark.usefixtures("predictable_times")
 
@@ -39,7 +39,7 @@ REGULAR: list[tuple[ModuleType, tuple[float, ...]]] = [
 ]
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_an_energy_that_grows_warns_with_its_values() -> None:
     with pytest.warns(
         EnergyWarning, match=r"changed from -9\.891 to 22\.\d+ J: .*h = 0\.2"
@@ -57,7 +57,7 @@ def test_an_energy_that_grows_warns_with_its_values() -> None:
     ("method", "h", "largest", "duration"),
     [("rk4", 1.0, 0.694, 100.0), ("rk1", 0.6, 0.07, 6.0), ("rk1", 0.6, 0.05, 10.0)],
 )
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_an_unstable_step_states_the_last_good_time_and_the_longest_step(
     method: str, h: float, largest: float, duration: float
 ) -> None:
@@ -159,7 +159,7 @@ def test_ignored_warnings_are_not_computed(monkeypatch: pytest.MonkeyPatch) -> N
     def fail(*arguments: object) -> float:
         raise AssertionError
 
-    monkeypatch.setattr("solvers.integration.accuracy_warnings.predictable_until", fail)
+    monkeypatch.setattr("solvers.integration.checks.accuracy_warnings.predictable_until", fail)
     with warnings.catch_warnings(), ignore_predictability():
         warnings.simplefilter("error")
         integrate(dp, (0, 60), REPORT, dp.DEFAULTS, rtol=1e-6)

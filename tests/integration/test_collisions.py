@@ -12,7 +12,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.references.taylor import SeriesError, taylor
 from solvers.scenes.models.integration_run import EndsEarlyError
 from solvers.scenes.run import run_scene
@@ -51,7 +51,7 @@ def start(module: GeneratedModule) -> dict[str, float]:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_every_integration_ends_at_a_collision_with_a_status(falling: GeneratedModule) -> None:
     y0 = start(falling)
     for options in ({}, {"backend": "python"}, {"method": "dop853"}, {"method": "RK45"}):

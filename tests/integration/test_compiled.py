@@ -14,19 +14,19 @@ from mpmath import sin as mpsin
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
-from solvers.integration import validation
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.problem import Options
-from solvers.integration.solution import Status
+from solvers.integration.problem import validation
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.problem import Options
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import load, names
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]
@@ -65,7 +65,7 @@ def test_loops_agree_to_rounding_times_the_condition_of_the_run(method: str, for
         assert (apart < 100 * 10 * 2.2e-16 * condition).all()
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_compiled_implicit_steps_converge_where_fixed_point_iteration_does_not() -> None:
     # a spring a thousand times as fast as the swing: the step is 30 of its radians
     stiff = (1.0, 1e6, 1.0, 9.81)
@@ -285,7 +285,7 @@ def test_compensated_sums_reduce_rounding_errors() -> None:
         assert errors[1] < errors[0] / 3, form
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_time_does_not_drift_over_a_million_steps() -> None:
     run = prepare(sp, sp.DEFAULTS, method="rk1", h=0.1, max_steps=10**7)
     found = integrate(

@@ -12,16 +12,17 @@ import pytest
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.cli import main
+from solvers.integration.checks.step_stability import StepWarning
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import kernel
 from solvers.integration.ensemble import ensemble
-from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Interrupted, Solution, Status
-from solvers.integration.step_stability import StepWarning
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
+from solvers.integration.results.ensemble_solution import Ensemble
+from solvers.integration.results.solution import Interrupted, Solution
 
 FORMS = ("lagrangian", "hamiltonian", "rational")
 
@@ -186,7 +187,7 @@ def test_invalid_ensembles_are_refused(arguments: dict[str, object], message: st
 @pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(("backend", "lanes"), [("compiled", 1), ("compiled", 3), ("python", 1)])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_motion_that_overflows_ends_with_a_status(backend: str, lanes: int, form: str) -> None:
     # Euler with steps far too long, from a huge velocity; its neighbours are left alone
     starts = np.zeros((4, lanes))

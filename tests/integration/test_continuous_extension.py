@@ -9,10 +9,10 @@ import pytest
 from handwritten import handwritten
 
 import generated.double_pendulum as dp
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
+from solvers.integration.problem.events import Event
 from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.continuous_extension import ContinuousExtension, bernstein_values
 from solvers.runge_kutta.order_conditions import Tree, density, trees

@@ -11,11 +11,11 @@ from sympy import Poly, Rational, Symbol
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Status
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.parallel_stages import bernstein_matrix
 from solvers.studies.benchmarks.events import CROSSINGS
 from solvers.studies.benchmarks.motions import END, START

@@ -14,9 +14,10 @@ from scipy.special import ellipk
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event, Extremum
 from solvers.integration.integrate import integrate
-from solvers.integration.solution import Array, Status
+from solvers.integration.problem.events import Event, Extremum
+from solvers.integration.problem.status import Status
+from solvers.runge_kutta.stepper import Array
 
 
 def test_events_are_located_to_rounding() -> None:
@@ -103,7 +104,7 @@ def test_values_of_events_that_are_no_numbers_are_refused(value: Any, method: st
 
 
 @pytest.mark.parametrize("method", ["verner853", "DOP853"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_an_event_that_becomes_nan_ends_the_run_with_the_results_so_far(method: str) -> None:
     def root(t: float, y: Array) -> float:
         return nan if t > 0.5 else 1.0

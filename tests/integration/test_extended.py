@@ -30,7 +30,7 @@ from solvers.integration.compiled.extended import (
     kernel,
 )
 from solvers.integration.compiled.extended_source import DIGITS, DOUBLE, NumberType, Sequential
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.references.taylor import taylor
 from solvers.studies.benchmarks.precision import FINAL
 

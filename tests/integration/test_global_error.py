@@ -68,7 +68,7 @@ def test_tight_tolerances_in_chaos_have_the_estimate_of_their_rounding() -> None
     assert ratio.max() < 10
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_the_estimate_exists_without_a_compiler_and_for_partial_results() -> None:
     decay = handwritten(
         "hand", ("x", "v"), COORDINATES=("x",), rhs=lambda t, y, params: (y[1], -y[0])

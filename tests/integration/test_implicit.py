@@ -18,16 +18,17 @@ import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form
-from solvers.integration import compiled_loop
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled import method_source
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
+from solvers.integration.loops import compiled_loop
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Solution, Status
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
+from solvers.integration.results.solution import Solution
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.sweeps.axes import Grid
@@ -273,7 +274,7 @@ def test_steps_with_a_better_start_are_steps_of_the_method() -> None:
         assert end - y == pytest.approx(h * form.rhs(0.0, (y + end) / 2), abs=1e-11)
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_the_message_of_a_step_without_solution_suggests_a_way_out() -> None:
     lost = integrate(dp, (0, 4), (1.0, 2.0, 90.0, -80.0), dp.DEFAULTS, method="gauss3", h=1.0)
     assert lost.status is Status.NO_CONVERGENCE

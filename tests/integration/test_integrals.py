@@ -39,9 +39,9 @@ from derive.mechanics.constraints import Constraints
 from holonomic import build, ensemble, integrate, prepare
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.extended import integrate_extended
-from solvers.integration.inputs import Held
-from solvers.integration.predictability import ignore_predictability
+from solvers.integration.problem.inputs import Held
 from solvers.references.taylor import taylor
 
 

@@ -13,7 +13,7 @@ import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import load, names
 
 EXPLICIT_PAIRS = [n for n in names() if load(n).b_hat]
@@ -290,7 +290,7 @@ def test_implicit_midpoint_conserves_the_energy_of_its_modified_equation() -> No
     assert np.log2(np.divide(rest[:-1], rest[1:])) == pytest.approx(4, abs=0.1)
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_implicit_midpoint_keeps_the_energy_where_other_methods_do_not() -> None:
     def growth(method: str) -> float:
         """Largest error of the energy in the second minute, over that in the first."""

@@ -10,11 +10,11 @@ from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
+from solvers.integration.checks.predictability import UnfinishedWarning
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
-from solvers.integration.predictability import UnfinishedWarning
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import UnknownMethodError
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
@@ -22,7 +22,7 @@ REPORT = (pi / 2, pi, 0.0, 0.0)
 END = (2.2280642400930692, -0.2670447339117043, -1.9694093323354762, -2.9859792219408772)
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_step_that_always_fails_ends_with_a_status() -> None:
     hole = handwritten(
         "hand",
@@ -124,7 +124,7 @@ def test_an_unknown_method_is_refused() -> None:
         integrate(**scene(method="verner78"))  # type: ignore[arg-type]
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_blow_up_ends_with_a_status_and_the_results_so_far() -> None:
     # x' = x² from 1 has x = 1/(1 - t)
     module = handwritten(
@@ -139,7 +139,7 @@ def test_a_blow_up_ends_with_a_status_and_the_results_so_far() -> None:
 
 
 @pytest.mark.parametrize("h", [None, 0.1])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_right_hand_side_that_is_not_finite_ends_the_run(h: float | None) -> None:
     module = handwritten(
         "hand",
@@ -166,7 +166,7 @@ def test_exceptions_of_the_right_hand_side_propagate() -> None:
         )
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_the_step_limit_leaves_a_state_to_resume_from() -> None:
     short = integrate(dp, (0, 5), REPORT, dp.DEFAULTS, rtol=1e-11, max_steps=50, t_eval=[5.0])
     assert short.status is Status.STEP_LIMIT

@@ -15,12 +15,13 @@ from handwritten import handwritten
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.solution import Interrupted, Solution, Status
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
+from solvers.integration.results.solution import Interrupted, Solution
 
 BACKENDS = ("python", "compiled")
 FORMS = ("lagrangian", "hamiltonian", "rational")
@@ -37,7 +38,7 @@ def handwritten_module(folder: Path, derivatives: str) -> ModuleType:
 
 
 @pytest.mark.parametrize("lanes", [1, 20])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_blow_up_in_finite_time_ends_with_the_results_so_far(lanes: int, tmp_path: Path) -> None:
     # y' = y² ends at t = 1/y0; neighbours that begin lower go on
     module = handwritten_module(tmp_path, "state[0]*state[0]*params[0]")
@@ -73,7 +74,7 @@ def test_coarse_fixed_steps_never_return_nan(form: str) -> None:
     assert np.isfinite(steps.end[1]).all()
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_sine_and_cosine_far_from_the_circle_come_back_to_it() -> None:
     solution = integrate(
         sp, (0, 1), (0.5, 1e160), sp.DEFAULTS, method="rk1", h=0.5, form="rational"
@@ -176,7 +177,7 @@ def test_an_event_is_located_in_a_few_iterations() -> None:
 @pytest.mark.parametrize(
     ("hole", "samples"), [(0.21, [0.21]), (0.165, [0.1, 0.3])], ids=["shorter step", "extension"]
 )
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_step_whose_inner_states_fail_is_discarded_whole(
     tmp_path: Path, hole: float, samples: list[float]
 ) -> None:
@@ -243,7 +244,7 @@ def test_both_loops_choose_the_same_steps(method: str, rtol: float) -> None:
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_step_limit_of_0_takes_no_step(backend: str) -> None:
     solution = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, max_steps=0, backend=backend)
     assert (solution.steps, solution.status) == (0, Status.STEP_LIMIT)
@@ -265,7 +266,7 @@ def test_a_step_limit_of_0_takes_no_step(backend: str) -> None:
         ((1.0, 1e200), (1.0, 1.0, 9.8), "rational"),
     ],
 )
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_motion_without_a_finite_derivative_ends_at_its_start(
     start: tuple[float, float], params: tuple[float, ...], form: str, backend: str
 ) -> None:

@@ -16,10 +16,10 @@ import generated.henon_heiles as henon
 import generated.single_pendulum as single
 from solvers.equations.equilibria import equilibria
 from solvers.equations.linear_system import linearise
-from solvers.integration.events import Event
 from solvers.integration.orbits.normal_mode import backbone_slope, normal_mode_orbit
 from solvers.integration.orbits.orbit_family import orbit_family
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
+from solvers.integration.problem.events import Event
 
 #: Duffing's oscillator without force and friction.
 FREE = {"c": 0.0, "F": 0.0, "beta": 2.0, "k": 3.0, "m": 0.5}

@@ -21,14 +21,14 @@ from derive import Coordinate, Parameter, PointMass, System
 from solvers.app.modules import build
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.normal_modes import Modes
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.lyapunov_spectrum import lyapunov_spectrum
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
 from solvers.integration.prepare import NotFinishedError
-from solvers.integration.solution import Status
-from solvers.integration.tangents import Tangents
-from solvers.integration.transition_matrix import transition_matrix
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
+from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
+from solvers.integration.variations.tangents import Tangents
+from solvers.integration.variations.transition_matrix import transition_matrix
 
 DAMPED = {"a": 0.3, "Omega": 6.0, "c": 0.3}
 

@@ -15,11 +15,11 @@ from scipy.special import ellipk
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.parallel_stages import (
     EARLY,
@@ -251,7 +251,7 @@ def test_ratios_are_exactly_symplectic(method: str) -> None:
 
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_diverging_iteration_shortens_the_step(backend: str) -> None:
     # a spring a hundred times as fast as the swing limits the steps
     stiff = (1.0, 1e4, 1.0, 9.81)

@@ -13,8 +13,8 @@ from derive import Coordinate, Parameter, PointMass, System
 from holonomic import Event, build, consistent_start, ensemble, integrate, prepare
 from solvers import Status
 from solvers.equations.module import GeneratedModule
-from solvers.integration import passage
-from solvers.integration.predictability import UnfinishedWarning
+from solvers.integration.checks.predictability import UnfinishedWarning
+from solvers.integration.loops import passage
 
 #: Bars stand upright; their tips move by 1 m/s.
 UPRIGHT = np.array([*[np.pi / 2] * 3, 0, 0, *[-1.0] * 3, 0, 0])

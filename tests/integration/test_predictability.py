@@ -12,11 +12,11 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.henon_heiles as hh
 import generated.single_pendulum as sp
+from solvers.integration.checks.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import PredictabilityWarning, ignore_predictability
-from solvers.integration.solution import Status
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
 from solvers.references.taylor import taylor
 
 pytestmark = pytest.mark.usefixtures("predictable_times")
@@ -35,7 +35,7 @@ def reported_time(message: object) -> float:
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize(("method", "interval"), [("rk3", sqrt(3)), ("rk4", 2 * sqrt(2))])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_step_beyond_the_stability_limit_is_unstable(
     method: str, interval: float, backend: str
 ) -> None:
@@ -58,7 +58,7 @@ def test_a_step_beyond_the_stability_limit_is_unstable(
     assert 0.02 < grown < 0.5
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_methods_without_a_stability_interval_are_judged_by_growth_over_the_run() -> None:
     # Euler multiplies an oscillation by about exp(h w^2 t/2)
     short = integrate(sp, (0, 10), (0.01, 0.0), sp.DEFAULTS, method="rk1", h=0.05)

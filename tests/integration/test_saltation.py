@@ -8,7 +8,7 @@ from friction import BELT, block, stacked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.transition_matrix import transition_matrix
+from solvers.integration.variations.transition_matrix import transition_matrix
 
 BACKENDS = ("python", "compiled")
 TIGHT = {"rtol": 1e-13, "atol": 1e-14}

@@ -9,11 +9,12 @@ import pytest
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as elastic
 import generated.henon_heiles as henon_heiles
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Solution, Status
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
+from solvers.integration.results.solution import Solution
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.continuous_extension import ContinuousExtension

@@ -15,10 +15,10 @@ from derive import PointMass, System
 from solvers.app.modules import build
 from solvers.equations.linear_system import linearise
 from solvers.integration.ensemble import ensemble
-from solvers.integration.inputs import Held
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.inputs import Held
+from solvers.integration.problem.status import Status
 
 BACKENDS = ("python", "compiled")
 
@@ -188,7 +188,7 @@ def test_functions_that_switch_each_other_ever_faster_come_to_rest(backend: str)
 
 @pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("backend", BACKENDS)
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_products_of_signs_determine_no_motion(backend: str) -> None:
     forces = (-sp.sign(v) * (2 + sp.sign(w)), -sp.sign(w) * (2 + sp.sign(v)))
     system = System("products", "", [X, Y], [], [PointMass(1, (x, y))], sp.S.Zero, forces=forces)

@@ -14,7 +14,7 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers import Event, StopFlag, ensemble, integrate
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.io import xarray_dataset
 from solvers.sweeps import pool, worker
 from solvers.sweeps.axes import Grid
@@ -25,7 +25,7 @@ from solvers.sweeps.sweep import Sweep
 Y0 = {"r": 1.1, "theta": 0.5}
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_solution_shows_status_steps_method_and_final_state() -> None:
     solution = integrate(ep, (0, 2), Y0, {}, method="rk4", h=0.01)
     lines = repr(solution).splitlines()

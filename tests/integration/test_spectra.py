@@ -8,12 +8,12 @@ import pytest
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.swinging_atwood as atwood
-from solvers.integration import compiled_loop
-from solvers.integration.frames import Frames
-from solvers.integration.lyapunov_spectrum import lyapunov_spectrum
+from solvers.integration.loops import compiled_loop
 from solvers.integration.prepare import NotFinishedError
-from solvers.integration.solution import Status
-from solvers.integration.transition_matrix import transition_matrix
+from solvers.integration.problem.status import Status
+from solvers.integration.variations.frames import Frames
+from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
+from solvers.integration.variations.transition_matrix import transition_matrix
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.lyapunov_spectrum import Spectrum

@@ -12,12 +12,12 @@ from handwritten import handwritten
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.elastic_pendulum as ep
+from solvers.integration.checks.predictability import ignore_predictability
+from solvers.integration.checks.step_stability import StepWarning
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.solution import Status
-from solvers.integration.step_stability import StepWarning
+from solvers.integration.problem.status import Status
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 TEXT = re.compile(r"good up to t = ([-.e\d]+)(?:; .*at most ([.e\d]+))?(?:; .*with h = ([.e\d]+))?")
@@ -34,7 +34,7 @@ def numbers(text: str) -> tuple[float, float, float]:
 @pytest.mark.parametrize("span", [(0.0, 5.0), (0.0, 100.0), (20.0, 0.0)])
 @pytest.mark.parametrize("form", [None, "lagrangian", "hamiltonian"])
 @pytest.mark.parametrize(("method", "h"), [("rk4", 1.0), ("dp54", 0.6), ("verner853", 1.0)])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_motions_that_overflow_are_unstable(
     method: str, h: float, form: str | None, span: tuple[float, float]
 ) -> None:
@@ -51,7 +51,7 @@ def test_motions_that_overflow_are_unstable(
     assert np.abs(energies - energies[0]).max() < 4 * 9.81 * 2  # J, from the top to the bottom
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_the_limit_of_the_stability_function_is_given_where_modes_exceed_it() -> None:
     _, stable, _ = numbers(integrate(dp, (0, 100), REPORT, {}, method="rk4", h=1.0).message)
     assert stable == pytest.approx(0.69, abs=0.01)
@@ -62,7 +62,7 @@ def test_the_limit_of_the_stability_function_is_given_where_modes_exceed_it() ->
 
 
 @pytest.mark.parametrize("method", ["rk4", "dp54"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_prepared_function_reports_it(method: str) -> None:
     run = prepare(dp, dp.DEFAULTS, method=method, h=0.8)
     message = integrate(dp, (0, 20), REPORT, dp.DEFAULTS, method=method, h=0.8).message
@@ -101,7 +101,7 @@ def test_motions_with_own_parameters_and_without_a_constant_energy_are_reported(
     assert motions.status.tolist() == [Status.FINISHED, Status.UNSTABLE]
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_other_failures_keep_their_status() -> None:
     def hole(t: float, y: Any, params: Any) -> tuple[float, float]:
         return 1.0, np.nan if t > 0.5 else 0.0

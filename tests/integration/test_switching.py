@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
 from solvers.app.modules import build
 from solvers.equations.module import GeneratedModule, switching_functions
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.solution import Status
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
 
 x, a, F = sp.symbols("x a F", real=True)
 v = velocity(x)

@@ -7,15 +7,16 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
-from solvers.integration import python_loop
 from solvers.integration.compiled import method_source
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.integrate import integrate
-from solvers.integration.problem import Options, Outcome, Problem
-from solvers.integration.solution import Status
-from solvers.integration.validation import problem
+from solvers.integration.loops import python_loop
+from solvers.integration.problem.problem import Options, Problem
+from solvers.integration.problem.status import Status
+from solvers.integration.problem.validation import problem
+from solvers.integration.results.outcome import Outcome
 from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.newton import Newton, Stages, Start
 from solvers.runge_kutta.order_choice import FAST, SLOW, OrderChoice

@@ -13,10 +13,12 @@ from scipy.integrate import solve_ivp
 from derive import with_inputs
 from solvers import Event, Held, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
-from solvers.integration import accuracy_warnings, compiled_loop, validation
+from solvers.integration.checks import accuracy_warnings
 from solvers.integration.compiled.kernel import Batch
-from solvers.integration.problem import Options, shortest_step
-from solvers.integration.solution import Status
+from solvers.integration.loops import compiled_loop
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options, shortest_step
+from solvers.integration.problem.status import Status
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -229,7 +231,7 @@ def test_ensembles_take_held_inputs(backend: str) -> None:
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_events_and_limits_of_steps_work_across_samples(backend: str) -> None:
     event = Event(cart, "x", 0.05)
     options: dict[str, Any] = {"inputs": Held(0.05, feedback), "backend": backend}
@@ -271,7 +273,7 @@ def test_invalid_inputs_are_refused(inputs: Any, message: str) -> None:
 
 @pytest.mark.parametrize("method", ["verner853", "gauss8", "LSODA"])
 @pytest.mark.parametrize("period", [None, 0.02])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_inputs_that_become_nan_end_the_run_with_the_results_so_far(
     period: float | None, method: str
 ) -> None:
@@ -288,7 +290,7 @@ def test_inputs_that_become_nan_end_the_run_with_the_results_so_far(
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_inputs_that_become_nan_end_the_motions_of_their_columns(backend: str) -> None:
     def controller(t: float, y: Array) -> dict[str, Any]:
         return {"F": np.where((t > 0.5) & (y[0] > 0.0), np.nan, 1.0)}

@@ -23,9 +23,9 @@ from derive.system.parts import SystemDefinitionError
 from solvers.app.modules import build
 from solvers.equations.linear_system import linearise
 from solvers.equations.module import GeneratedModule
-from solvers.integration.inputs import Held
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
+from solvers.integration.problem.inputs import Held
 
 theta, x, s, w = sp.symbols("theta x s w", real=True)
 length, g, k, c, m = sp.symbols("l g k c m", positive=True)

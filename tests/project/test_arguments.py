@@ -14,10 +14,10 @@ from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
 from solvers.integration.prepare import prepare
+from solvers.integration.problem.events import Event
 from solvers.scenes.scene import Scene
 from solvers.sweeps.axes import Grid, Random
 from solvers.sweeps.maps.final import Final

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from folders import ROOT
+from structure import Folder, folders
 
 PACKAGES = ("derive", "generated", "solvers")
 STANDARD = set(sys.stdlib_module_names)
@@ -84,6 +85,31 @@ def test_every_room_has_a_floor_and_imports_only_rooms_below_it(package: str) ->
 def test_rooms_have_few_arrows() -> None:
     assert len(floors("solvers")) == 10
     assert len(arrows("solvers")) <= 35
+
+
+def test_no_files_or_rooms_import_each_other() -> None:
+    found = {
+        row.path.name: row.circles for package in ("derive", "solvers") for row in folders(package)
+    }
+    # a system checks itself when it is built
+    assert {name: groups for name, groups in found.items() if groups} == {
+        "system": [["checks", "system"]]
+    }
+
+
+def test_rooms_of_integration_are_small() -> None:
+    rows = [row for row in folders("solvers") if "integration" in row.path.parts]
+    assert len(rows) == 8
+    assert max(row.files for row in rows) <= 15
+    assert max(row.floors for row in rows) <= 8
+
+
+def test_a_circle_through_three_files_is_detected(tmp_path: Path) -> None:
+    for name, other in {"a": "b", "b": "c", "c": "a", "d": "a"}.items():
+        (tmp_path / "solvers").mkdir(exist_ok=True)
+        (tmp_path / "solvers" / f"{name}.py").write_text(f"from solvers.{other} import x\n")
+    row = Folder.of(tmp_path / "solvers")
+    assert (row.circles, row.floors, row.arrows) == ([["a", "b", "c"]], 2, 4)
 
 
 def test_an_upward_import_is_detected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

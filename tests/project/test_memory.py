@@ -7,13 +7,13 @@ import pytest
 
 import generated.double_pendulum as dp
 from solvers.equations.forms import Form
-from solvers.integration import memory
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Status
+from solvers.integration.problem import memory
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
 
 START, STARTS = (0.1, 0.2, 0.0, 0.0), {"theta1": [0.1, 0.2, 0.3], "theta2": 0.1}
 MANY = np.broadcast_to(0.5, 10**10)  # takes no memory
@@ -48,7 +48,7 @@ def test_steps_that_are_known_to_be_fewer_are_permitted() -> None:
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_controlled_steps_stop_where_memory_ends(
     backend: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -67,7 +67,7 @@ def test_many_times_and_occurrences_are_collected_at_once(monkeypatch: pytest.Mo
     monkeypatch.setattr(Batch, "ordinary", lambda *given: calls.append(1) or ordinary(*given))
     motions = ensemble(dp, (0, 9), STARTS, {"m2": [1.0, 2.0, 3.0]}, **options)
     assert 2 <= len(calls) < 12
-    monkeypatch.setattr("solvers.integration.ensemble_run.BLOCK", 700)
+    monkeypatch.setattr("solvers.integration.loops.ensemble_loop.BLOCK", 700)
     assert np.array_equal(
         motions.samples, ensemble(dp, (0, 9), STARTS, {"m2": [1.0, 2.0, 3.0]}, **options).samples
     )

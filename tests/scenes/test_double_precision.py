@@ -16,9 +16,9 @@ from solvers.scenes.models import double_precision, integration_run, longer_numb
 from solvers.scenes.models.double_precision import sufficient
 from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError
 from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
+from solvers.scenes.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.summary import summary
 
 #: The report's scene over 20 s, in which errors grow by seven orders of magnitude.

@@ -12,15 +12,16 @@ from solvers.app.modules import load as load_module
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended, kernel
 from solvers.references.taylor import taylor
-from solvers.scenes.models import longer_numbers, selection
+from solvers.scenes import selection
+from solvers.scenes.models import longer_numbers
 from solvers.scenes.models.full_equations import FullEquations
 from solvers.scenes.models.integration_run import IntegrationRun
 from solvers.scenes.models.longer_numbers import by_longer_numbers
 from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
+from solvers.scenes.selection import ModelSelection, motion_of, select_model
 from solvers.scenes.summary import figures, summary
 
 #: The report's start, and states of its motion by Taylor series of 70 digits.

@@ -20,8 +20,8 @@ import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 from solvers.app.modules import load as load_module
 from solvers.equations.normal_modes import _generalized_eigh, mode_spread
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
 from solvers.scenes.models import (
     equilibrium,
@@ -43,9 +43,9 @@ from solvers.scenes.models.normal_modes import NormalModes
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 from solvers.scenes.models.pendulum import Pendulum
 from solvers.scenes.models.quadrature import Orbit, Quadrature, orbit
-from solvers.scenes.models.selection import ModelSelection, select_model
 from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
+from solvers.scenes.selection import ModelSelection, select_model
 
 Array = np.ndarray
 

@@ -12,8 +12,8 @@ from solvers.references.taylor import taylor
 from solvers.scenes.models.motion import Motion, OutsideDomainError
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 from solvers.scenes.models.quadrature import Quadrature
-from solvers.scenes.models.selection import select_model
 from solvers.scenes.scene import Scene
+from solvers.scenes.selection import select_model
 
 
 def motion_from(module, y0, duration: float) -> Motion:

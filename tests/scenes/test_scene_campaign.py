@@ -15,14 +15,14 @@ import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule, function, has_constraints, has_function
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.references.taylor import taylor
 from solvers.scenes.models.integration_run import EndsEarlyError, NotAccurateError, TooLongError
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
 from solvers.scenes.models.motion import Motion
-from solvers.scenes.models.selection import motion_of, select_model
 from solvers.scenes.scene import Scene
+from solvers.scenes.selection import motion_of, select_model
 
 Array = np.ndarray
 

@@ -17,7 +17,7 @@ import generated.single_pendulum as sp
 from solvers.app.cli import main
 from solvers.equations.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper

@@ -16,10 +16,10 @@ from sweep_file import write_sweep
 
 import generated.double_pendulum as dp
 from solvers.app.cli import main
-from solvers.integration import compiled_loop
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
+from solvers.integration.loops import compiled_loop
 from solvers.sweeps import arithmetic, worker
 from solvers.sweeps.arithmetic import OtherArithmeticError
 from solvers.sweeps.axes import Grid

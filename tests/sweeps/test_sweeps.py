@@ -20,8 +20,8 @@ import generated.henon_heiles as hh
 import generated.single_pendulum as single
 from solvers.app.modules import load as load_module
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
+from solvers.integration.problem.events import Event
 from solvers.sweeps.axes import BLOCK, Grid, Random, Table
 from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes

@@ -35,7 +35,7 @@ from holonomic import Status, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.singular_coordinates import singular_coordinates
-from solvers.integration.singularity import SingularityWarning
+from solvers.integration.checks.singularity import SingularityWarning
 from solvers.references.rigid_bodies import free_body, top_inclination
 
 w, x, y, z, a, b, c, g = sp.symbols("w x y z a b c g", real=True)
@@ -324,7 +324,7 @@ LOCK = r"gimbal lock at theta = \S+e-\d\d rad, t = 0\.1457\d* s: there phi and p
 
 
 @pytest.mark.parametrize("backend", ["compiled", "python"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_gimbal_lock_on_the_way_is_named_with_a_way_out(backend: str) -> None:
     options = {**LIMITED, "backend": backend}
     motion = integrate(heavy_top, (0, 5), FALLING, {}, **options)
@@ -345,7 +345,7 @@ def test_gimbal_lock_on_the_way_of_many_motions_is_named() -> None:
         run((0, 5), FALLING)
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_failure_for_another_reason_is_no_gimbal_lock() -> None:
     options = {"method": "verner98", "rtol": 1e-9, "max_steps": 3, "backend": "python"}
     motion = integrate(heavy_top, (0, 5), (0, 0, 1.0, 2.0, 0, 0), {}, **options)

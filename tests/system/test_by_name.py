@@ -11,7 +11,7 @@ from numpy.testing import assert_array_equal
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers import Scene, ensemble, integrate, prepare
-from solvers.integration import validation
+from solvers.integration.problem import validation
 
 Y0 = {"theta1": 0.3, "theta2": 0.2, "theta2_dot": -0.1}
 PARAMS = {"g": 1.62, "m2": 3.0}

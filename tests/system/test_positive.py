@@ -12,7 +12,7 @@ import generated.elastic_pendulum as ep
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.scenes.scene import Scene
 from solvers.sweeps.axes import Grid
 from solvers.sweeps.maps.final import Final
@@ -86,7 +86,7 @@ def test_a_motion_does_not_start_outside_the_domain_of_a_coordinate(length: floa
         {"t_eval": [0.5, 1.0]},
     ],
 )
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_a_motion_ends_where_a_positive_coordinate_falls_to_0(options: dict[str, Any]) -> None:
     inside = integrate(ep, (0, 0.03), TO_THE_PIVOT, ep.DEFAULTS)
     assert inside.status is Status.FINISHED
@@ -103,7 +103,7 @@ def test_a_motion_ends_where_a_positive_coordinate_falls_to_0(options: dict[str,
 
 
 @pytest.mark.parametrize("backend", ["python", "compiled"])
-@pytest.mark.filterwarnings("ignore::solvers.integration.predictability.UnfinishedWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_many_motions_end_there_too(backend: str) -> None:
     starts = np.transpose([TO_THE_PIVOT, (1.0, 0.1, 0.0, 0.0)])
     motions = ensemble(ep, (0, 1), starts, ep.DEFAULTS, backend=backend, t_eval=[0.02, 0.9])

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.files import judge_file
 from derive.verification.documents.hints import hints
 from derive.verification.documents.judged import JudgedDocument
+from derive.verification.files import judge_file
 from solvers.app.cli import main
 from solvers.runge_kutta.order_conditions import order
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.files import judge_file
 from derive.verification.documents.judged import JudgedFormula
+from derive.verification.files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
 CART = r"""

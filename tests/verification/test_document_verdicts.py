@@ -11,10 +11,10 @@ from document_mutants import Mutant, mutants
 from shared_documents import shared
 
 from derive.reading.documents import read_document
-from derive.verification.documents.files import judge_file
 from derive.verification.documents.hints import hints
 from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.page import page
+from derive.verification.files import judge_file
 from solvers.io.toml_input import InputError
 from solvers.runge_kutta.order_conditions import order
 

@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 
 from solvers.app.demo.stage import Number, Stage, png_image
 from solvers.equations.energy import energy_error, energy_unit
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Solution
+from solvers.integration.results.solution import Solution
 from solvers.player.page import player
 from solvers.player.track import Track
 from solvers.scenes.scene import Scene

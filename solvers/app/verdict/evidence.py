@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from solvers.equations.energy import energy_error
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Solution
+from solvers.integration.results.solution import Solution
 from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.catalogue import load

@@ -6,7 +6,7 @@ from decimal import Decimal, localcontext
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
@@ -25,10 +25,9 @@ from solvers.integration.compiled.extended_source import (
 )
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled.native import equations
-from solvers.integration.problem import shortest_step
-from solvers.integration.solution import Status
-
-Array = NDArray[np.float64]
+from solvers.integration.problem.problem import shortest_step
+from solvers.integration.problem.status import Status
+from solvers.runge_kutta.stepper import Array
 
 #: Seconds of C between checks for an interruption by the user, and bytes to which C aligns numbers.
 TIME_LIMIT, ALIGNMENT = 0.05, 64

@@ -14,12 +14,11 @@ from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.layout import EVENT, STATUSES, Task, check, record
 from solvers.integration.compiled.native import equations
-from solvers.integration.events import Event, Extremum
-from solvers.integration.problem import SHORTEST, Problem
-from solvers.integration.solution import Status
+from solvers.integration.problem.events import Event, Extremum
+from solvers.integration.problem.problem import SHORTEST, Problem
+from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import load
-
-Array = NDArray[np.float64]
+from solvers.runge_kutta.stepper import Array
 
 
 class Kernel:

@@ -12,7 +12,7 @@ from solvers.integration.compiled.equations_source import (
 )
 from solvers.integration.compiled.layout import declarations, source
 from solvers.integration.compiled.method_source import constants_text, extension_text, method_text
-from solvers.integration.problem import SHORTEST
+from solvers.integration.problem.problem import SHORTEST
 from solvers.runge_kutta.tableau import Tableau
 
 PROGRAM = """\

@@ -8,7 +8,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 
 #: Folder of the handwritten C files.
 SOURCES = files(__package__) / "c"

@@ -8,7 +8,7 @@ import numpy as np
 from solvers.integration.orbits.newton import bordered, solve
 from solvers.integration.orbits.orbit import PeriodicOrbit, reduced
 from solvers.integration.orbits.shooting import Point, Shooting, Shot
-from solvers.integration.solution import Array
+from solvers.runge_kutta.stepper import Array
 
 #: Most iterations of Newton's method from a prediction, and the largest distance from it, relative
 #: to the step.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, depends_on_time, function, has_function
-from solvers.integration.solution import Array
+from solvers.runge_kutta.stepper import Array
 
 #: Number of states, and their spread relative to the size of components that exceed 1.
 STATES, SPREAD = 8, 0.3

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from solvers.integration.orbits.shooting import TINY, Point, Shooting, Shot
-from solvers.integration.solution import Array
+from solvers.runge_kutta.stepper import Array
 
 #: Most motions that are integrated.
 MAX_ITERATIONS = 60

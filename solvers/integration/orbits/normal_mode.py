@@ -12,7 +12,7 @@ from solvers.integration.orbits.newton import solve
 from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.orbits.shooting import Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
-from solvers.integration.solution import Array
+from solvers.runge_kutta.stepper import Array
 
 #: Damping ratio below which a mode has none; distance of a ratio of frequencies from a whole
 #: number; rate of the state at an equilibrium, relative to the frequency.

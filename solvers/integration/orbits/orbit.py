@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration.orbits.shooting import TINY, Point, Shooting, Shot
-from solvers.integration.solution import Array
+from solvers.runge_kutta.stepper import Array
 
 #: Name of the quantity that varies along a family of a conservative system.
 ENERGY = "energy"

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive, real_numbers
-from solvers.integration import validation
 from solvers.integration.orbits.curve import UNIQUE, Curve, Node
 from solvers.integration.orbits.family import OrbitFamily, SpecialOrbit
 from solvers.integration.orbits.nature import Nature
@@ -19,9 +18,10 @@ from solvers.integration.orbits.shooting import PeriodOf, Point, Shooting
 from solvers.integration.orbits.special_points import crossing_direction, doubling_direction
 from solvers.integration.orbits.symmetry import Reversal, angles
 from solvers.integration.orbits.walk import Limits, Walk, walk
-from solvers.integration.solution import Array
+from solvers.integration.problem import validation
 from solvers.io.arguments import check_direction
 from solvers.io.suggestion import did_you_mean, shortened
+from solvers.runge_kutta.stepper import Array
 
 #: Longest period relative to that of the start.
 LONGEST = 10.0

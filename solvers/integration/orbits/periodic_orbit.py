@@ -8,17 +8,18 @@ import numpy as np
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, function, integrals
 from solvers.equations.quantities import Values, positive, real_number
-from solvers.integration import validation
-from solvers.integration.events import Event
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.newton import NoPeriodicOrbitError, solve
 from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.orbits.shooting import SMALL, Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.solution import Array, Status
+from solvers.integration.problem import validation
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.status import Status
 from solvers.io.suggestion import shortened
+from solvers.runge_kutta.stepper import Array
 
 #: Durations in s of motions to a section, one after the other: periods may be those of a molecule
 #: or of a planet. A motion that has not come back after so many steps never does.

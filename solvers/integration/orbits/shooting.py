@@ -10,8 +10,8 @@ from solvers.equations.module import GeneratedModule, function, has_constraints
 from solvers.equations.quantities import positive
 from solvers.integration.orbits.nature import Nature, states_near
 from solvers.integration.orbits.symmetry import Reversal, angles
-from solvers.integration.solution import Array
-from solvers.integration.tangents import Tangents
+from solvers.integration.variations.tangents import Tangents
+from solvers.runge_kutta.stepper import Array
 
 #: Relative step of differences of the energy and of the period, of which a few digits suffice.
 STEP = 1e-5

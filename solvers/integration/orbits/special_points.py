@@ -10,7 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from solvers.integration.orbits.curve import Node
-from solvers.integration.solution import Array
+from solvers.runge_kutta.stepper import Array
 
 #: Largest distance from the unit circle of a pair of multipliers, and smallest imaginary part.
 CLOSE = 1e-6

@@ -7,9 +7,9 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.integration.orbits.nature import states_near
-from solvers.integration.solution import Array
 from solvers.io.arguments import check_texts
 from solvers.io.suggestion import did_you_mean, shortened
+from solvers.runge_kutta.stepper import Array
 
 #: Largest relative difference of equations that are the same.
 CLOSE = 1e-10

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Array
-from solvers.integration import compiled_loop, python_loop, validation
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.loops import compiled_loop, python_loop
 from solvers.integration.prepare import NotFinishedError
-from solvers.integration.problem import Options, Outcome
-from solvers.integration.solution import Status
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options
+from solvers.integration.problem.status import Status
+from solvers.integration.results.outcome import Outcome
 
 #: Method and tolerances.
 METHOD, RTOL, ATOL = "verner853", 1e-9, 1e-9

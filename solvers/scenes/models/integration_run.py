@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from solvers.equations.mass_matrix import checked_before
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import ExtendedError, integrate_extended
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import no_compiler, prepare
-from solvers.integration.solution import Status
+from solvers.integration.problem.status import Status
 from solvers.integration.timing import median_seconds
 from solvers.references.taylor import taylor
 from solvers.scenes.models.method_choice import MethodChoice

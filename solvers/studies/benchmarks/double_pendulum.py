@@ -8,10 +8,10 @@ from importlib.resources import files
 from typing import Any
 
 from solvers.equations.module import GeneratedModule, function
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.layout import SOURCES
 from solvers.integration.ensemble import ensemble
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load

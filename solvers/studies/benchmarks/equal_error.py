@@ -11,7 +11,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
-from solvers.integration.problem import Options
+from solvers.integration.problem.problem import Options
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies.benchmarks.median_times import median_times

@@ -12,10 +12,10 @@ import numpy as np
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, function
-from solvers.integration.events import Event
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.problem import Options
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.problem import Options
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka

@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.integration import compiled_loop, validation
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
-from solvers.integration.predictability import ignore_predictability
-from solvers.integration.problem import Options
+from solvers.integration.loops import compiled_loop
+from solvers.integration.problem import validation
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.problem import Options
 from solvers.sweeps.barrier import is_below
 from solvers.sweeps.maps.first import First
 

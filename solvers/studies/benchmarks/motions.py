@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from solvers.equations.module import GeneratedModule, function
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.studies import heyoka
 from solvers.studies.benchmarks.median_times import median_times

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule
-from solvers.integration import compiled_loop, validation
 from solvers.integration.compiled.kernel import Batch
-from solvers.integration.problem import Options
+from solvers.integration.loops import compiled_loop
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options
 from solvers.studies.benchmarks.motions import Array
 
 

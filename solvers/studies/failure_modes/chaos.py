@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import panels
 from solvers.io.text_table import text_table
 from solvers.studies.failure_modes import horizon

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import coloured, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.studies.failure_modes.study import Load, Study

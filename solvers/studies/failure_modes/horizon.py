@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from solvers.equations.energy import energy_error
 from solvers.equations.module import GeneratedModule
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import COLOURS, coloured, columns
 from solvers.references.taylor import taylor
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.module import GeneratedModule
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.prepare import prepare
 
 Array = NDArray[np.float64]

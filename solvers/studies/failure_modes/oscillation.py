@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import coloured, columns, panels
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load as load_method

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from solvers.equations.module import GeneratedModule
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.events import Event
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
+from solvers.integration.problem.events import Event
 from solvers.io.figures import COLOURS, columns, panels
 from solvers.io.text_table import text_table
 from solvers.references.elliptic import pendulum as exact_solution

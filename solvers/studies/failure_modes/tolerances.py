@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 from matplotlib.figure import Figure
 
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.predictability import ignore_predictability
 from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.references.taylor import taylor

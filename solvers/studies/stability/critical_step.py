@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper

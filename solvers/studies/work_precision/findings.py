@@ -9,8 +9,8 @@ import numpy as np
 
 from solvers.equations.energy import ABOVE_REST, energy_error
 from solvers.equations.module import has_function
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.predictability import ignore_predictability
 from solvers.integration.timing import least_pair
 from solvers.runge_kutta.catalogue import load
 from solvers.scenes.scene import Scene

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from solvers.equations.module import GeneratedModule, has_function
-from solvers.integration.ensemble_solution import Ensemble
-from solvers.integration.events import Event
+from solvers.integration.problem.events import Event
+from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.io.arguments import check_texts
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.axes import Array, Axes

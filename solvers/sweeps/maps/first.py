@@ -8,7 +8,7 @@ import numpy as np
 
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
-from solvers.integration.events import Event
+from solvers.integration.problem.events import Event
 from solvers.io.arguments import check_type
 from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.barrier import lower_position

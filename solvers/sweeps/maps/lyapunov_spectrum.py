@@ -10,7 +10,7 @@ import numpy as np
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.quantities import positive
-from solvers.integration.frames import Frames
+from solvers.integration.variations.frames import Frames
 from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.maps import Map, Motions

@@ -1,4 +1,4 @@
-/* Signs of switching functions, as in solvers/integration/switching.py.
+/* Signs of switching functions, as in solvers/integration/loops/switching.py.
 
    Signs and levels of all functions are held behind the parameters. A level is the value that counts
    as 0, up to rounding errors. */

@@ -1,0 +1,1 @@
+"""Checks of runs: energy, predictability, stability of steps, singularities, global errors."""

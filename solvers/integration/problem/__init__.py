@@ -1,0 +1,1 @@
+"""Problems: options and their checks, inputs, events, switching functions."""

@@ -1,0 +1,1 @@
+"""Results: recorded states, crossings within steps, solutions of one motion and of many."""

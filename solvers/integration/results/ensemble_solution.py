@@ -1,0 +1,140 @@
+"""The result of an integration of many motions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.integration.problem.problem import Problem
+from solvers.integration.problem.status import Status
+from solvers.io.suggestion import counted
+from solvers.io.xarray_dataset import dataset
+from solvers.runge_kutta.stepper import Array
+
+
+@dataclass(frozen=True, repr=False)
+class Ensemble:
+    """The final states of many motions, their samples and events.
+
+    Arrays of states have the component as their first axis, as those that generated functions
+    take: ``module.energy_many(0.0, motions.y, params)``.
+
+    Attributes
+    ----------
+    t, y : ndarray of shape (n,) and (state, n)
+        Time in s at which each motion ended, coordinates and velocities there.
+    growth : ndarray of shape (n,)
+        In the variational form, natural logarithms of the ratio of the length of the
+        linear perturbation at the end to that at the start, of any size; else NaN.
+    samples : ndarray of shape (state, n, times)
+        States at the requested times; NaN after a motion's end.
+    t_events : ndarray of shape (n, events, occurrences)
+        Times in s of the first occurrences of each event, of those not skipped; NaN where there
+        were fewer.
+    y_events : ndarray of shape (state, n, events, occurrences)
+        States at these times.
+    occurred : ndarray of shape (n, events)
+        How often each event occurred, skipped occurrences included.
+    status : ndarray of shape (n,)
+        How each ended, a `Status`.
+    steps, rejected, nfev : ndarray of shape (n,)
+        As in `Solution`, of each motion.
+    run, units
+        As in `Solution`.
+    t_eval : ndarray of shape (times,) or (n, times)
+        The requested times in s; a row for each motion where these differ.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import ensemble
+    >>> motions = ensemble(sp, (0, 5), {"theta": [0.5, 1.0]}, {}, method="rk4", h=0.01)
+    >>> motions.y.shape, bool(motions.success.all())
+    ((2, 2), True)
+    """
+
+    t: Array
+    y: Array
+    growth: Array
+    samples: Array
+    t_events: Array
+    y_events: Array
+    occurred: NDArray[np.int64]
+    status: NDArray[np.object_]
+    steps: NDArray[np.int64]
+    rejected: NDArray[np.int64]
+    nfev: NDArray[np.int64]
+    run: str
+    units: Mapping[str, str]
+    t_eval: Array
+
+    @classmethod
+    def empty(
+        cls, problem: Problem, n: int, occurrences: int, backend: str, t_eval: Array
+    ) -> "Ensemble":
+        """An ensemble of `n` motions of `problem` without results; `t_eval` has 1 or n rows."""
+        state, events = len(problem.units), len(problem.events)
+        unknown = partial(np.full, fill_value=np.nan)
+        return cls(
+            t=unknown(n),
+            y=unknown((n, state)).T,  # in memory the states of a motion are adjacent
+            growth=unknown(n),
+            samples=np.moveaxis(unknown((n, state, t_eval.shape[1])), 1, 0),
+            t_events=unknown((n, events, occurrences)),
+            y_events=np.moveaxis(unknown((n, events, occurrences, state)), -1, 0),
+            occurred=np.zeros((n, events), np.int64),
+            status=np.full(n, Status.INTERRUPTED, object),
+            steps=np.zeros(n, np.int64),
+            rejected=np.zeros(n, np.int64),
+            nfev=np.zeros(n, np.int64),
+            run=f"{problem.description}, {backend}",
+            units=problem.units,
+            t_eval=t_eval if len(t_eval) > 1 else t_eval[0],
+        )
+
+    @property
+    def success(self) -> NDArray[np.bool_]:
+        """Whether each motion reached the end, or a terminal event."""
+        return np.asarray((self.status == Status.FINISHED) | (self.status == Status.EVENT))
+
+    def __repr__(self) -> str:
+        n, events, _ = self.t_events.shape
+        counts = {status.name: int((self.status == status).sum()) for status in Status}
+        ends = "".join(f", {number} {name}" for name, number in counts.items() if number)
+        return (
+            f"Ensemble: {counted(n, 'motion')}{ends}\n"
+            f"  {counted(self.samples.shape[2], 'time')}, {counted(events, 'event')}, "
+            f"{counted(self.steps.sum(), 'step')}, {self.rejected.sum()} rejected\n"
+            f"  {self.run}\n"
+            f"  state: {', '.join(self.units)}"
+        )
+
+    def to_table(self) -> dict[str, NDArray[Any]]:
+        """The end of each motion in a row, as ``pandas.DataFrame`` takes it."""
+        table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
+        growth = {} if np.isnan(self.growth).all() else {"growth": self.growth}
+        status = np.array([status.name for status in self.status], dtype=str)
+        counts = {"steps": self.steps, "rejected": self.rejected, "nfev": self.nfev}
+        return {**table, **growth, "status": status, **counts}
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset``; its dimensions are component, motion, time, event, occurrence."""
+        events = ("motion", "event", "occurrence")
+        times = ("motion", "time")[-self.t_eval.ndim :]
+        table = {k: ("motion", v) for k, v in self.to_table().items() if k not in self.units}
+        variables = table | {
+            "y": (("component", "motion"), self.y),
+            "samples": (("component", "motion", "time"), self.samples),
+            "t_events": (events, self.t_events, {"units": "s"}),
+            "y_events": (("component", *events), self.y_events),
+            "occurred": (events[:2], self.occurred),
+        }
+        coordinates = {
+            "component": list(self.units),
+            "unit": ("component", list(self.units.values())),
+            "time": (times, self.t_eval, {"units": "s"}),
+        }
+        return dataset(variables, coordinates, {"run": self.run})

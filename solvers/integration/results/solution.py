@@ -1,0 +1,145 @@
+"""The result of an integration."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from solvers.integration.problem.status import Status
+from solvers.io.suggestion import counted
+from solvers.io.units import with_unit
+from solvers.io.xarray_dataset import dataset
+from solvers.runge_kutta.stepper import Array
+
+
+@dataclass(frozen=True, repr=False)
+class Solution:
+    """An integrated motion, with the field names of SciPy's ``solve_ivp``.
+
+    Attributes
+    ----------
+    t : ndarray of shape (n,)
+        Times in s: those requested, or the start and every step's end.
+    y : ndarray of shape (state, n)
+        Coordinates and velocities at these times, whatever the form; in the variational form with
+        their linear perturbations below.
+    t_events, y_events : list of ndarray
+        Times in s and states, the latter of shape (occurrences, state), of each event.
+    nfev, njev : int
+        Evaluations of the right-hand side and of its Jacobian.
+    status : Status
+        How it ended.
+    message : str
+        The same in words, with time and state where it ended early.
+    steps, rejected : int
+        Accepted and rejected steps.
+    energy : ndarray of shape (n,) or None
+        Energy in J at these times, if requested.
+    run : str
+        Method, form, step control, and backend.
+    backend : str
+        ``compiled``, ``python`` or ``scipy``.
+    end : pair of float and ndarray
+        Time in s and state where it ended, from which another integration can resume.
+    units : dict of str to str
+        Units of the components of the state, in their order.
+    compare : callable or None
+        Takes times and states and returns their estimated errors, for the next one.
+    inputs : ndarray of shape (inputs, n) or None
+        The inputs at these times, held ones from there on; None for a system without inputs.
+    global_error_estimate : ndarray of shape (state, n)
+        Estimated errors of `y`, computed on first use, which takes longer than the run.
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> from solvers import integrate
+    >>> integrate(sp, (0, 1), {"theta": 0.1}, sp.DEFAULTS, method="rk4", h=0.01, backend="python")
+    Solution: the integration reached the end of the time span
+      t = 0 to 1 s, 101 times, 100 steps, 0 rejected
+      Classical fourth order, lagrangian form, h = 0.01, python
+      final state, t = 1 s: theta = -0.0599313 rad, theta_dot = -0.177191 rad/s
+    """
+
+    t: Array
+    y: Array
+    t_events: list[Array]
+    y_events: list[Array]
+    nfev: int
+    njev: int
+    status: Status
+    message: str
+    steps: int
+    rejected: int
+    run: str
+    backend: str
+    energy: Array | None
+    end: tuple[float, Array]
+    units: Mapping[str, str]
+    compare: Callable[[Array, Array], Array] | None = field(default=None, compare=False)
+    inputs: Array | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The attributes to copy or send to other processes, which modules cannot be."""
+        return {name: value for name, value in vars(self).items() if name != "compare"}
+
+    @cached_property
+    def global_error_estimate(self) -> Array:
+        """Estimated errors of `y`, of its shape, computed on first use.
+
+        They are differences from a run by another method of high order in another form, with a
+        hundredth of the tolerances (at least 1e-14). The estimate assumes that this run is much
+        more accurate: true up to the time from which the motion is not predictable. Where rounding
+        errors prevail, as at tolerances near 1e-13, both runs have errors of one size, and so has
+        the estimate.
+
+        Raises
+        ------
+        ValueError
+            For a solution from a file or another process.
+        """
+        if self.compare is None:
+            raise ValueError("a copied solution has no equations for its error: integrate again")
+        return self.compare(self.t, self.y)
+
+    @property
+    def success(self) -> bool:
+        """Whether it reached the end, or a terminal event."""
+        return self.status in (Status.FINISHED, Status.EVENT)
+
+    def __repr__(self) -> str:
+        t_end, y_end = self.end
+        # requested times need contain neither the start nor the end
+        t = " to ".join(dict.fromkeys(f"{t:.6g}" for t in (*self.t[:1], *self.t[-1:])))
+        components = zip(self.units.items(), y_end, strict=True)
+        state = [f"{name} = {with_unit(y, unit)}" for (name, unit), y in components]
+        headline = self.message.partition(" (t = ")[0]  # the state follows anyway
+        times, steps = counted(len(self.t), "time"), counted(self.steps, "step")
+        return (
+            f"Solution: {headline}\n"
+            f"  {t and f't = {t} s, '}{times}, {steps}, {self.rejected} rejected\n"
+            f"  {self.run}\n"
+            f"  final state, t = {t_end:.6g} s: {', '.join(state)}"
+        )
+
+    def to_table(self) -> dict[str, Array]:
+        """Columns: ``t``, the components, and ``energy`` if requested."""
+        table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
+        return table if self.energy is None else {**table, "energy": self.energy}
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` of the components, and ``energy`` if requested, along ``t``."""
+        units = {**self.units, "energy": "J"}
+        columns = self.to_table()
+        t = columns.pop("t")
+        variables = {name: ("t", y, {"units": units[name]}) for name, y in columns.items()}
+        about = {"run": self.run, "status": self.status.name, "message": self.message}
+        return dataset(variables, {"t": ("t", t, {"units": "s"})}, about)
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user has interrupted an integration; `solution` holds the results up to then."""
+
+    def __init__(self, solution: object) -> None:
+        super().__init__("interrupted; its attribute `solution` holds the results so far")
+        self.solution = solution

@@ -1,0 +1,1 @@
+"""Variations of motions: tangents, sensitivities, transition matrices, Lyapunov exponents."""
