@@ -34,8 +34,8 @@ docs: .venv/docs  ## build the documentation site, into out/docs
 derive: .venv/base  ## write the generated modules and the tables of READMEs anew
 	$(BIN)/holonomic derive
 
-bench: .venv/bench  ## time compiled loops beside other programs (fifteen minutes, idle machine)
-	$(BIN)/holonomic bench
+bench: .venv/bench  ## time compiled loops beside other programs (fifteen minutes), or some PARTS
+	PYTHONPATH=notebooks $(BIN)/python -m benchmarks $(PARTS)
 
 lint: .venv/ready  ## style and common mistakes
 	$(BIN)/ruff check

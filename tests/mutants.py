@@ -35,9 +35,8 @@ PASSED = (0, 5)
 OTHER_FOLDERS = {"C": "integration", "derive/commands": "app"}
 #: Fields of nodes of Python that hold no code of the program.
 OTHER_FIELDS = ("annotation", "returns", "type_params", "decorator_list")
-#: Packages without tests, since they time other programs, which few users install; and systems,
-#: which are data, compared with other sources as a whole.
-LEFT_OUT = ("solvers/studies/benchmarks/", "derive/systems/")
+#: Systems, which are data, compared with other sources as a whole.
+LEFT_OUT = ("derive/systems/",)
 #: Arguments that change no result: checks of lengths, and the style of drawings and of output.
 STYLE = ("strict", "flush", "zorder", "alpha", "linewidth", "fontsize", "markersize", "pad", "dpi")
 #: Comparisons with another value at equality.

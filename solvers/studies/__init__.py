@@ -1,1 +1,1 @@
-"""Studies of methods: work-precision, stability, failure modes and benchmarks."""
+"""Studies of methods: work-precision, stability and failure modes."""

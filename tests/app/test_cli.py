@@ -14,7 +14,7 @@ from sharing import Shared
 
 from derive.verification.report.equation import Equation
 from solvers.app.cli import COMMANDS, main
-from solvers.app.commands import bench, verify
+from solvers.app.commands import verify
 from solvers.app.commands.options import shipped
 from solvers.app.verdict import report
 from solvers.app.verdict.report import counted, report_verdicts, tables
@@ -133,10 +133,6 @@ def test_an_unknown_command_or_option_is_invalid_input(capsys: pytest.CaptureFix
     assert error.endswith("(did you mean 'verify'?)\n")
     with pytest.raises(SystemExit, match="2"):
         main(["verify", "--yaml"])
-    assert main(["bench", "chain"]) == 2
-    assert (
-        "PART must be one of pendulum, starts, precision, events, fits" in capsys.readouterr().err
-    )
 
 
 def test_verify_prints_json_with_every_verdict(
@@ -276,18 +272,3 @@ def test_a_warning_is_printed_once_and_the_process_keeps_its_own_display(
     assert main(["verify"]) == 0
     assert (warnings.showwarning, list(warnings.filters)) == before
     assert capsys.readouterr().err == "holonomic verify: integrating in Python: reason\n"
-
-
-@pytest.mark.parametrize("is_json", [True, False])
-def test_bench_prints_the_measurements_of_the_parts_in_their_order(
-    is_json: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(bench, "_results", lambda part, _: ({"time": 2.5}, [f"{part} 2.5 s"]))
-    assert main(["bench", "maps", "chains", *["--json"] * is_json]) == 0
-    output = capsys.readouterr().out
-    if is_json:
-        assert json.loads(output) == {"chains": {"time": 2.5}, "maps": {"time": 2.5}}
-    else:
-        assert output == "chains 2.5 s\nmaps 2.5 s\n"
-    assert main(["bench", "mapss"]) == 2
-    assert "PART must be one of pendulum, starts" in capsys.readouterr().err

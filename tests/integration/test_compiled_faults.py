@@ -11,7 +11,6 @@ import pytest
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.app.cli import main
 from solvers.integration.checks.step_stability import StepWarning
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import kernel
@@ -93,18 +92,6 @@ def test_without_a_compiler_it_runs_in_python_with_a_warning(
         with pytest.raises(compiler.NoCompilerError, match="install one as `cc`"):
             forced()
     kernel.cache_clear()
-
-
-def test_benchmarks_without_a_compiler_end_with_the_reason(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(compiler, "compilers", lambda: iter(()))
-    kernel.cache_clear()
-    assert main(["bench"]) == 4
-    kernel.cache_clear()
-    message = capsys.readouterr().err
-    assert message.startswith("holonomic bench: no C compiler built the library (none was found)")
-    assert message.count("\n") == 1
 
 
 FLUSH = """

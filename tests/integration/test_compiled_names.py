@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C co
 #: The C that surrounds a generated header.
 TEMPLATES = "".join(
     path.read_text(encoding="utf-8")
-    for folder in (SOURCES, files("solvers.studies.benchmarks"))
+    for folder in (SOURCES, files("benchmarks"))
     for path in folder.iterdir()
     if path.name.endswith((".c", ".h"))
 )

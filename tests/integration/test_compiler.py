@@ -15,6 +15,7 @@ from shlex import quote
 
 import numpy as np
 import pytest
+from benchmarks.double_pendulum import _peak_library
 from folders import ROOT
 from handwritten import handwritten
 
@@ -26,7 +27,6 @@ from solvers.integration.compiled.kernel_source import program
 from solvers.integration.compiled.native import native_rhs
 from solvers.io import build_cache
 from solvers.io.build_cache import DIGESTS, _seal
-from solvers.studies.benchmarks.double_pendulum import _peak_library
 
 SOURCE = "int answer(void);\nint answer(void) { return 42; }\n"
 

@@ -5,6 +5,8 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from benchmarks.events import CROSSINGS
+from benchmarks.motions import END, START
 from handwritten import handwritten
 from scipy.special import ellipk, ellipkinc
 from sympy import Poly, Rational, Symbol
@@ -17,8 +19,6 @@ from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.parallel_stages import bernstein_matrix
-from solvers.studies.benchmarks.events import CROSSINGS
-from solvers.studies.benchmarks.motions import END, START
 
 #: Degree of the motions y(t) that one step of gauss8 gives exactly.
 DEGREE = 8

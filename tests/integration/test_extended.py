@@ -10,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from benchmarks.precision import FINAL
 from handwritten import handwritten
 from mpmath import mp, mpf, workdps
 from valid_files import HILL
@@ -32,7 +33,6 @@ from solvers.integration.compiled.extended import (
 from solvers.integration.compiled.extended_source import DIGITS, DOUBLE, NumberType, Sequential
 from solvers.integration.problem.status import Status
 from solvers.references.taylor import taylor
-from solvers.studies.benchmarks.precision import FINAL
 
 #: The start of the report's scene, and states in its chaotic motion by Taylor series of 70 digits:
 #: after 20 s an error of the start is ten million times as large.

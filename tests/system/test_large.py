@@ -5,6 +5,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from benchmarks import calls, pipeline
+from benchmarks.derivation_timing import chain as chain_in_c
+from benchmarks.derivation_timing import mechanics
 from numpy.testing import assert_allclose
 
 import generated.double_pendulum as dp
@@ -12,14 +15,11 @@ from derive import Derivation, load
 from derive.codegen.factorisation import LARGE
 from derive.codegen.functions import contents
 from derive.codegen.writing import files
-from solvers.app.derivation_timing import chain as chain_in_c
-from solvers.app.derivation_timing import mechanics
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
-from solvers.studies.benchmarks import calls, pipeline
 
 N = LARGE + 1
 

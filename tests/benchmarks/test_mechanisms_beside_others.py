@@ -5,14 +5,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from benchmarks import equal_error, exudyn, squeezer
+from benchmarks.mechanism_models import END, MECHANISMS, Bar
+from benchmarks.textbook_squeezer import textbook
 from scipy.integrate import quad
 
 from holonomic import integrate, load
 from solvers.references.rigid_bodies import top_inclination
-from solvers.studies import exudyn
-from solvers.studies.benchmarks import equal_error, squeezer
-from solvers.studies.benchmarks.mechanism_models import END, MECHANISMS, Bar
-from solvers.studies.benchmarks.textbook_squeezer import textbook
 
 #: Angles of the squeezer at 0.03 s: F. Mazzia, C. Magherini, Test Set for Initial Value Problem
 #: Solvers, II.10.

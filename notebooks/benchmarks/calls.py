@@ -89,7 +89,7 @@ def single(header: str, n: int) -> Calls:
 
 def textbook(n: int) -> Calls:
     """Calls of a textbook's equations, written by hand."""
-    source = (files("solvers.studies.benchmarks") / "textbook.c").read_text(encoding="utf-8")
+    source = (files("benchmarks") / "textbook.c").read_text(encoding="utf-8")
     program = f"enum {{ N = {n} }};\n{source}"
     text = CALLS.format(program=program, call="textbook(y, dy, params)", state=2 * n)
     return Calls(text, 2 * n, parameters(n), 1)

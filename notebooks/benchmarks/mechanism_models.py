@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.exudyn import Link, Model, Point
+from benchmarks.motions import Array
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.references.taylor import taylor
-from solvers.studies.benchmarks.motions import Array
-from solvers.studies.exudyn import Link, Model, Point
 
 #: Duration in s.
 END = 1.0

@@ -10,7 +10,7 @@ from math import cos, hypot, sin
 
 import numpy as np
 
-from solvers.studies.benchmarks.motions import Array
+from benchmarks.motions import Array
 
 # lengths, masses and moments of inertia in SI units
 D, DA, E, EA, RR, RA, SS, SA, SB, SC, SD = (

@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.median_times import median_times
+from benchmarks.motions import END, START, Array, Curves, tolerances
+from benchmarks.repeated_loop import RepeatedLoop
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.checks.predictability import ignore_predictability
@@ -19,9 +22,6 @@ from solvers.integration.problem.problem import Options
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.studies.benchmarks.median_times import median_times
-from solvers.studies.benchmarks.motions import END, START, Array, Curves, tolerances
-from solvers.studies.benchmarks.repeated_loop import RepeatedLoop
 
 #: Components of the state and their values, and all their crossings in the report's scene until
 #: `END`, by Taylor series of 28 digits.

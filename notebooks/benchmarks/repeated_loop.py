@@ -3,13 +3,13 @@
 import ctypes
 from collections.abc import Sequence
 
+from benchmarks.motions import Array
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.loops import compiled_loop
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
-from solvers.studies.benchmarks.motions import Array
 
 
 class RepeatedLoop:

@@ -7,6 +7,9 @@ from functools import partial
 from importlib.resources import files
 from typing import Any
 
+from benchmarks import motions
+from benchmarks.median_times import compile_loop, median_times
+from benchmarks.motions import END, METHODS, MOTIONS, PARALLEL, START
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import build
@@ -16,9 +19,6 @@ from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load
 from solvers.studies import heyoka
-from solvers.studies.benchmarks import motions
-from solvers.studies.benchmarks.median_times import compile_loop, median_times
-from solvers.studies.benchmarks.motions import END, METHODS, MOTIONS, PARALLEL, START
 
 #: Global errors at which programs are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)

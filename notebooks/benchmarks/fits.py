@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 
+from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule, with_functions
 from solvers.integration.integrate import integrate
 from solvers.io.text_table import text_table
 from solvers.scenes.fitting.fit import fitted
 from solvers.scenes.fitting.measurement import Measurement, Outputs
-from solvers.studies.benchmarks.median_times import median_times
 
 Array = NDArray[np.float64]
 #: Residuals of the unknowns, and their Jacobian or the name of a difference formula.

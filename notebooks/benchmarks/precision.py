@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.median_times import median_times
+from benchmarks.motions import START, Array, Curves, ordinary
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
@@ -19,8 +21,6 @@ from solvers.integration.compiled.extended import PRECISIONS, integrate_extended
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.studies.benchmarks.median_times import median_times
-from solvers.studies.benchmarks.motions import START, Array, Curves, ordinary
 
 #: Final states by Taylor series of 70 decimal digits.
 FINAL = {

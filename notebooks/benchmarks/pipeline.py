@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from benchmarks.median_times import compile_loop
+from benchmarks.motions import END, FINAL, START
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.integration.timing import median_seconds
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.studies.benchmarks.median_times import compile_loop
-from solvers.studies.benchmarks.motions import END, FINAL, START
 
 Array = NDArray[np.float64]
 #: Takes a tolerance; returns a function that returns the final state.

@@ -5,12 +5,12 @@ from typing import Any
 
 from scipy.integrate import solve_ivp
 
+from benchmarks import equal_error
+from benchmarks.equal_error import OTHER, POWERS, Program
+from benchmarks.motions import Array
+from benchmarks.textbook_squeezer import textbook
 from solvers.equations.module import GeneratedModule
 from solvers.references.taylor import taylor
-from solvers.studies.benchmarks import equal_error
-from solvers.studies.benchmarks.equal_error import OTHER, POWERS, Program
-from solvers.studies.benchmarks.motions import Array
-from solvers.studies.benchmarks.textbook_squeezer import textbook
 
 #: Published angles in rad at the start, where the mechanism is at rest, and the duration in s.
 START, END = (

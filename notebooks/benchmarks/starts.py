@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.median_times import median_times
+from benchmarks.motions import Array, Curves, Runs, tolerances
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.studies.benchmarks.median_times import median_times
-from solvers.studies.benchmarks.motions import Array, Curves, Runs, tolerances
 
 #: Systems, and the largest coordinates and velocities of their random starts.
 SYSTEMS = {

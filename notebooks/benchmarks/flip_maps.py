@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks import flip_programs as programs
+from benchmarks.flip_programs import ANGLES, END, FLIP, Flips, can_flip, starts
+from benchmarks.median_times import seconds
 from solvers.equations.module import GeneratedModule
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.studies.benchmarks import flip_programs as programs
-from solvers.studies.benchmarks.flip_programs import ANGLES, END, FLIP, Flips, can_flip, starts
-from solvers.studies.benchmarks.median_times import seconds
 from solvers.sweeps.axes import Random
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.run import sweep

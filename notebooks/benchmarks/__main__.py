@@ -1,39 +1,44 @@
-"""``holonomic bench``."""
+"""``make bench``: time compiled loops and other programs, at equal global error."""
 
+import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from solvers.app.commands import options
 
-SUMMARY = "time compiled loops and other programs"
 PARTS = (
     *("pendulum", "starts", "precision", "events", "fits", "pipelines", "chains", "maps"),
     "mechanisms",
 )
 
 
-def add_arguments(parser: ArgumentParser) -> None:
-    """Describe the command and its arguments."""
-    parser.description = (
-        "Time compiled loops and other programs at equal global error. All parts take about "
-        "fifteen minutes; nothing else should run on the machine meanwhile."
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the parts in these arguments, or in those of the process; return the exit code."""
+    parser = ArgumentParser(
+        "benchmarks",
+        description="Time compiled loops and other programs at equal global error. All parts take "
+        "about fifteen minutes; nothing else should run on the machine meanwhile.",
     )
     meaning = f"one of {', '.join(PARTS)} (default: all)"
-    action = parser.add_argument("parts", nargs="*", metavar="PART", help=meaning)
-    options.complete_with(action, "parts", PARTS)
+    parser.add_argument("parts", nargs="*", metavar="PART", help=meaning)
     options.add_output(parser, "the plot of growth")
     options.add_json(parser)
-    options.add_examples(parser, "holonomic bench --json > figures.json", "holonomic bench chains")
+    arguments = parser.parse_args(argv)
+    if unknown := {*arguments.parts} - {*PARTS}:
+        parser.error(f"PART must be one of {', '.join(PARTS)}, not {min(unknown)[:50]!r}")
+    try:
+        return run(arguments)
+    except OSError as error:  # no compiler, or a package is not installed
+        print(f"benchmarks: {error}", file=sys.stderr)
+        return 4
 
 
 def run(arguments: Namespace) -> int:
     """Measure and print."""
     results = {}
-    if unknown := {*arguments.parts} - {*PARTS}:
-        raise ValueError(f"PART must be one of {', '.join(PARTS)}, not {min(unknown)[:50]!r}")
     _check_compiler()
     for part in [part for part in PARTS if part in (arguments.parts or PARTS)]:
         results[part], lines = _results(part, arguments.output)
@@ -55,14 +60,11 @@ def _check_compiler() -> None:
 
 def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
     """Measurements of a part, and lines of text."""
-    from solvers.app import derivation_timing as timing
-    from solvers.app.modules import load
-    from solvers.io.figures import save
-    from solvers.studies import exudyn
-    from solvers.studies.benchmarks import (
+    from benchmarks import (
         chains,
         double_pendulum,
         events,
+        exudyn,
         fits,
         flip_maps,
         mechanisms,
@@ -71,7 +73,10 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         squeezer,
         starts,
     )
-    from solvers.studies.benchmarks.mechanism_models import MECHANISMS
+    from benchmarks import derivation_timing as timing
+    from benchmarks.mechanism_models import MECHANISMS
+    from solvers.app.modules import load
+    from solvers.io.figures import save
 
     peer = partial(options.required_package, extra="bench")
     module = load("double_pendulum")
@@ -108,3 +113,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
             squeezed = squeezer.figures(load("andrews_squeezer"))
             lines = [*mechanisms.summary(beside), *squeezer.summary(squeezed)]
             return {"exudyn": beside, "squeezer": squeezed}, lines
+
+
+if __name__ == "__main__":
+    sys.exit(main())

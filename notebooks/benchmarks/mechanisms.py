@@ -5,10 +5,10 @@ from functools import partial
 from itertools import zip_longest
 from typing import Any
 
+from benchmarks import equal_error
+from benchmarks.equal_error import OTHER, POWERS, Program
+from benchmarks.mechanism_models import END, MECHANISMS, Mechanism
 from solvers.equations.module import GeneratedModule
-from solvers.studies.benchmarks import equal_error
-from solvers.studies.benchmarks.equal_error import OTHER, POWERS, Program
-from solvers.studies.benchmarks.mechanism_models import END, MECHANISMS, Mechanism
 
 #: Largest errors of coordinates and velocities at the end, in rad and rad/s.
 ERRORS = (1e-3, 1e-6, 1e-9)

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from benchmarks.calls import Calls, Evaluations, lanes, single, textbook
+from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.io.figures import coloured, panels
 from solvers.io.text_table import text_table
 from solvers.references.taylor import taylor
 from solvers.studies import heyoka
-from solvers.studies.benchmarks.calls import Calls, Evaluations, lanes, single, textbook
-from solvers.studies.benchmarks.median_times import median_times
 
 #: Numbers of pendulums of which growth is computed.
 SIZES = (2, 3, 5, 8, 10, 15, 20, 30, 50)

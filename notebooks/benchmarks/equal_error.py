@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.median_times import median_times
+from benchmarks.motions import Array, Curves
+from benchmarks.repeated_loop import RepeatedLoop
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.integration.problem.problem import Options
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
-from solvers.studies.benchmarks.median_times import median_times
-from solvers.studies.benchmarks.motions import Array, Curves
-from solvers.studies.benchmarks.repeated_loop import RepeatedLoop
 
 METHODS, POWERS = ("verner853", "verner98", "gauss8"), range(-1, -13, -1)
 #: The call of a prepared function with the last of the methods, and the other program.
