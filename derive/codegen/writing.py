@@ -1,9 +1,12 @@
 """The generated files of a system, one for each target language."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from hashlib import sha256
 from os import PathLike
 from pathlib import Path
+
+import sympy as sp
 
 from derive.codegen.backend import DIGEST, find_backends
 from derive.codegen.functions import Contents, contents
@@ -14,6 +17,8 @@ from derive.system.system import System
 
 #: Digits of the digest of generated files.
 DIGITS = 16
+
+FUNCTIONS = ("outputs", "outputs_jacobian", "outputs_parameter_jacobian")
 
 
 def texts(derivation: Derivation, only: Sequence[str] | None = None) -> dict[str, str]:
@@ -66,3 +71,9 @@ def write(system: System, folder: str | PathLike[str]) -> Path:
     """
     Tree(Path(folder), texts(Derivation(reduced(system))), complete=False).write()
     return Path(folder) / f"{system.name}.py"
+
+
+def output_texts(derivation: Derivation, outputs: Sequence[sp.Expr]) -> dict[str, str]:
+    """The generated files of functions of measured quantities alone."""
+    named = {f"output_{k}": formula for k, formula in enumerate(outputs)}
+    return texts(Derivation(replace(derivation.system, outputs=named)), FUNCTIONS)

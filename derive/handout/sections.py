@@ -9,12 +9,11 @@ from derive.codegen.backend import find_backends
 from derive.codegen.factorisation import LARGE
 from derive.codegen.functions import contents
 from derive.handout.document import WIDTH, Block, Code, Document, Paragraph, Section
-from derive.handout.hamilton import hamilton
+from derive.handout.hamilton import hamilton, routhian
 from derive.handout.motion import accelerations, energy, euler_lagrange, lagrangian
 from derive.handout.notation import Notation, names_of, words
 from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
-from derive.handout.routhian import routhian
 from derive.handout.setup import constraints, energies, system, velocities
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.reduced_coordinates import reduced

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.median_times import median_times
+from benchmarks.median_times import RepeatedLoop, median_times
 from benchmarks.motions import Array, Curves
-from benchmarks.repeated_loop import RepeatedLoop
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.integration.problem.problem import Options

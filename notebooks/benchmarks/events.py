@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.median_times import median_times
+from benchmarks.median_times import RepeatedLoop, median_times
 from benchmarks.motions import END, START, Array, Curves, tolerances
-from benchmarks.repeated_loop import RepeatedLoop
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.checks.predictability import ignore_predictability

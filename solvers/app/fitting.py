@@ -197,7 +197,7 @@ def outputs_of(module: GeneratedModule, runs: Iterable[Measurement]) -> Outputs:
 def _formulas(module: GeneratedModule, names: tuple[str, ...]) -> GeneratedModule:
     """The generated functions of quantities that are no components of the state."""
     from derive import Derivation
-    from derive.codegen.outputs import output_texts
+    from derive.codegen.writing import output_texts
     from derive.mechanics.outputs import outputs
 
     derivation = Derivation(system_of(module))

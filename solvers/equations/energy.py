@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.equilibrium import equilibrium_state
 from solvers.equations.module import (
     GeneratedModule,
     depends_on_time,
@@ -139,3 +139,15 @@ def supplied_energy(
     power = function(module, "power_many")(t, np.nan_to_num(states(t)).T, params)
     power = np.broadcast_to(power, t.shape)[indices.reshape(between.shape)]
     return np.array([0.0, *np.cumsum(halves * (power @ weights))])
+
+
+def equilibrium_state(module: GeneratedModule, params: Sequence[Any]) -> NDArray[np.float64] | None:
+    """The state (q, 0) of the equilibrium; None if no equilibrium is known.
+
+    Parameters that are arrays, for several motions, give states in columns.
+    """
+    if not has_function(module, "equilibrium"):
+        return None
+    name = "equilibrium_many" if any(map(np.ndim, params)) else "equilibrium"
+    q = np.asarray(function(module, name)(params))
+    return np.concatenate([q, np.zeros_like(q)])

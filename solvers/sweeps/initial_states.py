@@ -12,7 +12,7 @@ from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.sweeps.axes import Array
 from solvers.sweeps.barrier import energies, is_below
 from solvers.sweeps.checks import ENERGY, FROM_ENERGY
-from solvers.sweeps.status import NO_CONFIGURATION, NO_SUCH_ENERGY, PROVED
+from solvers.sweeps.results import NO_CONFIGURATION, NO_SUCH_ENERGY, PROVED
 from solvers.sweeps.sweep import Sweep
 
 #: Completes states in rows, and returns whether each satisfies the constraints.

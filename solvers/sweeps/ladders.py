@@ -13,7 +13,7 @@ from solvers.sweeps.axes import Array
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.maps import Motions
 from solvers.sweeps.motions import integrate_all
-from solvers.sweeps.status import CODES
+from solvers.sweeps.results import CODES
 from solvers.sweeps.sweep import Sweep
 
 

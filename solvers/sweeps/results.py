@@ -8,10 +8,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.integration.problem.status import Status
 from solvers.io.xarray_dataset import dataset
 from solvers.sweeps.checks import unit
-from solvers.sweeps.status import STATUSES
 from solvers.sweeps.sweep import Sweep
+
+ENDS = (status.name.lower().replace("_", " ") for status in Status)
+#: Status of a motion, by its number in ``status.npy``.
+STATUSES = ("not done yet", *ENDS, "proved", "no such energy", "no configuration")
+CODES = {status: code for code, status in enumerate(Status, 1)}
+#: Those of motions that have values in the maps.
+GOOD = ("finished", "event", "proved")
+PROVED, NO_SUCH_ENERGY = STATUSES.index("proved"), STATUSES.index("no such energy")
+#: That of motions whose start no configuration satisfies.
+NO_CONFIGURATION = STATUSES.index("no configuration")
 
 
 @dataclass(frozen=True, repr=False)
@@ -30,7 +40,7 @@ class Results:
     axes : dict of str to ndarray
         Quantities that vary: the values along each axis of a grid, else of each motion.
     status : ndarray of int
-        Status of each motion, as an index of `solvers.sweeps.status.STATUSES`.
+        Status of each motion, as an index of `solvers.sweeps.results.STATUSES`.
     records : dict of str to list of dict
         Attractors of each map of basins.
 

@@ -12,7 +12,7 @@ from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.ladders import climbed
 from solvers.sweeps.maps import Motions
 from solvers.sweeps.motions import after_transient, integrated
-from solvers.sweeps.status import CODES
+from solvers.sweeps.results import CODES
 from solvers.sweeps.sweep import Sweep
 
 #: Longest duration of a chunk in s, approximately, and its overhead.

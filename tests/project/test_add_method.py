@@ -9,9 +9,9 @@ import pytest
 
 import generated.single_pendulum as sp
 from solvers import integrate
+from solvers.app.readme_tables import methods_table
 from solvers.runge_kutta import catalogue, methods
 from solvers.runge_kutta.catalogue import load, names
-from solvers.runge_kutta.methods_table import methods_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper
 

@@ -19,7 +19,7 @@ from solvers.sweeps.axes import Grid
 from solvers.sweeps.checks import FROM_ENERGY
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.status import STATUSES
+from solvers.sweeps.results import STATUSES
 from solvers.sweeps.sweep import Sweep
 
 ROCKER = """

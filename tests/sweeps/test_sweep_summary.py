@@ -16,8 +16,7 @@ from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
-from solvers.sweeps.results import Results
-from solvers.sweeps.status import STATUSES
+from solvers.sweeps.results import STATUSES, Results
 from solvers.sweeps.summary import as_json, ranges, summary
 from solvers.sweeps.sweep import Sweep
 

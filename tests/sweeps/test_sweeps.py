@@ -32,9 +32,8 @@ from solvers.sweeps.maps.samples import Samples
 from solvers.sweeps.maps.section import Section
 from solvers.sweeps.pool import Pool
 from solvers.sweeps.reading import find, names
-from solvers.sweeps.results import Results
+from solvers.sweeps.results import STATUSES, Results
 from solvers.sweeps.run import sweep
-from solvers.sweeps.status import STATUSES
 from solvers.sweeps.sweep import Sweep
 
 PI = np.pi

@@ -18,7 +18,6 @@ from derive.verification.documents.interpretation import Work, interpretation, j
 from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
 from derive.verification.documents.letter_search import letters_of
 from derive.verification.documents.rates import RATES, stem
-from derive.verification.documents.sentences import sentence
 from derive.verification.documents.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     DocumentFormula,
@@ -34,6 +33,15 @@ MAX_SYSTEMS = 3
 BRACKETS = re.compile(r"\s*(?:\\left)?\(\s*([^()]*?)\s*(?:\\right)?\)\s*")
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
+
+#: Characters before and after a formula in which its sentence is sought.
+BEFORE, AFTER = 300, 100
+#: Ends of sentences and of paragraphs.
+END = re.compile(r"[.!?](?=\s)|\n\s*\n\s*\n|\\(?:section|begin\{document\})")
+#: Formulas, in which there are no words.
+FORMULA = re.compile(
+    r"\$\$.*?\$\$|\$.*?\$|\\\[.*?\\\]|\\begin\{(\w+\*?)\}.*?\\end\{\1\}", re.DOTALL
+)
 
 
 def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocument:
@@ -163,3 +171,22 @@ def _unused(hints: Hints | None, formulas: Sequence[DocumentFormula]) -> Iterato
         if not words & {letter + ending for ending in RATES}:
             known = sorted({stem(word) for word in words})
             yield f"names.{letter}: no formula has this letter{did_you_mean(letter, known)}"
+
+
+def sentence(document: Document, display: Display) -> str:
+    """The words of the sentence with a display, without those of its formulas."""
+    start, end = display.extent
+    before = document.text[max(0, start - BEFORE) : start]
+    after = document.text[end : end + AFTER]
+    head = END.split(_words(before))[-1]
+    tail = "" if _is_end(document.text[start:end]) else END.split(_words(after))[0]
+    return f"{head} {tail}"
+
+
+def _words(text: str) -> str:
+    """Text without formulas; a formula that ends with a full stop ends its sentence."""
+    return FORMULA.sub(lambda found: ". " if _is_end(found[0]) else " ", text)
+
+
+def _is_end(formula: str) -> bool:
+    return re.sub(r"\\end\{\w+\*?\}", "", formula).rstrip(" $\\]\n").endswith(".")

@@ -48,8 +48,8 @@ def run(arguments: Namespace) -> int:
     from solvers.sweeps.convergence import convergence
     from solvers.sweeps.plots.figure import figure
     from solvers.sweeps.reading import find
+    from solvers.sweeps.results import GOOD
     from solvers.sweeps.run import partial_results, sweep
-    from solvers.sweeps.status import GOOD
     from solvers.sweeps.summary import as_json, summary
 
     definition = find(arguments.sweep, load)

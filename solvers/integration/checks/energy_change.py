@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.equilibrium import equilibrium_state
+from solvers.equations.energy import equilibrium_state
 from solvers.equations.forms import Form
 from solvers.integration.checks.predictability import PredictabilityWarning
 from solvers.runge_kutta.stepper import Array

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.energy import conserves_energy
-from solvers.equations.equilibrium import equilibrium_state
+from solvers.equations.energy import conserves_energy, equilibrium_state
 from solvers.equations.module import has_function
 from solvers.integration.checks.energy_change import changed_energy
 from solvers.integration.checks.predictability import PredictabilityWarning
-from solvers.integration.loops.rerun import rerun
+from solvers.integration.loops.passage import rerun
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble

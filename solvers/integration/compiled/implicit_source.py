@@ -1,12 +1,12 @@
 """The part of a C program that makes steps of an implicit method by Newton's iteration."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from solvers.integration.compiled.literals import real, row
 from solvers.runge_kutta.blocks import Blocks
 from solvers.runge_kutta.lagrange import lagrange, lagrange_factors
+from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.step_control import tolerance_power
 from solvers.runge_kutta.tableau import Tableau
 
@@ -77,3 +77,13 @@ def _coefficients(tableau: Tableau) -> str:
         **{name: f"{{{', '.join(map(row, rows))}}}" for name, rows in matrices.items()},
         **{name: row(numbers) for name, numbers in vectors.items()},
     )
+
+
+def real(number: Number) -> str:
+    """A number of double precision, in brackets."""
+    return f"({float(number)!r})"
+
+
+def row(numbers: Iterable[Number]) -> str:
+    """Numbers as the initial values of an array."""
+    return f"{{{', '.join(map(real, numbers))}}}"

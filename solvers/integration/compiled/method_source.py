@@ -2,9 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from solvers.integration.compiled.implicit_source import IMPLICIT_FILES, implicit
+from solvers.integration.compiled.implicit_source import IMPLICIT_FILES, implicit, real, row
 from solvers.integration.compiled.layout import source
-from solvers.integration.compiled.literals import real, row
 from solvers.runge_kutta.continuous_extension import ContinuousExtension, elevated
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.loops import python_loop
-from solvers.integration.loops.rerun import rerun
+from solvers.integration.loops.passage import rerun
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.problem.events import Extremum
 from solvers.integration.problem.inputs import History

@@ -7,6 +7,7 @@ has its past positions and velocities, up to a state on the other side as far aw
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -16,8 +17,9 @@ import scipy
 from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
 from solvers.equations.singular_configuration import condition_of_constraints
+from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
-from solvers.integration.loops import compiled_loop, python_loop
+from solvers.integration.loops import compiled_loop, passage, python_loop
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status
 from solvers.integration.results.outcome import Outcome
@@ -263,3 +265,13 @@ def _polynomial(problem: Problem, times: Array, states: Array) -> Callable[[Arra
         return np.vstack([interpolated(at).T, interpolated.derivative(at).T / rate])
 
     return polynomial
+
+
+def rerun(problem: Problem) -> Outcome:
+    """The outcome of a problem in its form, compiled if that is possible, without warnings."""
+    outcome, program = Outcome.at_start(problem), None
+    if problem.backend != "python" and not compiled_loop.obstacle(problem):
+        with suppress(NoCompilerError):  # the first run has reported it
+            program = compiled_loop.loop(problem)
+    passage.run(problem, outcome, program)
+    return outcome

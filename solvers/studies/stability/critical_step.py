@@ -13,7 +13,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.equilibrium import equilibrium_state
+from solvers.equations.energy import equilibrium_state
 from solvers.equations.module import GeneratedModule
 from solvers.equations.normal_modes import Modes
 from solvers.integration.checks.predictability import ignore_predictability

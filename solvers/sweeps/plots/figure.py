@@ -14,12 +14,10 @@ from solvers.io import figures
 from solvers.io.notation import symbol
 from solvers.io.units import with_unit
 from solvers.sweeps.checks import ENERGY
-from solvers.sweeps.plots.diagram import diagram
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
-from solvers.sweeps.plots.quantity import Quantity, letter
+from solvers.sweeps.plots.quantity import Quantity, label_axis, letter
 from solvers.sweeps.plots.response import response
-from solvers.sweeps.results import Results
-from solvers.sweeps.status import GOOD
+from solvers.sweeps.results import GOOD, Results
 
 #: Titles of panels, and the functions that draw them.
 Panels: TypeAlias = Iterator[tuple[str, Callable[[Axes], None]]]
@@ -27,6 +25,11 @@ Panels: TypeAlias = Iterator[tuple[str, Callable[[Axes], None]]]
 MAX_PANELS = 12
 #: Width and height in inches of the figure of a single panel.
 ALONE = (8.4, 6.2)
+
+#: Size and opacity of a point, and number of points on a panel for which they hold.
+SIZE, OPACITY, DENSE = 1.3, 0.35, 20_000
+#: Largest number of points.
+POINTS = 1_000_000
 
 
 def figure(results: Results) -> Figure:
@@ -145,3 +148,22 @@ def _response(name: str, results: Results) -> Panels:
 
 #: Panels of each kind of plot.
 PANELS = {"response": _response, "numbers": _numbers, "curves": _curves, "section": _section}
+
+
+def diagram(panel: Axes, *, quantity: Quantity, axis: str, selection: tuple[Any, ...]) -> None:
+    """All numbers of a component over the values of `axis`, for the motions of a selection.
+
+    Points are translucent, so that shades of grey show how often a value occurs.
+    """
+    results = quantity.results
+    values = quantity.values(selection)  # the axis first where it is a grid
+    values = values.reshape(len(results.axes[axis]), -1)
+    values = values[:, :: max(1, -(-values.size // POINTS))]
+    x = np.repeat(results.axes[axis], values.shape[1])
+    is_dense = values.size > DENSE
+    size, opacity = (SIZE, OPACITY) if is_dense else (2 * SIZE, 0.8)
+    panel.plot(x, values.ravel(), "o", color="black", markersize=size, alpha=opacity,
+               markeredgewidth=0, rasterized=True)  # fmt: skip
+    panel.set_ylabel(quantity.label)
+    panel.margins(x=0.01)
+    label_axis(panel, "x", results, axis)

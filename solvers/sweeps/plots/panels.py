@@ -16,8 +16,7 @@ from solvers.sweeps.axes import Array, Grid
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.initial_states import initial_states
 from solvers.sweeps.plots.quantity import Quantity, add_legend, label_axis, letter, wrapped
-from solvers.sweeps.results import Results
-from solvers.sweeps.status import PROVED
+from solvers.sweeps.results import PROVED, Results
 
 #: Where nothing happened or nothing is known, and where it is proved that nothing can happen.
 NOTHING, NEVER = "#c8c8c8", "#ffffff"
