@@ -179,10 +179,7 @@ def _state(
     context = model.motions if goal.along_motions else model.context
     derived = goal.value if correct is None or goal.is_equation else correct
     used = derived.free_symbols | (value.free_symbols if names.has_operators else set())
-    quantities = names.quantities(used)
-    order = {symbol: index for index, symbol in enumerate(context.states[0])}
-    quantities = dict(sorted(quantities.items(), key=lambda one: order.get(one[1], len(order))))
-    numbers = context.state(value, goal.value, quantities)
+    numbers = context.state(value, goal.value, names.quantities(used))
     return ", ".join(f"{name} = {number}" for name, number in numbers.items())
 
 

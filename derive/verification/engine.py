@@ -140,15 +140,18 @@ class Context:
     def state(
         self, value: sp.Expr, derived: sp.Expr, quantities: Mapping[str, sp.Expr]
     ) -> dict[str, str]:
-        """Numbers of quantities where values differ, by their names.
+        """Numbers of quantities where values differ, by their names, in the order of the state.
 
         They have as many digits as the difference needs to be computed again.
         """
+        order = {symbol: k for k, symbol in enumerate(self.states[0])}
+        ranks = {name: (order.get(one, len(order)), name) for name, one in quantities.items()}
         index = self.first_difference(value, derived)
         size = abs(self._approximation(value - derived, self.evaluators[index]).number)
         lost = -mp.log10(size) if size else 0
         digits = min(SHOWN + max(0, int(mp.ceil(lost))), DIGITS)
-        return {name: self._written(one, index, digits) for name, one in quantities.items()}
+        names = sorted(quantities, key=ranks.__getitem__)
+        return {name: self._written(quantities[name], index, digits) for name in names}
 
     def _written(self, quantity: sp.Expr, index: int, digits: int) -> str:
         number = self.states[index].get(quantity, quantity)

@@ -12,6 +12,7 @@ import pytest
 from folders import ROOT
 from sharing import Shared
 
+from derive.verification.report import contexts
 from derive.verification.report.equation import Equation
 from solvers.app.cli import COMMANDS, main
 from solvers.app.commands import verify
@@ -155,6 +156,12 @@ def test_verify_prints_json_with_every_verdict(
     assert misprint["verdict"] == "misprint"
     assert "phi2_dot**2" in misprint["correction"]
     assert "theta1_dot**2 - theta2_dot**2" in misprint["residual"]
+    states = [one["state"] for one in printed["equations"] if one.get("state")]
+    names = [[number.partition(" = ")[0] for number in state.split(", ")] for state in states]
+    assert max(map(len, names)) > 9
+    # the same order in every process, whatever its hashes are
+    order = [*contexts.NUMBERS, "p_theta1", "p_theta2"]
+    assert all(row == sorted(row, key=order.index) for row in names)
 
 
 def test_verify_prints_a_table_that_fits_the_terminal(

@@ -158,4 +158,5 @@ def _context(derivation: Derivation, scope: Mapping[str, Any], *, moving: bool) 
 
 
 def _numbers(symbols: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
-    return {s: sp.Rational(NUMBERS[s.name]) for s in (*symbols, G_DOT, STRAY)}
+    by_name = {symbol.name: symbol for symbol in (*symbols, G_DOT, STRAY)}
+    return {by_name[name]: sp.Rational(x) for name, x in NUMBERS.items() if name in by_name}
