@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "3d940e9640c1b4d9"
+DIGEST = "24271a0308754a30"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
@@ -1079,8 +1079,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

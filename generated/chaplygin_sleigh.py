@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "8c4f81ac77c2e6c3"
+DIGEST = "d53d15305dd8e677"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -666,8 +666,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "c186b089c7032026"
+DIGEST = "cdc8287a47356e72"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -640,8 +640,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin, "sqrt": numpy.sqrt}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

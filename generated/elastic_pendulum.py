@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "bad26d858eca526b"
+DIGEST = "47cbcd70f69d224c"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -475,8 +475,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

@@ -88,7 +88,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "811a22d693344522"
+DIGEST = "c13db254dd553744"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -928,8 +928,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

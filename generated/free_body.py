@@ -93,7 +93,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "free_body"
-DIGEST = "fc7c0b033f6b2ea4"
+DIGEST = "bd4318d53a8bdd30"
 COORDINATES = ("w", "x", "y", "z")
 STATE = ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot")
 FORMS = ("lagrangian", "variational", "sensitivity")
@@ -797,8 +797,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"sqrt": numpy.sqrt}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

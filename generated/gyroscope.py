@@ -83,7 +83,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "2eceaaa9845efcf1"
+DIGEST = "951737e41fb22e66"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -735,8 +735,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

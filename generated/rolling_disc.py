@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "9dec9cea6b369220"
+DIGEST = "398e1c05faf920c1"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
@@ -1201,8 +1201,7 @@ def _over_arrays(function: Any) -> Any:
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
         functions = {"cos": numpy.cos, "sin": numpy.sin}
         result = type(function)(function.__code__, function.__globals__ | functions)(**taken)
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

@@ -79,9 +79,9 @@ def check_maps(
         raise ValueError("no maps: give at least one")
     for name, one in maps.items():
         check_type(f"maps[{name!r}]", one, Map, "a map, such as Final(('theta1',))")
-    ladders = [name for name, one in maps.items() if one.ladder]
-    if ladders and len(maps) > 1:
-        raise ValueError(f"map {ladders[0]} is a response: it must be the only map")
+    continued = [name for name, one in maps.items() if one.continued_along]
+    if continued and len(maps) > 1:
+        raise ValueError(f"map {continued[0]} is a response: it must be the only map")
     reserved = (STATUS, ENERGY, *module.STATE, *module.PARAMETERS)
     taken = {*map(str.casefold, reserved)}  # names of files, whose case may not count
     for name, one in maps.items():

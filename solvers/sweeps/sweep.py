@@ -146,15 +146,15 @@ class Sweep:
         return np.array([self.duration]), samples[np.newaxis]
 
     @property
-    def ladder(self) -> str:
+    def continued_along(self) -> str:
         """The axis along which each motion starts where its neighbour ended, or an empty text."""
         (one, *_) = self.maps.values()
-        return one.ladder
+        return one.continued_along
 
     @property
-    def rungs(self) -> int:
+    def branch_length(self) -> int:
         """Number of successive motions that depend on each other."""
-        return self.axes.shape[-1] if self.ladder else 1
+        return self.axes.shape[-1] if self.continued_along else 1
 
     @property
     def extent(self) -> str:

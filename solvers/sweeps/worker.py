@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.axes import Array
+from solvers.sweeps.continuation import continued
 from solvers.sweeps.initial_states import initial_states
-from solvers.sweeps.ladders import climbed
 from solvers.sweeps.maps import Motions
 from solvers.sweeps.motions import after_transient, integrated
 from solvers.sweeps.results import CODES
@@ -34,8 +34,8 @@ def computed(
     sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
 ) -> tuple[NDArray[np.void], list[Ensemble]]:
     """A chunk with the maps of all motions, and the motions that were integrated."""
-    if sweep.ladder:
-        return climbed(sweep, columns, stop)
+    if sweep.continued_along:
+        return continued(sweep, columns, stop)
     module, maps = sweep.module, sweep.maps
     starts, params, status = initial_states(sweep, columns)
     chunk = np.zeros(len(status), sweep.dtype)
@@ -87,4 +87,4 @@ def chunk_length(sweep: Sweep, evaluations: float) -> int:
     most = MAX_BYTES / (8 * size * (1 + sweep.samples + events))
     seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)
     length = max(1, int(min(seconds / each, most)))
-    return -(-length // sweep.rungs) * sweep.rungs
+    return -(-length // sweep.branch_length) * sweep.branch_length

@@ -118,7 +118,7 @@ def test_responses_resume_to_the_same_bits_for_any_number_of_workers(
     monkeypatch.setattr(worker, "COST", 1e-12)
     parts = sweep(definition, tmp_path / "parts", pool=Pool(workers=2))
     chunks = sorted((tmp_path / "parts" / "chunks").glob("*.npy"))
-    assert len(chunks) == 5  # whole ladders
+    assert len(chunks) == 5  # whole branches
     assert parts.maps["r"].tobytes() == whole
     for chunk in chunks[::2]:
         chunk.unlink()
@@ -127,14 +127,14 @@ def test_responses_resume_to_the_same_bits_for_any_number_of_workers(
     assert sweep(definition, tmp_path / "parts").maps["r"].tobytes() == whole
 
 
-def test_a_ladder_does_not_depend_on_others(bent: Results, tmp_path: Path) -> None:
+def test_a_branch_does_not_depend_on_others(bent: Results, tmp_path: Path) -> None:
     axes = Grid({"F": [0.1, F], "Omega": OMEGA[:6]})
     both = Sweep(duffing, axes, {"r": ONE}, values={"c": C, "x": 0.0})
     numbers = sweep(both, tmp_path).maps["r"]
     assert numbers[1, :, 0, 0].tobytes() == bent.maps["r"][:6, 0, 0].tobytes()
 
 
-def test_a_ladder_that_fails_has_a_status_from_there_on(tmp_path: Path) -> None:
+def test_a_branch_that_fails_has_a_status_from_there_on(tmp_path: Path) -> None:
     # periods at the lowest frequency have too many steps, which is the last one downwards
     axes = Grid({"Omega": [0.2, 1.0, 1.5]})
     results = sweep(Sweep(duffing, axes, {"r": ONE}, values=VALUES, max_steps=2800), tmp_path)

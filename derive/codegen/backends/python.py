@@ -150,8 +150,7 @@ def _over_arrays(function: Any) -> Any:
         # an array, but not a tuple, would be converted to numbers
         taken = {{name: x if name == "t" else tuple(x) for name, x in arguments.items()}}
 {call}
-        shape: tuple[int, ...] = ()
-        results = [result]
+        shape, results = tuple[int, ...](), [result]
         while isinstance(results[0], tuple):
             shape += (len(results[0]),)
             results = [value for row in results for value in row]

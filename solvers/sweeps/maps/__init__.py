@@ -106,7 +106,7 @@ class Map:
         return 1
 
     @property
-    def ladder(self) -> str:
+    def continued_along(self) -> str:
         """Axis along which each motion starts where its neighbour ended, or an empty text."""
         return ""
 

@@ -65,7 +65,7 @@ class Response(ComponentMap):
         return (self.of, ("up", "down"))
 
     @property
-    def ladder(self) -> str:
+    def continued_along(self) -> str:
         return self.along
 
     @property

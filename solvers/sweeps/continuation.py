@@ -1,4 +1,4 @@
-"""Ladders: motions along an axis, each of which starts where its neighbour ended."""
+"""Continuation: motions along an axis, each of which starts where its neighbour ended."""
 
 from collections.abc import Mapping
 from itertools import pairwise
@@ -17,13 +17,13 @@ from solvers.sweeps.results import CODES
 from solvers.sweeps.sweep import Sweep
 
 
-def climbed(
+def continued(
     sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
 ) -> tuple[NDArray[np.void], list[Ensemble]]:
-    """A chunk of whole ladders, each climbed upwards and downwards, and the motions.
+    """A chunk of whole branches, each followed upwards and downwards, and the motions.
 
-    All ladders move together from rung to rung. Every rung is integrated from t = 0, so that the
-    drive, whose period is that of the map, has the same phase at its start and at its end.
+    All branches move together from value to value. Every motion is integrated from t = 0, so that
+    the drive, whose period is that of the map, has the same phase at its start and at its end.
     """
     ((name, one),) = sweep.maps.items()
     module, sampling = sweep.module, one.sampling
@@ -31,14 +31,14 @@ def climbed(
     starts, params, _ = initial_states(sweep, columns)
     chunk = np.zeros(len(starts), sweep.dtype)
     chunk[name] = np.nan
-    rungs = _rungs(columns, one.ladder)
-    state, codes = starts[rungs[:, 0]], np.full(len(rungs), CODES[Status.FINISHED])
+    branches = _branches(columns, one.continued_along)
+    state, codes = starts[branches[:, 0]], np.full(len(branches), CODES[Status.FINISHED])
     ensembles = []
-    for k in range(rungs.shape[1]):
-        here = np.flatnonzero(rungs[:, k] >= 0)
+    for k in range(branches.shape[1]):
+        here = np.flatnonzero(branches[:, k] >= 0)
         alive = here[codes[here] == CODES[Status.FINISHED]]
         if len(alive):
-            motions = rungs[alive, k]
+            motions = branches[alive, k]
             own = [column[motions] for column in params]
             times = sampling.times(module, own)
             options = sweep.options
@@ -55,22 +55,22 @@ def climbed(
             chunk[name][motions[good], ..., alive[good] % 2] = values[good]
             state[alive] = after.y.T
         status = chunk["status"]  # that of a failure in one direction, if any
-        np.maximum.at(status, rungs[here, k], codes[here].astype(status.dtype))
+        np.maximum.at(status, branches[here, k], codes[here].astype(status.dtype))
     return chunk, ensembles
 
 
-def _rungs(columns: Mapping[str, Array], along: str) -> NDArray[np.intp]:
-    """Indices of motions: a row for each ladder upwards and one downwards, then -1 if shorter.
+def _branches(columns: Mapping[str, Array], along: str) -> NDArray[np.intp]:
+    """Indices of motions: a row for each branch upwards and one downwards, then -1 if shorter.
 
-    Neighbours with equal values of all other quantities are on one ladder.
+    Neighbours with equal values of all other quantities are on one branch.
     """
     others = [column for name, column in columns.items() if name != along]
     n = len(columns[along])
     differ = [np.flatnonzero(np.diff(column)) + 1 for column in others]
     bounds = np.unique(np.concatenate([[0, n], *differ]).astype(int))
-    ladders = [np.arange(*ends) for ends in pairwise(bounds)]
-    rows = np.full((2 * len(ladders), max(map(len, ladders))), -1)
-    for k, ladder in enumerate(ladders):
-        up = ladder[np.argsort(columns[along][ladder], kind="stable")]
+    branches = [np.arange(*ends) for ends in pairwise(bounds)]
+    rows = np.full((2 * len(branches), max(map(len, branches))), -1)
+    for k, branch in enumerate(branches):
+        up = branch[np.argsort(columns[along][branch], kind="stable")]
         rows[2 * k, : len(up)], rows[2 * k + 1, : len(up)] = up, up[::-1]
     return rows
