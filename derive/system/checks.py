@@ -3,16 +3,13 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from derive.formulas.derivative import derivative
+from derive.system.declaration import Declaration
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
-
-if TYPE_CHECKING:
-    from derive.system.system import System
 
 
 @dataclass(frozen=True)
@@ -25,7 +22,7 @@ class Part:
     variables: str  # `known` in words, and the remedy for others that exist in the system
 
 
-def check(system: "System") -> None:
+def check(system: Declaration) -> None:
     """Raise `SystemDefinitionError` if components or symbols do not fit each other."""
     _check_counts(system)
     parts = [*_parts(system)]
@@ -36,7 +33,7 @@ def check(system: "System") -> None:
     _check_weight(system, parts)
 
 
-def _check_counts(system: "System") -> None:
+def _check_counts(system: Declaration) -> None:
     if len({len(mass.position) for mass in system.masses}) > 1 or not 2 <= system.dimension <= 3:
         counts = ", ".join(str(len(mass.position)) for mass in system.masses)
         raise SystemDefinitionError(
@@ -51,7 +48,7 @@ def _check_counts(system: "System") -> None:
             )
 
 
-def _parts(system: "System") -> Iterator[Part]:
+def _parts(system: Declaration) -> Iterator[Part]:
     """Every expression of a system."""
     constants = frozenset(system.params) - {*system.u}
     moving = frozenset(system.params) | {*system.q, TIME}
@@ -80,7 +77,7 @@ def _parts(system: "System") -> Iterator[Part]:
     yield Part("the list of reactions", sp.Tuple(*system.reactions), constants, fixed)
 
 
-def _check_symbols(system: "System", part: Part) -> None:
+def _check_symbols(system: Declaration, part: Part) -> None:
     unknown = sorted({symbol.name for symbol in part.expression.free_symbols - part.known})
     if not unknown:
         return
@@ -101,7 +98,7 @@ def _check_symbols(system: "System", part: Part) -> None:
     )
 
 
-def _check_forces(system: "System") -> None:
+def _check_forces(system: Declaration) -> None:
     if system.dissipation and not system.dissipation.free_symbols & {*system.qdot}:
         raise SystemDefinitionError(
             f"the dissipation of system {system.name!r} is {system.dissipation}, which depends on "
@@ -114,7 +111,7 @@ def _check_forces(system: "System") -> None:
         )
 
 
-def _check_constraints(system: "System") -> None:
+def _check_constraints(system: Declaration) -> None:
     qdot = {*system.qdot}
     for one in system.conditions:
         if not one.formula.free_symbols & (qdot | {*system.q}):
@@ -141,7 +138,7 @@ def _is_affine(formula: sp.Expr, variables: set[sp.Symbol]) -> bool:
     return not any(sp.expand(slope).free_symbols & variables for slope in others)
 
 
-def _check_weight(system: "System", parts: list[Part]) -> None:
+def _check_weight(system: Declaration, parts: list[Part]) -> None:
     used = set().union(*(part.expression.free_symbols for part in parts))
     weightless = system.potential is not None and system.gravity is None
     if weightless and any(s.name == "g" and s not in used for s in system.params):

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from benchmarks.motions import Array
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import build
@@ -17,6 +16,7 @@ from solvers.integration.loops import compiled_loop
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
 from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.stepper import Array
 
 #: Least duration in s of a burst of calls: a call alone, after other programs, would be timed with
 #: caches and branch predictors that hold nothing of it.

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("derive", "solvers")
+PACKAGES = ("derive", "solvers", "notebooks/benchmarks")
 Arrows = dict[str, set[str]]
 
 
@@ -29,9 +29,10 @@ def imported_files(path: Path) -> frozenset[Path]:
         for name in names:
             parts = name.split(".")
             for length in (len(parts), len(parts) - 1):
-                file = root.joinpath(*parts[:length]).with_suffix(".py")
-                if length and file.is_file() and file != path:
-                    found.add(file)
+                places = [place.joinpath(*parts[:length]) for place in (root, root / "notebooks")]
+                files = [file for one in places if (file := one.with_suffix(".py")).is_file()]
+                if length and files:
+                    found |= {*files} - {path}
                     break
     return frozenset(found)
 
