@@ -78,7 +78,7 @@ class Code:
 
     language: str
     text: str
-    is_executable: bool = False  # in a notebook
+    is_executable: bool  # in a notebook
 
 
 Block: TypeAlias = Paragraph | Equation | Table | Code

@@ -14,7 +14,7 @@ from sharing import Shared
 
 from derive.verification.report import contexts
 from derive.verification.report.equation import Equation
-from solvers.app.cli import COMMANDS, main
+from solvers.app.cli import COMMANDS, command_parser, main
 from solvers.app.commands import verify
 from solvers.app.commands.options import shipped
 from solvers.app.verdict import report
@@ -124,6 +124,10 @@ def test_completion_without_its_extra_names_the_extra(
     assert main(["--print-completion", "zsh"]) == 4
     message = "holonomic: shtab is not installed: pip install 'holonomic[completion]'\n"
     assert capsys.readouterr().err == message
+
+
+def test_a_film_plays_at_the_speed_of_the_motion_by_default() -> None:
+    assert command_parser().parse_args(["run", "report"]).speed == 1.0
 
 
 def test_an_unknown_command_or_option_is_invalid_input(capsys: pytest.CaptureFixture[str]) -> None:

@@ -131,6 +131,27 @@ def test_an_orphan_is_reported_and_not_removed(
     assert orphan.exists()
 
 
+def test_an_output_folder_may_have_files_of_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "own.py").write_text("")
+    arguments = ["single_pendulum", "--output", str(tmp_path)]
+    assert main(arguments) == 0
+    assert main(["--check", *arguments]) == 0
+    assert "own.py" not in capsys.readouterr().out
+
+
+def test_an_unreadable_argument_has_the_exit_code_of_files(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def unreadable(*_: object) -> int:
+        raise OSError("mine.toml: is a folder")
+
+    monkeypatch.setattr(command, "run", unreadable)
+    assert main(["mine.toml"]) == 4
+    assert capsys.readouterr().err == "holonomic derive: mine.toml: is a folder\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -26,7 +26,7 @@ from derive.handout.exercises import with_exercises
 from derive.handout.mistakes import planted
 from derive.handout.notation import Notation
 from derive.handout.notebook import notebook
-from derive.handout.page import page
+from derive.handout.page import BLANK, page
 from derive.handout.sections import document
 from derive.handout.tex import tex
 from derive.handout.writing import write_document
@@ -255,6 +255,8 @@ def test_blank_exercises_show_no_derived_formula(documents, name: str) -> None:
     for writer in WRITERS.values():
         assert not any(isinstance(b, Code) for s in exercises.sections for b in s.blocks)
         assert writer(exercises) != writer(documents(name))
+    assert page(exercises).count(BLANK) == len(blank)
+    assert BLANK not in page(documents(name))
 
 
 @pytest.mark.long("more cases of the same kind", keep=3)

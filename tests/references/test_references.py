@@ -171,6 +171,12 @@ def test_functions_of_series_have_the_coefficients_of_taylor(name: str) -> None:
         assert abs(mp.mpf(str(constant.at(0))) - getattr(mp, name)(mp.mpf(0.7))) < mp.mpf("1e-38")
 
 
+def test_powers_of_constants_are_constants() -> None:
+    with localcontext(prec=40):
+        result = series_functions([])["pow"](2.25, 0.5)
+        assert (result.constant, result.at(0)) == (True, Decimal("1.5"))
+
+
 def test_decimal_sine_and_cosine() -> None:
     import mpmath
 
