@@ -1,5 +1,7 @@
 """Events in long steps: several crossings of one event, tangents, events at the start."""
 
+import shutil
+import subprocess
 from pathlib import Path
 from types import ModuleType
 
@@ -7,6 +9,7 @@ import numpy as np
 import pytest
 from benchmarks.events import CROSSINGS
 from benchmarks.motions import END, START
+from cheap_compiler import CHECKS
 from handwritten import handwritten
 from scipy.special import ellipk, ellipkinc
 from sympy import Poly, Rational, Symbol
@@ -14,6 +17,7 @@ from sympy import Poly, Rational, Symbol
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.checks.predictability import ignore_predictability
+from solvers.integration.compiled.layout import SOURCES
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
@@ -232,3 +236,45 @@ def test_two_or_three_shorter_steps_locate_a_crossing(method: str, most: int, ba
         assert (near.nfev - far.nfev) / len(exact) <= most
         there = near.y_events[0][:, dp.STATE.index(name)]
         assert there == pytest.approx(value, abs=1e-13 * (1 + abs(value)))
+
+
+def test_evaluations_at_the_ends_of_a_bracket_are_counted() -> None:
+    options = {"method": "dp54", "rtol": 1e-9, "atol": 1e-9, "t_eval": [1.0]}
+    far, near = (
+        integrate(
+            *(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS),
+            events=Event(sp, "theta", level),
+            backend="compiled",
+            **options,
+        )
+        for level in (1e6, 0.3)
+    )
+    assert len(near.t_events[0]) == 1
+    assert near.nfev - far.nfev in (2 * 6 + 2, 3 * 6 + 2)  # by two or three shorter steps
+
+
+ROOTS = """
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#define EXTENSION_DEGREE 8
+#include "roots.h"
+int main(void)
+{
+    const double x = 0x1p-26, coefficients[] = {x*x, x*x - x, (1 - x)*(1 - x)};
+    double roots[MAX_ROOTS];
+    const int count = isolate_roots(2, coefficients, roots);
+    printf("%d %a %a", count, roots[0], roots[1]);
+    return 0;
+}
+"""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+def test_a_double_root_at_the_start_of_a_step_is_found_within_the_stack(tmp_path: Path) -> None:
+    (tmp_path / "roots.c").write_text(ROOTS)
+    options = ["-std=gnu11", *CHECKS.split(), f"-I{SOURCES}"]
+    subprocess.run(["cc", *options, "roots.c", "-o", "roots", "-lm"], cwd=tmp_path, check=True)
+    found = subprocess.run([tmp_path / "roots"], capture_output=True, text=True, check=True)
+    assert [float.fromhex(number) for number in found.stdout.split()] == [2, 0, 2.0**-24]

@@ -225,3 +225,12 @@ def test_a_regulator_with_saturation_and_dry_friction() -> None:
     assert np.count_nonzero(abs(rates) < 1e-12) > 50  # the cart sticks now and then
     assert abs(runs[0].inputs[0]).max() > 8
     assert abs(runs[0].y[1, -1]) < 0.2
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_stiff_forces_take_long_steps_while_a_function_stays_0(backend: str) -> None:
+    forces = (-sp.sign(v), -1000 * (1000 * (y - 1) + 10 * w))  # rates of 101/s and 9899/s
+    held = build(System("held", "", [X, Y], [], [PointMass(1, (x, y))], sp.S.Zero, forces=forces))
+    motion = integrate(held, (0, 1), (0.0,) * 4, (), method="radau", backend=backend)
+    assert motion.y[:, -1] == pytest.approx((0.0, 1.0, 0.0, 0.0), abs=1e-6)
+    assert motion.steps < 200  # an explicit method needs thousands
