@@ -368,6 +368,15 @@ def test_coefficients_of_runge_kutta_methods_are_checked() -> None:
         assert "order 4 is possible" in wrong.text
 
 
+def test_a_method_may_return_the_state_after_a_step() -> None:
+    text = "def step(f, y, h):\n    k1 = f(y)\n    k2 = f(y + h/2*k1)\n    return y + h*k2\n"
+    right = finding(read_program(text, "Python"), "runge_kutta")
+    assert "2 stages and order 2" in right.text
+    assert not right.is_fault
+    wrong = finding(read_program(text.replace("h/2", "h"), "Python"), "runge_kutta")
+    assert wrong.is_fault
+
+
 @pytest.mark.parametrize(
     ("name", "identifier"),
     [("θ₁", "theta1"), ("Θ", "Theta"), ("ϼ", "rho"), ("x\u0307", "x_dot"), ("x\u0308", "x_ddot")],

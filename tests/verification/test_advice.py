@@ -101,6 +101,12 @@ def test_one_wrong_term_is_named_with_its_correction(
     assert (correction.wrong, correction.correct) == (wrong, correct)
 
 
+def test_a_wave_of_half_the_angle_mends_a_formula() -> None:
+    text = "2*m*g*l*sin(theta)**2 - m*g*l"
+    (correction,) = judged("single_pendulum", "potential_energy", "", text).corrections
+    assert correction.correct == "2*m*g*l*sin(theta/2)**2"
+
+
 def test_several_wrong_terms_are_corrected_together() -> None:
     text = "m*l**2*theta_dot**2/3 + m*g*l*sin(theta)"
     result = judged("single_pendulum", "lagrangian", "", text)

@@ -118,6 +118,13 @@ def test_what_follows_from_a_wrong_energy_names_its_line(
     assert (other.verdict, other.note) == ("wrong", "")
 
 
+def test_formulas_follow_from_the_last_side_of_a_wrong_energy(tmp_path: Path) -> None:
+    wrong = r"$$T = \frac12 m l^2\dot\theta^2 = m l^2\dot\theta^2$$"
+    following = r"$$p_\theta = 2 m l^2\dot\theta$$"
+    *_, last = judged(tmp_path, f"{PENDULUM}{wrong}\n{following}\n", "single_pendulum")
+    assert (last.verdict, last.note) == ("wrong", "it follows from line 4")
+
+
 ROBOT = DERIVATIONS["robot"]
 CORIOLIS = ROBOT[ROBOT.index("$$C") : ROBOT.index("$$G")]
 
