@@ -15,6 +15,10 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.singular_configuration import SingularConfigurationWarning
 from solvers.equations.tangent_start import tangent_start
+from solvers.sweeps.axes import Grid
+from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.maps.final import Final
+from solvers.sweeps.sweep import Sweep
 
 q1, q2, q3, x, y = sp.symbols("q1 q2 q3 x y", real=True)
 a, b, c, d, m, length = sp.symbols("a b c d m l", positive=True)
@@ -265,3 +269,13 @@ def test_perturbations_of_completed_starts_are_their_derivatives() -> None:
     (changed,) = tangent_start(form, 0.0, row[np.newaxis], flags)
     differences = (start(2.0 + h) - start(2.0 - h)) / (2 * h)
     assert changed[size:] == pytest.approx(differences, abs=1e-9)
+
+
+def test_sweeps_complete_states_at_their_first_time(lifted: GeneratedModule) -> None:
+    places = np.array([0.0, 0.48])
+    axes = Grid({"x": places})
+    definition = Sweep(lifted, axes, {"end": Final(("y",))}, 1.0, {"x_dot": 0.0})
+    states, _, status = initial_states(definition, {"x": places})
+    assert not status.any()
+    lengths = np.hypot(states[:, 0], states[:, 1])
+    assert lengths == pytest.approx([0.8, 0.8], rel=1e-13)  # that of the thread at t = 0

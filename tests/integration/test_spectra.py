@@ -15,6 +15,7 @@ from solvers.integration.variations.frames import Frames
 from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
 from solvers.integration.variations.transition_matrix import transition_matrix
 from solvers.sweeps.axes import Grid
+from solvers.sweeps.map_table import MapTable
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.lyapunov_spectrum import Spectrum
 from solvers.sweeps.run import sweep
@@ -94,6 +95,11 @@ def test_sweeps_store_spectra(tmp_path: Path) -> None:
     assert results.maps["largest"][0, 0, 0] == pytest.approx(one.exponents[0], abs=0.05)
     with pytest.raises(ValueError, match="count = 5 must be from 1 to 4"):
         Sweep(dp, axes, {"all": Spectrum(5)}, 50.0)
+
+
+def test_files_and_programs_have_the_same_interval_by_default() -> None:
+    read = Spectrum.read(MapTable("maps.all", dp, {"count": 4}))
+    assert Spectrum(4) == read == Spectrum(4, interval=2.0)
 
 
 def test_friction_contracts_volumes_in_sweeps(tmp_path: Path) -> None:

@@ -184,6 +184,7 @@ def test_two_random_quantities_are_coloured_points(tmp_path: Path) -> None:
     assert np.array_equal(unknown.get_facecolor(), [to_rgba("#c8c8c8")])
     assert np.array_equal(known.get_offsets()[~lost], where[~lost])
     assert np.array_equal(np.ma.filled(known.get_array(), np.nan)[~lost], values[~lost])
+    assert isinstance(known.norm, LogNorm)
     assert (panel.get_xlabel(), panel.get_ylabel()) == (r"$\theta$ / rad", "$l$ / m")
 
 

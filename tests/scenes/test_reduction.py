@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import generated.double_pendulum as dp
 import generated.foucault_pendulum as foucault
 import generated.spherical_pendulum as spherical
 import generated.swinging_atwood as atwood
+from derive import Coordinate, Parameter, PointMass, System
+from solvers.app.modules import build
 from solvers.app.modules import load as load_module
 from solvers.references.taylor import taylor
 from solvers.scenes.models.motion import Motion, OutsideDomainError
@@ -47,6 +50,19 @@ def test_the_momentum_of_a_cyclic_coordinate_is_that_of_the_derivation() -> None
     reduced = ReducedMotion.of(motion_from(spherical, (1.0, 0.3, 0.2, 1.5), 1.0))
     assert reduced.momentum == pytest.approx(np.sin(1.0) ** 2 * 1.5, rel=1e-14)
     assert (reduced.shape.tolist(), reduced.rotation.tolist()) == ([1, 0], [0, 1])
+
+
+def test_a_coordinate_is_cyclic_where_the_energy_is_not_a_number_everywhere() -> None:
+    # a bead in a bowl of 1 m on a cart: no position is farther from the middle
+    x, w = sp.symbols("x w", real=True)
+    masses = [PointMass(2, (x, 0)), PointMass(1, (x + w, -sp.sqrt(1 - w**2)))]
+    coordinates = [Coordinate(one, "m", "position") for one in (x, w)]
+    g = Parameter(sp.Symbol("g", positive=True), "m/s^2", 9.81, "gravity")
+    bowl = build(System("bowl", "", coordinates, [g], masses))
+    with np.errstate(invalid="ignore"):
+        reduced = ReducedMotion.of(motion_from(bowl, (0.2, 0.3, 0.5, -0.4), 1.0))
+    assert (reduced.shape.tolist(), reduced.rotation.tolist()) == ([0, 1], [1, 0])
+    assert reduced.momentum == pytest.approx(2 * 0.5 + (0.5 - 0.4), rel=1e-14)
 
 
 def test_a_barrier_at_a_pole_is_not_overlooked_however_narrow_it_is() -> None:

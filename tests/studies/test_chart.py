@@ -526,7 +526,8 @@ def test_a_record_measures_compiled_loops_alone(monkeypatch: pytest.MonkeyPatch)
     full, compiled = (_measured(scene, compiled_only=only) for only in (False, True))
     assert [one.backend for one in full.curves] == ["compiled", "python", "heyoka"]
     assert [one.backend for one in compiled.curves] == ["compiled"]
-    (row,) = json.loads(record([compiled]))
+    (row,) = json.loads(record([full]))
+    assert {point["backend"] for point in row["frontier"]} == {"compiled"}
     assert (row["scene"], row["system"], row["duration"]) == ("scene", "single_pendulum", 0.2)
     assert row["spread"] == 1
 

@@ -14,6 +14,7 @@ from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
 from solvers.studies.failure_modes.chaos import LONG_RUNS, ChaosResults
 from solvers.studies.failure_modes.drift import CASES, EnergyDrift
+from solvers.studies.failure_modes.horizon import horizon, reference_motion
 from solvers.studies.failure_modes.lyapunov import INDEPENDENT, Mean, lyapunov
 from solvers.studies.failure_modes.study import studies
 
@@ -246,3 +247,14 @@ def test_the_predicted_growth_is_that_of_the_stability_function() -> None:
     function = StabilityFunction.of(oscillation.load_method("rk4"))
     found = oscillation.growth(sp, "rk4", 10.0)
     assert found.predicted == pytest.approx(10 * log(abs(complex(function(0.2j * pi)))))
+
+
+def test_a_trajectory_is_lost_from_the_first_sample_with_a_large_error() -> None:
+    t, reference = reference_motion(sp, (1.0, 0.0), 1.0)
+    kept, lost = (
+        horizon(sp, t, reference + 1.1 * (t >= time)[:, np.newaxis], 0.5, "verner98", 1e-10)
+        for time in (2.0, 0.6)
+    )
+    assert (kept.measured, lost.measured) == (np.inf, t[6])
+    assert kept.predicted == lost.predicted == pytest.approx(20 * log(10), rel=1e-15)
+    assert kept.energy_error == lost.energy_error < 1e-10
