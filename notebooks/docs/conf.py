@@ -113,7 +113,11 @@ def api(package: str) -> str:
         value = getattr(importlib.import_module(home), name)
         is_described = callable(value)
         kind = "class" if isinstance(value, type) else "function" if is_described else "data"
-        options = "\n   :members:" if kind == "class" else "" if is_described else "\n   :no-value:"
+        options = "" if is_described else "\n   :no-value:"
+        if isinstance(value, type):  # with the members of bases that are not public themselves
+            bases = (base for base in value.__mro__ if not base.__module__.startswith(package))
+            foreign = ", ".join(sorted(base.__name__ for base in bases))
+            options = f"\n   :members:\n   :inherited-members: {foreign}"
         path = f"{package if is_described else home}.{name}"
         sections.append(f"```{{eval-rst}}\n.. auto{kind}:: {path}{options}\n```\n")
     return "\n".join(sections)
