@@ -94,7 +94,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "0b4c360e7f40be68"
+DIGEST = "017b81837932efcb"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -674,6 +674,8 @@ def _over_arrays(function: Any) -> Any:
     def many(*values: Any, **named: Any) -> Array:
         import numpy
 
+        if len(values) + len(named) > len(names):
+            raise TypeError(f"{function.__name__}_many takes {', '.join(names)}")
         arguments = dict(zip(names, values)) | named
         # an array, but not a tuple, would be converted to numbers
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
@@ -718,6 +720,8 @@ def __getattr__(name: str) -> Any:
         spec.loader.exec_module(derivatives)
     except FileNotFoundError as error:
         raise AttributeError(f"{name} is in {path}, which is missing") from error
+    if derivatives.DIGEST != DIGEST:
+        raise ImportError(f"{path} and {__file__} differ in their versions; generate both anew")
     for key in OPERATIONS.keys() & vars(derivatives).keys():
         function = globals()[key] = getattr(derivatives, key)
         function.__module__ = __name__

@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "slider_crank"
-DIGEST = "b8f6a27382f247ab"
+DIGEST = "6011996a96c811d8"
 COORDINATES = ("phi",)
 STATE = ("phi", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -839,6 +839,8 @@ def _over_arrays(function: Any) -> Any:
     def many(*values: Any, **named: Any) -> Array:
         import numpy
 
+        if len(values) + len(named) > len(names):
+            raise TypeError(f"{function.__name__}_many takes {', '.join(names)}")
         arguments = dict(zip(names, values)) | named
         # an array, but not a tuple, would be converted to numbers
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
@@ -888,6 +890,8 @@ def __getattr__(name: str) -> Any:
         spec.loader.exec_module(derivatives)
     except FileNotFoundError as error:
         raise AttributeError(f"{name} is in {path}, which is missing") from error
+    if derivatives.DIGEST != DIGEST:
+        raise ImportError(f"{path} and {__file__} differ in their versions; generate both anew")
     for key in OPERATIONS.keys() & vars(derivatives).keys():
         function = globals()[key] = getattr(derivatives, key)
         function.__module__ = __name__

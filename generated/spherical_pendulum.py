@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "4c06f1a87922c68a"
+DIGEST = "9644189024f2cfcb"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -506,6 +506,8 @@ def _over_arrays(function: Any) -> Any:
     def many(*values: Any, **named: Any) -> Array:
         import numpy
 
+        if len(values) + len(named) > len(names):
+            raise TypeError(f"{function.__name__}_many takes {', '.join(names)}")
         arguments = dict(zip(names, values)) | named
         # an array, but not a tuple, would be converted to numbers
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
@@ -552,6 +554,8 @@ def __getattr__(name: str) -> Any:
         spec.loader.exec_module(derivatives)
     except FileNotFoundError as error:
         raise AttributeError(f"{name} is in {path}, which is missing") from error
+    if derivatives.DIGEST != DIGEST:
+        raise ImportError(f"{path} and {__file__} differ in their versions; generate both anew")
     for key in OPERATIONS.keys() & vars(derivatives).keys():
         function = globals()[key] = getattr(derivatives, key)
         function.__module__ = __name__

@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "a5b90632c3b1074b"
+DIGEST = "af48cb4bc50e6b09"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -719,6 +719,8 @@ def _over_arrays(function: Any) -> Any:
     def many(*values: Any, **named: Any) -> Array:
         import numpy
 
+        if len(values) + len(named) > len(names):
+            raise TypeError(f"{function.__name__}_many takes {', '.join(names)}")
         arguments = dict(zip(names, values)) | named
         # an array, but not a tuple, would be converted to numbers
         taken = {name: x if name == "t" else tuple(x) for name, x in arguments.items()}
@@ -768,6 +770,8 @@ def __getattr__(name: str) -> Any:
         spec.loader.exec_module(derivatives)
     except FileNotFoundError as error:
         raise AttributeError(f"{name} is in {path}, which is missing") from error
+    if derivatives.DIGEST != DIGEST:
+        raise ImportError(f"{path} and {__file__} differ in their versions; generate both anew")
     for key in OPERATIONS.keys() & vars(derivatives).keys():
         function = globals()[key] = getattr(derivatives, key)
         function.__module__ = __name__

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from functools import lru_cache
+from itertools import accumulate
 from textwrap import indent
 
 import sympy as sp
@@ -128,8 +129,8 @@ def broken_sum(text: str, width: int) -> str:
 
     It is broken outside of brackets where lines become short enough, else inside of some, too.
     """
-    lines = [text]
-    for depth in range(text.count("(") + 1):
+    depths = accumulate((letter == "(") - (letter == ")") for letter in text)
+    for depth in range(max(depths, default=0) + 1):
         lines = _broken_outside(text, width, depth)
         if max(map(len, lines)) <= width:
             break

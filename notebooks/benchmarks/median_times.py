@@ -1,4 +1,4 @@
-"""Median times of several programs, called in turn, and of compilation."""
+"""Median times of several programs, called in turn, and loops and compilations to be timed."""
 
 import ctypes
 import time

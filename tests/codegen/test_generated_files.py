@@ -49,6 +49,26 @@ def test_the_second_file_is_loaded_when_a_function_of_it_is_used(tmp_path: Path)
     assert printed(code, tmp_path) == "False True True"
 
 
+def test_a_second_file_of_another_version_is_refused(tmp_path: Path) -> None:
+    copy(dp.__file__, tmp_path)
+    text = (FOLDER / "double_pendulum_derivatives.py").read_text()
+    (tmp_path / "double_pendulum_derivatives.py").write_text(text.replace(dp.DIGEST, "0" * 16))
+    use = "try: p.linear\nexcept ImportError as error: print(error)"
+    message = printed(f"import double_pendulum as p\n{use}", tmp_path)
+    assert "double_pendulum.py differ in their versions; generate both anew" in message
+
+
+def test_functions_over_arrays_take_the_arguments_of_those_over_numbers() -> None:
+    y, params = (0.1, 0.2, 0.3, 0.4), dp.DEFAULTS
+    expected = dp.rhs_many(0.0, y, params)
+    assert (dp.rhs_many(t=0.0, params=params, y=y) == expected).all()
+    for wrong in ((0.0, y), (0.0, y, params, 1.0)):
+        with pytest.raises(TypeError, match="rhs"):
+            dp.rhs_many(*wrong)
+    with pytest.raises(TypeError, match="rhs_many takes t, y, params"):
+        dp.rhs_many(0.0, y, params, t=0.0)
+
+
 def test_names_that_no_file_has_are_refused() -> None:
     with pytest.raises(AttributeError, match=r"'generated.double_pendulum' has no attribute 'rsh'"):
         dp.rsh  # noqa: B018

@@ -63,6 +63,8 @@ The module of the system loads this file when one of these functions is first us
 """
 
 {imports}
+DIGEST = "{digest}"
+
 
 {functions}
 '''
@@ -82,6 +84,8 @@ def __getattr__(name: str) -> Any:
         spec.loader.exec_module(derivatives)
     except FileNotFoundError as error:
         raise AttributeError(f"{name} is in {path}, which is missing") from error
+    if derivatives.DIGEST != DIGEST:
+        raise ImportError(f"{path} and {__file__} differ in their versions; generate both anew")
     for key in OPERATIONS.keys() & vars(derivatives).keys():
         function = globals()[key] = getattr(derivatives, key)
         function.__module__ = __name__
@@ -146,6 +150,8 @@ def _over_arrays(function: Any) -> Any:
     def many(*values: Any, **named: Any) -> Array:
         import numpy
 
+        if len(values) + len(named) > len(names):
+            raise TypeError(f"{{function.__name__}}_many takes {{', '.join(names)}}")
         arguments = dict(zip(names, values)) | named
         # an array, but not a tuple, would be converted to numbers
         taken = {{name: x if name == "t" else tuple(x) for name, x in arguments.items()}}
@@ -254,6 +260,7 @@ class PythonBackend(Backend):
             system=system,
             summary=states(contents, [form for form in contents.states if form not in forms]),
             imports=_imports(derivatives),
+            digest=DIGEST,
             functions=self._functions(derivatives),
         )
         return {
