@@ -6,21 +6,28 @@ G x = s, x and μ remain the same (M. Benzi, G. H. Golub, J. Liesen, Acta Numeri
 """
 
 from collections.abc import Sequence
+from typing import Protocol, Self
 
 from derive.codegen.factorisation import Rows, factorisation
 from derive.codegen.graph import Graph
 from derive.codegen.node import Node
 
 
+class Solver(Protocol):
+    """A factorised matrix M."""
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+
+
 class ConstrainedFactorisation:
     """The factorisation of M, and that of G M⁻¹ Gᵀ."""
 
-    def __init__(self, graph: Graph, inertia: Rows, constraints: Rows, *, singular: bool) -> None:
+    def __init__(
+        self, graph: Graph, inertia: Solver, constraints: Rows, *, singular: bool = False
+    ) -> None:
         self._graph, self._constraints, self._singular = graph, constraints, singular
-        n, m = range(len(inertia)), range(len(constraints))
-        if singular:
-            inertia = [[self._shifted(inertia, i, j) for j in n] for i in n]
-        self._inertia = factorisation(graph, inertia)
+        self._inertia, m = inertia, range(len(constraints))
         self._columns = [self._inertia.solve(row) for row in constraints]
         upper = {
             (i, j): graph.let(self._product(constraints[i], self._columns[j]))
@@ -31,9 +38,13 @@ class ConstrainedFactorisation:
             rows = [[upper[min(i, j), max(i, j)] for j in m] for i in m]
             self._compliance = factorisation(graph, rows)
 
-    def _shifted(self, inertia: Rows, i: int, j: int) -> Node:
-        squares = ((row[i] * row[j], 1) for row in self._constraints)
-        return self._graph.sum([(inertia[i][j], 1), *squares])
+    @classmethod
+    def of_matrix(cls, graph: Graph, matrix: Rows, constraints: Rows, *, singular: bool) -> Self:
+        """The factorisation of M given by its entries."""
+        if singular:
+            n = range(len(matrix))
+            matrix = [[_shifted(graph, matrix, constraints, i, j) for j in n] for i in n]
+        return cls(graph, factorisation(graph, matrix), constraints, singular=singular)
 
     def _product(self, row: Sequence[Node], column: Sequence[Node]) -> Node:
         return self._graph.sum([(a * x, 1) for a, x in zip(row, column, strict=True)])
@@ -56,3 +67,8 @@ class ConstrainedFactorisation:
         pairs = [*zip(self._columns, multipliers, strict=True)]
         x = [self._graph.sum([(free[i], 1), *((c[i] * mu, 1) for c, mu in pairs)]) for i in n]
         return [self._graph.let(entry) for entry in x], multipliers
+
+
+def _shifted(graph: Graph, matrix: Rows, constraints: Rows, i: int, j: int) -> Node:
+    squares = ((row[i] * row[j], 1) for row in constraints)
+    return graph.sum([(matrix[i][j], 1), *squares])

@@ -1,9 +1,23 @@
 """Derivatives of nodes in their own graph, in which equal subexpressions are shared."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import sympy as sp
 
 from derive.codegen.graph import Graph
-from derive.codegen.node import Call, Leaf, Let, Node, Powers, Product, Rewritten, Sum, operands
+from derive.codegen.node import (
+    Call,
+    Leaf,
+    Let,
+    Node,
+    Number,
+    Powers,
+    Product,
+    Rewritten,
+    Sum,
+    operands,
+)
 from derive.codegen.translation import Translation
 from derive.formulas.functions import FUNCTIONS
 
@@ -12,10 +26,17 @@ X = sp.symbols("x y", real=True)
 
 
 class Differentiation:
-    """Partial derivatives of the nodes of a graph with respect to its leaves."""
+    """Partial derivatives of the nodes of a graph with respect to its leaves.
 
-    def __init__(self, graph: Graph) -> None:
-        self._graph = graph
+    A name in `directions` stands for the derivative along this combination of leaves.
+    """
+
+    def __init__(
+        self,
+        graph: Graph,
+        directions: Mapping[str, Mapping[str, Number]] = MappingProxyType({}),
+    ) -> None:
+        self._graph, self._directions = graph, directions
         self._leaves: dict[Node, frozenset[str]] = {}
         self._derivatives: dict[tuple[Node, str], Node] = {}
 
@@ -28,17 +49,22 @@ class Differentiation:
 
     def __call__(self, node: Node, leaf: str) -> Node:
         """∂node/∂leaf."""
-        if leaf not in self.leaves(node):
+        if not self._depends(node, leaf):
             return self._graph.zero
         if (node, leaf) not in self._derivatives:
             self._derivatives[node, leaf] = self._derivative(node, leaf)
         return self._derivatives[node, leaf]
 
+    def _depends(self, node: Node, leaf: str) -> bool:
+        if leaf in self._directions:
+            return not self.leaves(node).isdisjoint(self._directions[leaf])
+        return leaf in self.leaves(node)
+
     def _derivative(self, node: Node, leaf: str) -> Node:
         graph = self._graph
         match node:
-            case Leaf():
-                return graph.one
+            case Leaf(name):
+                return graph.node(self._directions.get(leaf, {leaf: 1})[name])
             case Let(value) | Rewritten(short=value):
                 return self(value, leaf)
             case Call("select", (s, a, b)):
@@ -62,7 +88,7 @@ class Differentiation:
             case Sum(terms):
                 return graph.sum([(self(term, leaf), number) for term, number in terms])
             case Product(powers):
-                changing = [(n, p) for n, p in powers if leaf in self.leaves(n)]
+                changing = [(n, p) for n, p in powers if self._depends(n, leaf)]
                 return graph.sum([(self._changed(powers, n, leaf), p) for n, p in changing])
             case _:
                 raise NotImplementedError(f"no derivative of a {type(node).__name__} node")

@@ -83,7 +83,7 @@ class EquationsOfMotion:
     def _constrained(self) -> ConstrainedFactorisation:
         inertia = [[self._inertia[i][j] for j in self._n] for i in self._n]
         singular = self._derivation.has_singular_mass_matrix
-        return ConstrainedFactorisation(
+        return ConstrainedFactorisation.of_matrix(
             self._graph, inertia, self._constraint_jacobian, singular=singular
         )
 
@@ -135,6 +135,11 @@ class EquationsOfMotion:
             for entry, names in leaves.items()
         }
 
+    @property
+    def _inertial_nodes(self) -> Sequence[Node]:
+        """The nodes on which inertia depends."""
+        return [*self._dependencies]
+
     @cached_property
     def angles(self) -> tuple[sp.Symbol, ...]:
         """Coordinates on which energies and forces depend only by sine and cosine.
@@ -143,7 +148,7 @@ class EquationsOfMotion:
         """
         formulas = [one.formula for one in self._system.conditions]
         conditions = self._nodes([*formulas, *self._derivation.integrals])
-        dynamics = [*self._dependencies, self._potential, *self._applied, *conditions]
+        dynamics = [*self._inertial_nodes, self._potential, *self._applied, *conditions]
         names = self._only_as_angles(dynamics)
         names |= self._only_as_angles(self.positions) - self._leaves(dynamics)
         return tuple(q for q in self._system.q if q.name in names)

@@ -13,6 +13,7 @@ from derive.codegen.output_form import OutputForm
 from derive.codegen.projection_form import ProjectionForm
 from derive.codegen.quaternion_form import QuaternionForm
 from derive.codegen.rational import with_fewest_calls
+from derive.codegen.tree_form import TreeForm
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -184,6 +185,8 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
         form = HamiltonianForm
     elif spec.name.startswith("outputs"):
         form = OutputForm
+    elif derivation.has_tree:
+        form = TreeForm
     elif derivation.has_quaternions and is_small(derivation):
         form = QuaternionForm
     elif spec.name.startswith("correction"):
@@ -197,7 +200,8 @@ def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
 
 
 def _states(derivation: Derivation) -> dict[Form, tuple[str, ...]]:
-    system, angles = derivation.system, EquationsOfMotion(derivation).angles
+    form = TreeForm if derivation.has_tree else EquationsOfMotion
+    system, angles = derivation.system, form(derivation).angles
     positions: list[str] = []
     for q in system.q:
         positions += [f"sin_{q.name}", f"cos_{q.name}"] if q in angles else [q.name]

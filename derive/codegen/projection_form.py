@@ -45,7 +45,9 @@ class ProjectionForm(LagrangianForm):
             rows[places[index]] = [self._derivative(f, q.name) for q in self._system.q]
         inertia = [[self._inertia[i][j] for j in self._n] for i in self._n]
         singular = derivation.has_singular_mass_matrix
-        factorised = ConstrainedFactorisation(self._graph, inertia, rows, singular=singular)
+        factorised = ConstrainedFactorisation.of_matrix(
+            self._graph, inertia, rows, singular=singular
+        )
         still = [self._graph.zero for _ in self._n]
         return factorised.solve(still, [-one for one in residuals])[0]
 

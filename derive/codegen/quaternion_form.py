@@ -71,7 +71,9 @@ class QuaternionForm(ProjectionForm):
         inertia = [[*map(node, quasi.mass_matrix.row(i))] for i in range(len(quasi.u))]
         constraints = [[*map(node, row)] for row in quasi.constraint_jacobian]
         singular = quasi.has_singular_mass_matrix
-        return ConstrainedFactorisation(self._graph, inertia, constraints, singular=singular)
+        return ConstrainedFactorisation.of_matrix(
+            self._graph, inertia, constraints, singular=singular
+        )
 
     @cached_property
     def _accelerations(self) -> list[Node]:

@@ -5,8 +5,9 @@ and cosines of the angles. Where equations depend on a coordinate in no other
 way, the pair (sin q, cos q) can replace it in the state.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache
+from types import MappingProxyType
 
 from derive.codegen.graph import Graph
 from derive.codegen.node import (
@@ -54,6 +55,11 @@ def with_fewest_calls(nodes: Sequence[Node], angles: Collection[str]) -> list[No
     return rewritten if _calls(rewritten) < _calls(nodes) else list(nodes)
 
 
+def substitution(graph: Graph, known: Mapping[str, Node]) -> Callable[[Node], Node]:
+    """The function that replaces leaves by the `known` nodes of their names."""
+    return _Rewriting((), graph=graph, known=known).node
+
+
 def _calls(nodes: Sequence[Node]) -> int:
     """Number of function calls."""
     visited: set[Node] = set()
@@ -95,15 +101,23 @@ def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
 class _Rewriting:
     """Sums of angles expanded: their sines and cosines become leaves, or calls of their own."""
 
-    def __init__(self, names: Collection[str], *, as_calls: bool = False) -> None:
-        self._graph, self._names, self._as_calls = Graph(), names, as_calls
+    def __init__(
+        self,
+        names: Collection[str],
+        *,
+        as_calls: bool = False,
+        graph: Graph | None = None,
+        known: Mapping[str, Node] = MappingProxyType({}),
+    ) -> None:
+        self._graph, self._names, self._as_calls = graph or Graph(), names, as_calls
+        self._known = known
         self.node, self._pair = cache(self._rewritten), cache(self._waves)
 
     def _rewritten(self, node: Node) -> Node:
         graph = self._graph
         match node:
             case Leaf(name):
-                return graph.leaf(name)
+                return self._known.get(name) or graph.leaf(name)
             case Constant(value):
                 return graph.node(value)
             case Irrational(value):
@@ -133,6 +147,8 @@ class _Rewriting:
 
     def _waves(self, multiples: tuple[tuple[str, int], ...]) -> Pair:
         """Sine and cosine of an integer combination of angles, by the addition theorems."""
+        if len(multiples) > 2:  # the sum of all but the last is often used, too
+            multiples = (multiples[-1], *multiples[:-1])
         (name, multiple), *others = multiples
         sign = 1 if multiple > 0 else -1
         sine, cosine = (self._wave(function, name) for function in ("sin", "cos"))

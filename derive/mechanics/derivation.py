@@ -109,10 +109,11 @@ class Derivation(CyclicCoordinates):
         self._check_inputs()
         if self.system.conditions:
             self._leave_out_redundant()
-        inertia, G = self.mass_matrix, self.constraint_jacobian
         if self.has_singular_mass_matrix:
-            inertia = inertia + G.T * G
-        check_independence(self.system, inertia)
+            inertia, G = self.mass_matrix, self.constraint_jacobian
+            check_independence(self.system, inertia + G.T * G)
+        elif not self.tree or is_singular(self.system, self.tree.inertia):
+            check_independence(self.system, self.mass_matrix)
 
     def _leave_out_redundant(self) -> None:
         # loads NumPy, which derivations without constraints do not need
@@ -141,7 +142,13 @@ class Derivation(CyclicCoordinates):
     @cached_property
     def has_singular_mass_matrix(self) -> bool:
         """Whether some motions of the coordinates, which constraints prevent, move no mass."""
-        return bool(self.system.conditions) and is_singular(self.system, self.mass_matrix)
+        inertia = self.tree.inertia if self.tree else self.mass_matrix
+        return bool(self.system.conditions) and is_singular(self.system, inertia)
+
+    @property
+    def has_tree(self) -> bool:
+        """Whether equations are sums along the branches of a kinematic tree."""
+        return bool(self.tree and not self.has_singular_mass_matrix and not self.integrals)
 
     def linearisation(self, equilibrium: Sequence[sp.Expr] | None = None) -> Linearisation:
         """Small oscillations about an equilibrium, by default the system's own, or zeros.

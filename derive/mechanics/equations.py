@@ -28,6 +28,8 @@ class Equations(Constraints):
     def drift(self) -> Matrix:
         """Momenta b at q̇ = 0, a column: Σ m Jᵀ ∂r/∂t, 0 if positions do not depend on time."""
         n = len(self.system.q)
+        if len(self.variables) == n:
+            return Matrix.zeros(n, 1)
         return _product(self.inertia[:n, n:], self.rates[n:])
 
     @cached_property

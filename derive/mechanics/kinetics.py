@@ -1,6 +1,6 @@
 """Energies of a system, from the positions of its masses."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -9,7 +9,8 @@ import sympy as sp
 
 from derive.formulas.derivative import derivative
 from derive.formulas.expansion import is_expandable
-from derive.formulas.switching import decisive_numbers, switching_functions
+from derive.formulas.switching import CHOICES, decisive_numbers, switching_functions
+from derive.mechanics.kinematic_tree import KinematicTree, kinematic_tree
 from derive.mechanics.reduction import gathered, reduced
 from derive.mechanics.turning import turned
 from derive.system.rigid_body import RigidBody
@@ -64,10 +65,23 @@ class Kinetics:
         return (*self.system.qdot, *others)
 
     @cached_property
+    def tree(self) -> KinematicTree | None:
+        """The kinematic tree, where it shortens the equations; of coordinates alone."""
+        positions = sp.Tuple(*(r for mass in self.system.masses for r in mass.placement))
+        if self.bodies or self.variables != self.system.q or positions.has(*CHOICES):
+            return None
+        return kinematic_tree(self.system.q, self._motions)
+
+    @property
+    def _motions(self) -> list[tuple[sp.Expr, tuple[sp.Expr, ...]]]:
+        return [motion for mass in self.system.masses for motion in mass.motions]
+
+    @cached_property
     def inertia(self) -> Matrix:
         """M̄ = Σ m J̄ᵀJ̄ over all variables, symmetric; the mass matrix is its upper left part."""
-        motions = [motion for mass in self.system.masses for motion in mass.motions]
-
+        if self.tree:
+            return self.tree.mass_matrix(self.tree.inertia)
+        motions = self._motions
         tangents = [
             turned([tuple(derivative(r, v) for r in position) for v in self.variables])
             for _, position in motions
@@ -150,6 +164,12 @@ class Kinetics:
         n = len(self.system.q)
         return self.inertia[:n, :n]
 
+    def mass_matrix_at(self, values: Mapping[sp.Symbol, sp.Expr]) -> Matrix:
+        """M with `values` in place of symbols, which shorten its entries before they are added."""
+        if self.tree:
+            return self.tree.mass_matrix(self.tree.inertia.xreplace(values))
+        return self.mass_matrix.xreplace(values)
+
     @cached_property
     def kinetic_energy(self) -> sp.Expr:
         """T = ½ q̇ᵀ M q̇; with moving pivots also terms that are linear in q̇ or independent of it."""
@@ -157,6 +177,8 @@ class Kinetics:
 
     def _quadratic(self, variables: range) -> sp.Expr:
         """½ vᵀ M̄ v of some of the variables."""
+        if not variables:
+            return sp.S.Zero
         v, M = self.rates, self.inertia
         squares = [M[i, i] * v[i] ** 2 / 2 for i in variables]
         pairs = ((i, j) for j in variables for i in variables if i < j)
@@ -203,7 +225,8 @@ class Kinetics:
     def power(self) -> sp.Expr:
         """Rate of the energy: work of the applied forces, and -∂L/∂t."""
         work = (f * v for f, v in zip(self.system.applied, self.system.qdot, strict=True))
-        return sp.Add(*work) - self.lagrangian.diff(TIME)
+        explicit = self.lagrangian if TIME in self.variables else -self.potential_energy
+        return sp.Add(*work) - explicit.diff(TIME)
 
 
 def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:

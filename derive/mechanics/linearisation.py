@@ -67,7 +67,7 @@ class SmallOscillations:
         potential = d.effective_potential - sp.Add(*(force * phi for force, phi in pairs))
         gradient = [potential.diff(x) for x in q]
         stiffness = Matrix([[force.diff(x) for x in q] for force in gradient])
-        matrices = d.mass_matrix.xreplace(values), stiffness.xreplace(values)
+        matrices = d.mass_matrix_at(values), stiffness.xreplace(values)
         self._refuse({"have infinite terms": any(matrix.has(*INFINITE) for matrix in matrices)})
         changes = self._changes(values)
         Z, states = changes.directions, tuple(q[k].name for k in changes.free)
@@ -138,7 +138,8 @@ class SmallOscillations:
         """Terms of small motions beside those of masses and springs, and whether they exist."""
         d = self.equations
         rotation = d.drift.jacobian(d.system.q)
-        parts = (d.mass_matrix, d.effective_potential, d.drift, *d.holonomic)
+        parts = [d.effective_potential, d.drift, *d.holonomic]
+        parts += [d.mass_matrix] if TIME in d.variables else []
         return {
             "depend on time": any(part.has(TIME) for part in parts),
             "have applied forces": any(d.system.applied),

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 import strange
 import sympy as sp
+import trees
 from mpmath import diff, fdot, mpf, workdps
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
@@ -36,36 +37,47 @@ from solvers.equations.module import has_constraints
 SYSTEMS = Path(systems.__path__[0])
 #: Lines of a system's definition, and of one with many bodies.
 LINES, LINES_OF_LARGE = 25, 60
+#: Systems that are not in the catalogue.
+OTHERS = {one.name: one for one in (strange.system, trees.branching, trees.closed)}
 Case = tuple[float, list[float], list[float]]
 
 
-@pytest.fixture(params=[*names(), *large_names(), "strange"])
+@pytest.fixture(params=[*names(), *large_names(), *OTHERS])
 def name(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
 @pytest.fixture(scope="module")
-def beside(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
-    """The module of a system that is not in the catalogue."""
-    path = write(strange.system, tmp_path_factory.mktemp("strange"))
-    spec = spec_from_file_location("made.strange", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def other_module(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], ModuleType]:
+    """Modules of systems that are not in the catalogue."""
+
+    @cache
+    def written(name: str) -> ModuleType:
+        path = write(OTHERS[name], tmp_path_factory.mktemp(name))
+        spec = spec_from_file_location(f"made.{name}", path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module
+
+    return written
 
 
 @pytest.fixture
-def module(name: str, beside: ModuleType, large_module: Callable[[str], ModuleType]) -> ModuleType:
+def module(
+    name: str,
+    other_module: Callable[[str], ModuleType],
+    large_module: Callable[[str], ModuleType],
+) -> ModuleType:
     if name in large_names():
         return large_module(name)
-    return beside if name == "strange" else load_module(name)
+    return other_module(name) if name in OTHERS else load_module(name)
 
 
 @pytest.fixture
 def system(name: str) -> System:
-    return strange.system if name == "strange" else load(name)
+    return OTHERS.get(name) or load(name)
 
 
 @cache
@@ -75,7 +87,7 @@ def cases(module: ModuleType) -> list[Case]:
     The states satisfy constraints. Of systems with constraints the parameters are near the
     defaults, with which the systems can be assembled.
     """
-    system = strange.system if module.SYSTEM == "strange" else load(module.SYSTEM)
+    system = OTHERS.get(module.SYSTEM) or load(module.SYSTEM)
     positive = {s.name for s in system.q if s.is_positive}
     random = np.random.default_rng(7)
     results: list[Case] = []
