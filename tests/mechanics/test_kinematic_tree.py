@@ -74,5 +74,5 @@ def test_coordinates_that_move_no_mass_are_named() -> None:
     whole = chain(6, relative=True)
     coordinates = [*whole.coordinates, Coordinate(angle, "rad", "")]
     system = System("idle", "idle", coordinates, whole.parameters, whole.masses)
-    with pytest.raises(ValueError, match="coordinate 'beta' .* moves no mass"):
+    with pytest.raises(ValueError, match=r"coordinate 'beta' .* moves no mass"):
         Derivation(system)

@@ -51,7 +51,10 @@ def random_scene(seed: int) -> Scene:
         q, velocities = q * 0.5, velocities * 0.3
     accuracy, y0 = 10 ** random.uniform(-12.5, -3), (*q, *velocities)
     if has_constraints(module):
-        y0 = tuple(consistent_start(module, {}, params, guess=y0).y.tolist())
+        try:
+            y0 = tuple(consistent_start(module, {}, params, guess=y0).y.tolist())
+        except ValueError:  # bars of these lengths cannot be joined: others of the same system
+            return random_scene(seed + 100 * len(SYSTEMS))
     return Scene(module, tuple(params), y0, duration, accuracy=accuracy)
 
 

@@ -1,6 +1,7 @@
 """The full equations in compiled numbers longer than doubles, before Taylor series in decimals."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from math import exp, log
 from time import perf_counter
@@ -23,7 +24,7 @@ MOST_TURNS, MOST_PRODUCTS = 20_000.0, 2e8
 #: attempts in one precision, the share of the requested accuracy to aim at, and the largest factor
 #: between the tolerances of attempts.
 MULTIPLES, COARSEST, TRIES, RESERVE, LEAST_CHANGE = (2.0, 5.0, 10.0), 1e-18, 4, 0.1, 0.01
-#: Most samples at which runs are compared.
+#: Most samples, and most ends of steps, at which runs are compared.
 MOST_SAMPLES = 256
 #: Difference of two runs below which it grows as small changes do, and the largest exponent.
 SMALL, MOST_EXPONENT = 1e-3, 700.0
@@ -88,15 +89,29 @@ def _checked(
         report(f"{choice.method}, {precision}, at {t:.3g} of {motion.duration:g} s")
 
     run, before = IntegrationRun(motion, choice, finest, most), perf_counter()
-    fine = run.states(times, progress)
+    compared = _compared_times(run, times)
+    together = np.union1d(times, compared)
+    states = run.states(together, progress)
     seconds, distances = perf_counter() - before, list[Array]()
-    some = np.unique([*(len(times) * golden_points(MOST_SAMPLES)).astype(int), len(times) - 1])
+    computed, fine = (states[np.searchsorted(together, t)] for t in (times, compared))
     for k, multiple in enumerate(MULTIPLES, 1):
-        other = replace(run, setting=multiple * finest).extended_states(times[some], progress, k)
-        distances.append(np.abs(fine[some] - other)[:, list(motion.requested)].max(axis=1))
+        other = replace(run, setting=multiple * finest).extended_states(compared, progress, k)
+        distances.append(np.abs(fine - other)[:, list(motion.requested)].max(axis=1))
     error = MARGIN * float(np.max(distances)) + float(np.spacing(np.abs(fine).max()))
-    model = replace(FullEquations.of(run, error), computed=(times, fine), computing_seconds=seconds)
-    return model, _growth(times[some], distances[-1], MULTIPLES[-1] * finest)
+    model = replace(
+        FullEquations.of(run, error), computed=(times, computed), computing_seconds=seconds
+    )
+    return model, _growth(compared, distances[-1], MULTIPLES[-1] * finest)
+
+
+def _compared_times(run: IntegrationRun, times: Array) -> Array:
+    """Some of the samples, and of the ends of a method's steps, which are dense at fast motions."""
+    parts = [times, run.motion.sample_times]
+    with suppress(NotAccurateError, TooLongError):
+        parts.append(run.step_times())
+    spread = golden_points(MOST_SAMPLES)
+    some = (part[np.unique((len(part) * spread).astype(int))] for part in parts)
+    return np.unique([*np.concatenate([*some]), times[-1]])
 
 
 def _growth(times: Array, errors: Array, tolerance: float) -> float:
