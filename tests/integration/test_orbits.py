@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -269,6 +270,16 @@ def test_periods_on_a_section_may_be_hours(kepler: ModuleType, eccentricity: flo
     section = Event(kepler, "y", 0.0, direction=1)
     orbit = periodic_orbit(kepler, start, section, {"mu": mu})
     third_law = 2 * np.pi * np.sqrt((lowest / (1 - eccentricity)) ** 3 / mu)
+    assert orbit.period == pytest.approx(third_law, rel=1e-12)
+
+
+@pytest.mark.parametrize("options", [{}, {"symmetry": ("y", "x_dot")}])
+def test_a_guessed_period_may_be_hours(kepler: ModuleType, options: dict[str, Any]) -> None:
+    lowest, mu, eccentricity = 7e6, 3.986e14, 0.6
+    start = (lowest, 0, 0, np.sqrt(mu * (1 + eccentricity) / lowest))
+    guess = 1.05 * 2 * np.pi * np.sqrt((lowest / (1 - eccentricity)) ** 3 / mu)
+    orbit = periodic_orbit(kepler, start, guess, {"mu": mu}, **options)
+    third_law = 2 * np.pi * np.sqrt((-mu / (2 * orbit.energy)) ** 3 / mu)
     assert orbit.period == pytest.approx(third_law, rel=1e-12)
 
 

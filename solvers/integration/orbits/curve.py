@@ -33,8 +33,9 @@ class Curve:
         symmetric orbit, whose symmetry determines the phase.
         """
         unfolds = not half and self.shooting.nature.is_conservative
+        unfolding = self.shooting.unfolding(point) if unfolds else None
         phase = self.phase(point)[: 0 if half else 1]
-        return bordered(self.shooting, point, rows, phase, self.scales, unfolds=unfolds)
+        return bordered(self.shooting, point, rows, phase, self.scales, unfolding)
 
     def phase(self, point: Point) -> Array:
         """A row: changes orthogonal to it do not shift the start along the orbit."""

@@ -28,24 +28,28 @@ class NoPeriodicOrbitError(ArithmeticError):
 
 @dataclass(frozen=True)
 class Iterate:
-    """A point on the way to a periodic orbit, and its shot."""
+    """A point on the way to a periodic orbit, and its shot.
+
+    Residuals are in units of `sizes`, one for each component of the state.
+    """
 
     shooting: Shooting
     point: Point
     shot: Shot
+    sizes: Array
 
     @classmethod
-    def at(cls, shooting: Shooting, point: Point) -> "Iterate":
+    def at(cls, shooting: Shooting, point: Point, sizes: Array) -> "Iterate":
         """The iterate at a point; its motion is integrated."""
         shot = shooting(point)
-        return cls(replace(shooting, advance=shot.advance), point, shot)
+        return cls(replace(shooting, advance=shot.advance), point, shot, sizes)
 
     def moved(self, change: Array) -> "Iterate | None":
         """The iterate after a change; None where there is none, or the period is too long."""
         try:
             point = self.shooting.moved(self.point, change)
             if 0 < point.period < LONGEST * self.point.period:
-                return Iterate.at(self.shooting, point)
+                return Iterate.at(self.shooting, point, self.sizes)
         except (ArithmeticError, ValueError):  # the motion ends, or there is no such state
             pass
         return None
@@ -53,11 +57,19 @@ class Iterate:
     @cached_property
     def residual(self) -> Array:
         """Changes in a period, and distances from the values of functions that are held."""
-        return np.concatenate([self.shot.residual, self._held[0]])
+        return np.concatenate([self.shot.residual / self._units, self._held[0]])
 
     @cached_property
     def _held(self) -> tuple[Array, Array]:
-        return self.shooting.held(self.point)
+        values, rows = self.shooting.held(self.point)
+        units = np.linalg.norm(rows[:, : len(self.sizes)] * self.sizes, axis=1)
+        return values / units, rows / units[:, np.newaxis]
+
+    @cached_property
+    def _units(self) -> Array:
+        """The units of the residuals of the shot."""
+        reversal = self.shooting.reversal
+        return self.sizes if reversal is None else np.tile(self.sizes[reversal.changed], 2)
 
     @property
     def defect(self) -> float:
@@ -73,21 +85,22 @@ class Iterate:
         """
         path = 1.0
         if self.shooting.nature.is_autonomous:
-            path = float(np.linalg.norm(self.shooting.rate(self.point))) * self.point.period
+            rate = self.shooting.rate(self.point) / self.sizes
+            path = float(np.linalg.norm(rate)) * self.point.period
         return float(np.linalg.norm(self.residual)) / max(path, TINY)
 
     def rows(self) -> Array:
         """Derivatives of the residual, less the part along which the path grows like it."""
-        rows = np.concatenate([self.shot.rows, self._held[1]])
+        rows = np.concatenate([self.shot.rows / self._units[:, np.newaxis], self._held[1]])
         if self.shooting.nature.is_autonomous:
             rows -= np.outer(self.residual, self._path_growth())
         return rows
 
     def _path_growth(self) -> Array:
         """Derivatives of the logarithm of the path's length."""
-        point, rate = self.point, self.shooting.rate(self.point)
+        point, rate = self.point, self.shooting.rate(self.point) / self.sizes
         jacobian = self.shooting.module.jacobian(0.0, point.y.tolist(), point.params.tolist())
-        along = rate @ np.array(jacobian) / max(float(rate @ rate), TINY)
+        along = (rate / self.sizes) @ np.array(jacobian) / max(float(rate @ rate), TINY)
         return np.array([*along, 1 / point.period, 0.0])
 
 
@@ -110,14 +123,15 @@ def solve(
     Indust. Appl. Math. 11 (1963) 431-441). Where equations depend on time, a residual of 0 is no
     equilibrium, and steps are not damped. Changes are orthogonal to the rows of `fixed`, of shape
     (conditions, state + 2). `NoPeriodicOrbitError` where the iteration does not converge within the
-    distance `reach`.
+    distance `reach`. Residuals of components whose scales are above 1 are measured in these.
     """
     n, damping = len(point.y), DAMPING
     scales = np.ones(n + 2) if scales is None else scales
+    sizes = np.maximum(scales[:n], 1.0)
     fixed = np.empty((0, n + 2)) if fixed is None else fixed
     if shooting.reversal is not None:
         fixed = np.concatenate([fixed, np.eye(n, n + 2)[shooting.reversal.changed]])
-    change, now, stalls = np.zeros(n + 2), Iterate.at(shooting, point), 0
+    change, now, stalls = np.zeros(n + 2), Iterate.at(shooting, point, sizes), 0
     is_damped = shooting.nature.is_autonomous
     for _ in range(MAX_ITERATIONS if iterations is None else iterations):
         if now.defect <= shooting.atol or (now.defect < SMALL and stalls == STALLS):
@@ -150,8 +164,11 @@ def solve(
 def _step(now: Iterate, fixed: Array, scales: Array, damping: float, rcond: float | None) -> Array:
     """The step of an iterate in units of `scales`."""
     shooting, free = now.shooting, now.shooting.unknowns(now.point)
-    unfolds = shooting.reversal is None and shooting.nature.is_conservative
-    matrix = bordered(shooting, now.point, now.rows(), fixed[:0], scales, unfolds=unfolds)
+    unfolding = None
+    if shooting.reversal is None and shooting.nature.is_conservative:
+        unfolding = shooting.unfolding(now.point) * now.sizes
+        unfolding /= np.linalg.norm(unfolding)
+    matrix = bordered(shooting, now.point, now.rows(), fixed[:0], scales, unfolding)
     conditions = np.zeros((len(fixed), matrix.shape[1]))
     conditions[:, : free.sum()] = fixed[:, free] * scales[free]
     directions = np.linalg.svd(conditions)[2][len(conditions) :].T
@@ -165,16 +182,21 @@ def _step(now: Iterate, fixed: Array, scales: Array, damping: float, rcond: floa
 
 
 def bordered(
-    shooting: Shooting, point: Point, rows: Array, fixed: Array, scales: Array, *, unfolds: bool
+    shooting: Shooting,
+    point: Point,
+    rows: Array,
+    fixed: Array,
+    scales: Array,
+    unfolding: Array | None,
 ) -> Array:
     """Derivatives by the unknowns, in units of `scales`, above the rows of `fixed`.
 
-    With `unfolds`, the unfolding follows as a last column, which affects the first rows.
+    An unfolding follows as a last column, which affects the first rows.
     """
     free = shooting.unknowns(point)
     columns = np.concatenate([rows, fixed])[:, free] * scales[free]
-    if unfolds:
-        unfolding = np.zeros(len(columns))
-        unfolding[: len(point.y)] = SHARE * shooting.unfolding(point)
-        columns = np.column_stack([columns, unfolding])
+    if unfolding is not None:
+        last = np.zeros(len(columns))
+        last[: len(point.y)] = SHARE * unfolding
+        columns = np.column_stack([columns, last])
     return np.asarray(columns)

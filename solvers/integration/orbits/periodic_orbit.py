@@ -123,9 +123,20 @@ def periodic_orbit(
         values = function(module, "integrals")(0.0, y.tolist(), constants.tolist())
         shooting = replace(shooting, integrals_held=np.array(values))
     _check_moves(shooting, point)
-    point, shot = solve(shooting, point, fixed)
+    point, shot = solve(shooting, point, fixed, scales=_magnitudes(shooting, point))
     _check_moves(shooting, point)
     return PeriodicOrbit.of(shooting, point, shot)
+
+
+def _magnitudes(shooting: Shooting, point: Point) -> Array:
+    """Those of components of the state, of the period and of a parameter, at least 1.
+
+    Of a satellite in SI units they are millions of metres, thousands of metres per second, and the
+    time in which it moves by one radian.
+    """
+    radian = point.period / (2 * np.pi)
+    sizes = np.maximum(np.abs(point.y), np.abs(shooting.rate(point)) * radian)
+    return np.maximum([*sizes, radian, 1.0], 1.0)
 
 
 def _check_moves(shooting: Shooting, point: Point) -> None:
