@@ -217,6 +217,20 @@ def test_letters_of_hints_that_no_formula_has_are_reported(tmp_path: Path) -> No
     assert document.notes == ("names.GG: no formula has this letter (did you mean 'G'?)",)
 
 
+def test_inputs_of_a_stated_system_have_letters(tmp_path: Path) -> None:
+    """By Newton's second law; the document calls the force f."""
+    (tmp_path / "cart.toml").write_text(
+        'title = "A cart"\nforces = { x = "F" }\npotential = 0\n'
+        '[coordinates]\nx = { unit = "m" }\n[inputs]\nF = { unit = "N" }\n'
+        '[parameters]\nm = { value = 1, unit = "kg" }\n'
+        '[[masses]]\nmass = "m"\nposition = ["x", "0"]\n'
+    )
+    (tmp_path / "a.md").write_text(r"$$m\ddot x = f, \quad \ddot x = m f$$")
+    stated = hints(str(tmp_path / "cart.toml"), None)
+    document, _ = judge_file(str(tmp_path / "a.md"), order, stated)
+    assert [one.verdict for one in document.formulas] == ["verified", "wrong"]
+
+
 @pytest.mark.parametrize(("text", "message"), [
     ('system = "single_pendulum"\n[names]\nA = "thetta"', "names.A: .*'thetta'"),
     ('system = "single_pendulum"\n[names]\nA = "2"', "'2' is neither a parameter nor"),

@@ -1,6 +1,7 @@
 """Systems that documents treat, beside those that ship: what a document's letters can mean."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -37,8 +38,14 @@ def templates(count: int, has_rods: bool = True, is_free: bool = False) -> Itera
 
 
 def named(name: str | Path) -> System:
-    """The system of a name, also one that does not ship, or of a path."""
-    return next((one for one in (*_free(), *_others()) if one.name == name), None) or load(name)
+    """The system of a name, also one that does not ship, or of a path.
+
+    Inputs are parameters, since a document has letters for both.
+    """
+    own = next((one for one in (*_free(), *_others()) if one.name == name), None)
+    system = own or load(name)
+    inputs = [Parameter(one.symbol, one.unit, 1.0, one.meaning) for one in system.inputs]
+    return replace(system, parameters=(*system.parameters, *inputs), inputs=())
 
 
 @cache
