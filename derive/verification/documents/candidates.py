@@ -44,6 +44,8 @@ UNITS = {
     "rad/s": "frequency",
     "N m s": "damping",
     "N s/m": "damping",
+    "N": "force",
+    "N m": "force",
 }
 
 

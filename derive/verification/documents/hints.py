@@ -41,7 +41,11 @@ class Hints:
     def candidates(self, letters: Letters) -> Iterator[Sequence[Candidate]]:
         """Yield the candidates that agree with the names."""
         kinds = {p.symbol.name: kind_of(p) for p in self.system.parameters}
-        hinted = {letter: kinds[text] for letter, text in self.names.items() if text in kinds}
+        # letters that are spelled as parameters of the system, such as c_1, need not be given
+        spelled = {name.replace("_", ""): name for name in {*kinds} - {*self.names.values()}}
+        meant = {letter: spelled.get(letter.replace("_", "")) for letter in letters.parameters}
+        pairs = (meant | {**self.names}).items()
+        hinted = {letter: kinds[text] for letter, text in pairs if text in kinds}
         yield [one for one in candidates(self.system, letters.hinted(hinted)) if self._agree(one)]
 
     def _agree(self, candidate: Candidate) -> bool:
