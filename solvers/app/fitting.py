@@ -229,6 +229,8 @@ def _unknown(
     """The unknown parameters, and those that must be held, with reasons."""
     inputs = input_names(module)
     parameters = [name for name in module.PARAMETERS if name not in inputs]
+    if not parameters:
+        raise ValueError(f"{module.SYSTEM} has no parameters that a fit could determine")
     for name in requested or ():
         if name not in parameters:
             raise ValueError(

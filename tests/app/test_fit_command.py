@@ -73,6 +73,8 @@ CASES = {
     "cells": ("t,theta\n0\n", "line 2 has 1 cells, but there are 2 columns"),
     "unit": ("t,theta [kg]\n0,1\n", "the unit kg is not one of rad"),
     "unknown unit": ("t,theta [foot]\n0,1\n", "unit 'foot' is not known"),
+    "no unit": ("t,theta []\n0,1\n", "column theta []: unit '' is not known"),
+    "no name": ("t,[m]\n0,1\n", "column 2, '[m]', has no name"),
     "no time": ("theta\n1\n", "has no column of times"),
     "twice": ("t,theta,theta\n0,1,1\n", "two columns are named 'theta'"),
     "formula": ("t,l*sin(\n0,1\n", "cannot parse 'l*sin('"),
@@ -108,6 +110,13 @@ def test_invalid_options_are_refused(
     assert main(["fit", "single_pendulum", "swing.csv", "--ignore", "frame", *arguments]) == 2
     assert message in capsys.readouterr().err
     assert not Path("out").exists()
+
+
+def test_systems_without_parameters_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """The potential of Henon and Heiles contains numbers only."""
+    Path("star.csv").write_text("t,x\n0,0.1\n1,0.2\n")
+    assert main(["fit", "henon_heiles", "star.csv"]) == 2
+    assert "henon_heiles has no parameters that a fit could" in capsys.readouterr().err
 
 
 def test_systems_with_constraints_are_refused_with_a_way_out(

@@ -87,10 +87,15 @@ def measurement(
 ) -> Measurement:
     """The measurement in columns whose heads may contain units, such as ``theta1 [deg]``."""
     where, times, values = where or name, None, dict[str, ArrayLike]()
-    for head, column in columns.items():
+    for number, (head, column) in enumerate(columns.items(), 1):
         what, unit = quantity(head)
         if what in ignored:
             continue
+        if not what:
+            raise InputError(
+                f"{where}: column {number}, {shortened(head)}, has no name: name the quantity that "
+                "it measures, or remove the column"
+            )
         array = np.array(column, float)
         if what in TIMES and what not in units:
             times = array * _factor(unit or "s", "s", f"{where}, column {head}")
@@ -123,7 +128,9 @@ def measurement(
 def quantity(head: str) -> tuple[str, str | None]:
     """Name or formula, and unit, of a column."""
     if match := HEAD.fullmatch(head.strip()):
-        return (match["name"] or match["word"]).strip(), (match["unit"] or match["own"]).strip()
+        if match["word"]:
+            return match["word"], match["own"].strip()
+        return match["name"].strip(), match["unit"].strip()
     return head.strip(), None
 
 
