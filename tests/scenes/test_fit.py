@@ -188,6 +188,27 @@ def test_models_are_compared_by_prediction_and_no_more_than_needed_is_selected()
     assert "residuals of x are correlated" in fits["none"].notes[0]
 
 
+def test_runs_without_predicted_values_are_not_compared() -> None:
+    """The second half of a run is predicted: it needs measured values, and the motion others."""
+    data = measured(oscillator(), {"x": 1.0}, {}, T, 0.02)["x"]
+    with np.errstate(invalid="ignore"):
+        root = np.where(data > 0.3, np.sqrt(data), np.nan)
+    fits = {"both": fit(oscillator(), {"t": T, "x": data, "sqrt(x)": root}, ["k"])}
+    early = np.where(T[-1] / 2 > T, data, np.nan)
+    with pytest.raises(ValueError, match=r"no measured values from t = 2\.975 s on"):
+        compare(fits, {"t": T, "x": early, "sqrt(x)": np.nan * T})
+    late = np.where(T[-1] / 2 > T, np.nan, 0.1)
+    with pytest.raises(ArithmeticError, match=r"predicted motion has no value of sqrt\(x\) at t ="):
+        compare(fits, {"t": T, "x": data, "sqrt(x)": late})
+
+
+def test_formulas_without_values_are_named() -> None:
+    """No swing of 1 m comes near the 5 m from which the root on is real."""
+    data = measured(oscillator(), {"x": 1.0}, {}, T, 0.02)
+    with pytest.raises(ArithmeticError, match=r"sqrt\(x - 5\), .* has no value at t = 0 s"):
+        fit(oscillator(), {"t": T, "sqrt(x - 5)": data["x"]}, ["k"])
+
+
 def test_combinations_that_cannot_be_known_are_named() -> None:
     data = {"t": T, **measured(oscillator(), {"x": 1.0}, {}, T, 0.02)}
     with pytest.raises(ValueError, match="m, k, c: only as c/m, k/m; give one of them a value"):

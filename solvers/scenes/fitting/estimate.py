@@ -72,7 +72,7 @@ def estimate(
     if counts.sum() <= unknowns:
         raise ValueError(
             f"{counts.sum()} measured values do not suffice for {unknowns} unknowns, which are "
-            f"{', '.join((*experiment.unknown, 'and the start of each run'))}: give more values, "
+            f"{', '.join(('the start of each run', *experiment.unknown))}: give more values, "
             "or let fewer parameters be unknown"
         )
     noise = experiment.first_noise()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from solvers.equations.quantities import Array
 from solvers.scenes.fitting.least_squares import Linear, Linearise
 from solvers.scenes.fitting.measurement import Measurement, Outputs, wrapped
-from solvers.scenes.fitting.shooting import Arcs, Segment, Shooting, segments
+from solvers.scenes.fitting.shooting import Arcs, NoValueError, Segment, Shooting, segments
 
 #: Most segments of a run, fewest samples of one, and fewest values for a component of the state.
 MOST_SEGMENTS, FEWEST_SAMPLES, FEWEST_VALUES = 200, 5, 3
@@ -108,7 +108,7 @@ class Experiment:
             gaps = wrapped((arcs.ends - np.roll(nodes, -1, axis=0)).T, self.outputs.angles).T
             return Linear(
                 runs,
-                (weights * np.where(self.masks, differences, 0.0)).reshape(count, -1),
+                (weights * differences).reshape(count, -1),
                 (weights[..., np.newaxis] * by).reshape(count, -1, by.shape[-1]),
                 joined * gaps,
                 joined[:, :, np.newaxis] * arcs.ends_by,
@@ -117,7 +117,10 @@ class Experiment:
         return linearised
 
     def _residuals(self, arcs: Arcs, params: Array) -> tuple[Array, Array]:
-        """Differences of motions and measurements, (segments, outputs, times), and derivatives."""
+        """Differences of motions and measurements, (segments, outputs, times), and derivatives.
+
+        Both are 0 where there is no measurement; `NoValueError` where a formula has no value.
+        """
         outputs, n = self.outputs, arcs.y.shape[1]
         if outputs.formulas is None:
             values, by = arcs.y[:, outputs.rows], arcs.by[:, :, :, outputs.rows]
@@ -129,7 +132,14 @@ class Experiment:
             by = np.einsum("oskm,kdms->komd", by_state, arcs.by)
             by[..., n:] += np.moveaxis(by_params[:, self.indices], (2, 3, 1), (0, 2, 3))
         differences = np.moveaxis(values - self.data, 1, 0)
-        return np.moveaxis(wrapped(differences, outputs.turns), 0, 1), by
+        differences = np.moveaxis(wrapped(differences, outputs.turns), 0, 1)
+        differences = np.where(self.masks, differences, 0.0)
+        by = np.where(self.masks[..., np.newaxis], by, 0.0)
+        without = ~(np.isfinite(differences) & np.isfinite(by).all(axis=-1))
+        for segment, output, sample in np.argwhere(without):
+            name, t = outputs.names[output], self.shooting.times[segment, sample]
+            raise NoValueError(f"{name}, or a derivative of it, has no value at t = {t:.6g} s")
+        return differences, by
 
     def first_noise(self) -> Array:
         """Rough standard deviations of the noise, from third differences of successive values."""

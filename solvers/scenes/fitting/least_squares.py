@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.quantities import Array
-from solvers.integration.prepare import NotFinishedError
+from solvers.scenes.fitting.shooting import NoValueError
 
 #: Iterations, and halvings of a step.
 MOST_ITERATIONS, MOST_HALVINGS = 100, 12
@@ -76,7 +76,7 @@ class Linear:
         return replace(self, residuals=self.residuals * ratio, by=by)
 
 
-#: Residuals at nodes of shape (segments, state) and unknown parameters; `NotFinishedError` if none.
+#: Residuals at nodes of shape (segments, state) and unknown parameters; `NoValueError` if none.
 Linearise = Callable[[Array, Array], Linear]
 
 
@@ -157,8 +157,10 @@ def minimise(
     """
     try:
         linear = linear or linearise(nodes, params)
-    except NotFinishedError as error:
-        raise NotConvergedError(f"the motion of the first guess ends: {error}") from error
+    except NoValueError as error:
+        raise NotConvergedError(
+            f"from the first guess, {error}: give a better first guess"
+        ) from error
     weight, before, u = 0.0, np.inf, len(params)
     step, squares, gaps = condensed(linear, u), linear.squares, _gaps(linear, scale)
     for iteration in range(most := most or MOST_ITERATIONS):
@@ -178,7 +180,7 @@ def minimise(
             trial = nodes + size * step.nodes, params + size * step.params
             try:
                 new = linearise(*trial)
-            except NotFinishedError:
+            except NoValueError:
                 size /= 4
                 continue
             reached = new.squares + weight * _gaps(new, scale)

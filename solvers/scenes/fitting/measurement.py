@@ -131,12 +131,14 @@ class Outputs:
         names = enumerate(self.module.COORDINATES)
         return [k for k, name in names if f"sin_{name}" in rational]
 
+    @np.errstate(all="ignore")  # formulas may have no values where nothing is measured
     def values(self, t: Array, y: Array, params: Sequence[float]) -> Array:
         """Their values, shape (outputs, times), at states of shape (state, times)."""
         if self.formulas is None:
             return y[self.rows]
         return np.asarray(function(self.formulas, "outputs_many")(t, y, params))
 
+    @np.errstate(all="ignore")
     def derivatives(self, t: Array, y: Array, params: Sequence[float]) -> tuple[Array, Array]:
         """By state and by parameters, shapes (outputs, state, times), (outputs, params, times)."""
         if self.formulas is None:

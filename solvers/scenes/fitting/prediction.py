@@ -11,6 +11,7 @@ from solvers.io.suggestion import counted
 from solvers.scenes.fitting.estimate import estimate
 from solvers.scenes.fitting.experiment import Experiment, unwrapped
 from solvers.scenes.fitting.fit import Fit
+from solvers.scenes.fitting.least_squares import NotConvergedError
 from solvers.scenes.fitting.measurement import Measurement, wrapped
 
 #: Part of a run that is kept back, from which a prediction's start is estimated, and blocks whose
@@ -49,9 +50,17 @@ class Prediction:
 
 
 def predicted(fit: Fit, run: Measurement, begin: float | None = None) -> Prediction:
-    """The prediction of a run by a fit: its start from the values before `begin`, the middle."""
-    module, t = fit.outputs.module, run.t
+    """The prediction of a run by a fit: its start from the values before `begin`, the middle.
+
+    `ValueError` where the run has no values later, `NotConvergedError` where the motion has none.
+    """
+    module, t, table = fit.outputs.module, run.t, unwrapped(fit.outputs, run)
     begin = float(t[0] + START * (t[-1] - t[0])) if begin is None else begin
+    if not np.isfinite(table[:, t >= begin]).any():
+        raise ValueError(
+            f"{run.name} has no measured values from t = {begin:.6g} s on, where they are "
+            "predicted: keep back another run"
+        )
     known = run.between(-np.inf, begin)
     experiment = Experiment(fit.outputs, [known], (), fit.estimate.params)
     start = estimate(experiment, fit.estimate.starts[0], np.empty(0)).starts[0]
@@ -60,7 +69,12 @@ def predicted(fit: Fit, run: Measurement, begin: float | None = None) -> Predict
     y = np.full((len(module.STATE), len(t)), np.nan)
     y[:, : motion.y.shape[1]] = motion.y
     values = fit.outputs.values(t, y, fit.estimate.params.tolist())
-    table = unwrapped(fit.outputs, run)
+    if (without := np.isfinite(table) & ~np.isfinite(values)).any():
+        row, sample = np.argwhere(without)[0]
+        raise NotConvergedError(
+            f"{run.name}: the predicted motion has no value of {fit.outputs.names[row]} at "
+            f"t = {t[sample]:.6g} s: compare models that predict all of the run"
+        )
     return Prediction(run, begin, values, wrapped(table - values, fit.outputs.turns))
 
 

@@ -12,8 +12,8 @@ import numpy as np
 import scipy
 
 from solvers.equations.quantities import Array
-from solvers.integration.prepare import NotFinishedError
 from solvers.scenes.fitting.least_squares import Flags, Linear, Linearise, longest
+from solvers.scenes.fitting.shooting import NoValueError
 
 #: Weights of gaps in units of the noise, for components of the state in units of their size.
 WEIGHTS = (1.0, 10.0, 100.0)
@@ -40,7 +40,7 @@ def relaxed(
     """Better nodes and parameters; arguments as those of `least_squares.minimise`."""
     try:
         linear, damping = linearise(nodes, params), FIRST_DAMPING
-    except NotFinishedError:
+    except NoValueError:
         return Relaxed(nodes, params, np.inf, None)
     for weight in WEIGHTS:
         weights = weight / scale
@@ -52,7 +52,7 @@ def relaxed(
             try:
                 new = linearise(*trial)
                 new_squares = _squares(new, weights)
-            except NotFinishedError:
+            except NoValueError:
                 new_squares = np.inf
             if new_squares < squares:
                 is_sufficient = new_squares > (1 - SUFFICIENT) * squares

@@ -13,7 +13,6 @@ from solvers.equations.quantities import Array
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.loops import compiled_loop, python_loop
-from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
@@ -27,6 +26,10 @@ MOST_STEPS = 10_000
 FEW = 2000
 Flags = NDArray[np.bool_]
 FINISHED = STATUSES.index(Status.FINISHED)
+
+
+class NoValueError(ArithmeticError):
+    """The motions from some nodes end early, or a measured quantity has no value along them."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,7 @@ class Shooting:
         return np.where(self.missing, self._begins[:, np.newaxis], self._samples)
 
     def __call__(self, nodes: Array, params: Array) -> Arcs:
-        """The motions from nodes of shape (segments, state); `NotFinishedError` if one ends."""
+        """The motions from nodes of shape (segments, state); `NoValueError` if one ends."""
         lanes, n, count = self._directions, self._n, len(nodes)
         sizes = np.ones(lanes)
         sizes[n:] = np.where(params[self._unknown] == 0, 1.0, np.abs(params[self._unknown]))
@@ -170,6 +173,7 @@ def processors() -> int:
     return len(os.sched_getaffinity(0))
 
 
-def failure(status: Status | None, t: float) -> NotFinishedError:
+def failure(status: Status | None, t: float) -> NoValueError:
     """The error of a segment that does not reach its end."""
-    return NotFinishedError(status or Status.INTERRUPTED, t, ())
+    reason = (status or Status.INTERRUPTED).value.partition(";")[0]
+    return NoValueError(f"the motion ends at t = {t:.6g} s, since {reason}")
