@@ -41,8 +41,9 @@ class Hints:
     def candidates(self, letters: Letters) -> Iterator[Sequence[Candidate]]:
         """Yield the candidates that agree with the names."""
         kinds = {p.symbol.name: kind_of(p) for p in self.system.parameters}
-        # letters that are spelled as parameters of the system, such as c_1, need not be given
-        spelled = {name.replace("_", ""): name for name in {*kinds} - {*self.names.values()}}
+        # letters that are spelled as parameters, such as c_1, or as in Fortran, need not be given
+        own = {name.replace("_", ""): name for name in {*kinds} - {*self.names.values()}}
+        spelled = {short.lower(): name for short, name in own.items()} | own
         meant = {letter: spelled.get(letter.replace("_", "")) for letter in letters.parameters}
         pairs = (meant | {**self.names}).items()
         hinted = {letter: kinds[text] for letter, text in pairs if text in kinds}
