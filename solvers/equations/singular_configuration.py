@@ -66,5 +66,6 @@ def condition_of_constraints(
     rows = np.linalg.solve(root, G.T).T / np.where(sizes > 0, sizes, 1.0)[:, np.newaxis]
     left, singular, _ = np.linalg.svd(rows)
     least = singular[-1] if len(singular) == len(rows) else 0.0
-    condition = float((singular[0] / least) ** 2) if least > 0 else float("inf")
+    largest = max(singular[0], 1.0)  # of a single constraint the least is the largest one here
+    condition = float((largest / least) ** 2) if least > 0 else float("inf")
     return condition, assembly.names[int(np.argmax(np.abs(left[:, -1])))]

@@ -1,11 +1,13 @@
 """Linkages move on their own branch through configurations with dependent constraints."""
 
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 import sympy as sp
+from linkages import slider_crank
 from scipy.integrate import solve_ivp
 
 import generated.four_bar as four_bar
@@ -76,6 +78,18 @@ def test_square_loops_fold_and_open_as_a_pendulum(
     assert np.abs(run.y[:3] - expected[0]).max() < 1e-7
     assert np.abs(run.y[3:5]).max() < 1e-7
     assert np.abs(run.y[5:8] - expected[1]).max() < 1e-6
+
+
+def test_a_single_constraint_without_gradient_is_passed() -> None:
+    """Crank and rod of equal lengths turn together about a slider at rest, uniformly."""
+    crank = build(replace(slider_crank(), name="folded", keep_coordinates=False))
+    start = {"phi": 0.3, "psi": 0.3 - np.pi, "phi_dot": 4.0, "psi_dot": 4.0}
+    params = {"b": 0.25, "g": 0.0}
+    run = integrate(crank, (0, 1), start, params, method="radau5", backend="python")
+    assert run.status is Status.FINISHED
+    assert len(crank.MULTIPLIERS) == 2  # of which one eliminates the slider
+    assert np.abs(run.y[0] - 0.3 - 4 * run.t).max() < 1e-7
+    assert np.abs(run.y[1] - 0.3 + np.pi - 4 * run.t).max() < 1e-7
 
 
 def test_ten_seconds_keep_energy_and_constraints(squares: GeneratedModule) -> None:
