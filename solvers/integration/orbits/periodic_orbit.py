@@ -175,5 +175,5 @@ def _met(module: GeneratedModule, y0: Array, section: Event, params: Array) -> t
             break
     raise NoPeriodicOrbitError(
         f"the motion does not meet {section.name} = {section.value} again "
-        f"({motion.status.value}): choose another section or start"
+        f"({motion.status.reason}): choose another section or start"
     )

@@ -38,6 +38,11 @@ class Status(Enum):
     )
 
     @property
+    def reason(self) -> str:
+        """The sentence without arguments to change, which functions that integrate may lack."""
+        return self.value.partition(";")[0]
+
+    @property
     def without_events(self) -> "Status":
         """The status if no events were requested: a limit of a coordinate ended the motion."""
         return Status.OUTSIDE_DOMAIN if self is Status.EVENT else self

@@ -175,5 +175,5 @@ def processors() -> int:
 
 def failure(status: Status | None, t: float) -> NoValueError:
     """The error of a segment that does not reach its end."""
-    reason = (status or Status.INTERRUPTED).value.partition(";")[0]
+    reason = (status or Status.INTERRUPTED).reason
     return NoValueError(f"the motion ends at t = {t:.6g} s, since {reason}")
