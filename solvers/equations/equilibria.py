@@ -192,10 +192,11 @@ class _Search:
             possible = self._may_vanish(functions, low, high)
             low, high = low[possible], high[possible]
             if len(low) > MOST_BOXES:
+                name = self.module.STATE[int(np.flatnonzero(self.free)[0])]
                 raise ValueError(
                     f"equilibria of {self.module.SYSTEM} are not isolated in this box, or it is "
                     "too large: give a number in box for coordinates on which no force depends, "
-                    "such as box={'x': 0.0}, or smaller ranges"
+                    f"such as box={{{name!r}: 0.0}}, or smaller ranges"
                 )
         centres = (low + high) / 2
         cells = np.round((centres - self.low) / self.width / CLOSE)

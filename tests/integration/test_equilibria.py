@@ -138,6 +138,7 @@ def test_invalid_searches_are_refused() -> None:
         (cart, {}, {"x": 0, "y": 1}, "box has 'y'"),
         (cart, {}, {"x": (0, np.nan)}, "must be a finite real number in m"),
         (cart, {}, {"x": (-1, 1)}, "not isolated"),
+        (module_of("heavy_top"), {}, {}, "such as box={'phi': 0.0}"),
         (module_of("driven_pendulum"), {}, {}, "depend on time"),
     ]
     for module, params, box, message in invalid:
