@@ -280,6 +280,8 @@ MEANINGS = [
     ("C", "1/2*x", "0*x"),  # the quotient of whole numbers
     ("C", "1.0f/2*x - 7/2*k", "1.0/2*x - 3*k"),
     ("C", "x^2", ""),
+    ("C", "tau - x", "tau - x"),  # a torque
+    ("Python", "math.tau*x", "2*pi*x"),
     ("MATLAB", "-x^2 + k", "-x**2 + k"),
     ("MATLAB", "x^k^2", "(x**k)**2"),
     ("MATLAB", "k*sind(x')", "k*sin(x*(pi/180))"),

@@ -21,8 +21,10 @@ IDENTITIES = {
     "Matrix", "atleast_1d", "Vector2d", "Vector4d", "VectorXd", "state_type",
 }  # fmt: skip
 PI = {"pi", "PI", "M_PI", "π", "Pi", "M_PIl"}
-MULTIPLES = {"TWO_PI": "2", "TAU": "2", "tau": "2", "HALF_PI": "0.5", "M_PI_2": "0.5"}
+MULTIPLES = {"TWO_PI": "2", "TAU": "2", "HALF_PI": "0.5", "M_PI_2": "0.5"}
 MULTIPLES |= {"QUARTER_PI": "0.25", "M_PI_4": "0.25"}
+#: Without a library before it, tau is a torque.
+MULTIPLES |= {"math.tau": "2", "cmath.tau": "2"}
 
 
 def split(path: str) -> tuple[str, str]:
@@ -38,8 +40,8 @@ def constant(line: int, path: str) -> Tree | None:
         return None
     if name in PI:
         return Name(line, "pi")
-    if name in MULTIPLES:
-        return Operation(line, "*", (Number(line, MULTIPLES[name]), Name(line, "pi")))
+    if multiple := MULTIPLES.get(path) or MULTIPLES.get(name):
+        return Operation(line, "*", (Number(line, multiple), Name(line, "pi")))
     return None
 
 
