@@ -20,6 +20,7 @@ from solvers.scenes.fitting import least_squares as shooting_steps
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.measurement import Outputs
 from solvers.scenes.fitting.shooting import Shooting, segments
+from solvers.scenes.fitting.statistics import leverages
 
 
 @cache
@@ -223,3 +224,12 @@ def test_rest_determines_no_parameter() -> None:
     t = np.arange(0, 2, 0.1)
     with pytest.raises(ArithmeticError, match=r"do not determine theta at the start .*, l: hold"):
         fit(single, {"t": t, "theta": 0 * t}, ["l"])
+
+
+def test_leverages_add_up_to_the_rank_that_exceeds_rounding() -> None:
+    """The second column is three times the first one: the rank is 1."""
+    column = np.random.default_rng(0).normal(size=50)
+    jacobian = np.column_stack([column, 3 * column])
+    triangle = np.linalg.qr(jacobian, mode="r")
+    assert triangle[1, 1] != 0
+    assert leverages(jacobian, triangle).sum() == pytest.approx(1.0)

@@ -17,10 +17,7 @@ def leverages(jacobian: Array, triangle: Array) -> Array:
     scale = np.linalg.norm(triangle, axis=0)
     scale[scale == 0] = 1.0
     R, J = triangle / scale, jacobian / scale
-    try:
-        own = np.linalg.solve(R.T, J.T)
-    except np.linalg.LinAlgError:  # some unknowns change no value
-        own = np.linalg.pinv(R.T) @ J.T
+    own = np.linalg.pinv(R.T, rcond=1e-14) @ J.T  # some unknowns may change no value
     return np.asarray((own**2).sum(axis=0))
 
 
