@@ -23,6 +23,7 @@ from solvers.app.modules import build
 from solvers.equations.consistent_start import consistent_start
 from solvers.equations.normal_modes import Modes
 from solvers.integration.integrate import integrate
+from solvers.integration.orbits import shooting
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem.events import Event
@@ -317,3 +318,10 @@ def test_an_energy_that_cannot_be_held_is_refused() -> None:
     below = -20.0  # that of the equilibrium is -9.81 J
     with pytest.raises(NoPeriodicOrbitError, match=r"with an energy of -20\.0 J"):
         periodic_orbit(single, {"theta": 1.0}, 2.0, {}, energy=below)
+
+
+def test_motions_of_very_many_steps_are_no_way_to_an_orbit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A swing of 2 s from rest at 1 rad takes more than 5 steps at 1e-12."""
+    monkeypatch.setattr(shooting, "MOST_STEPS", 5)
+    with pytest.raises(NotFinishedError, match="the maximum number of steps was reached"):
+        periodic_orbit(single, {"theta": 1.0}, 2.0, {})

@@ -18,6 +18,8 @@ STEP = 1e-5
 #: Largest relative change of the equations after a period.
 SMALL = 1e-6
 TINY = float(np.finfo(float).tiny)
+#: Most steps of a motion: iterations near singular coordinates would take minutes.
+MOST_STEPS = 10_000
 PeriodOf = Callable[[Mapping[str, float]], float]
 
 
@@ -179,6 +181,7 @@ class Shooting:
             rtol=self.rtol,
             atol=self.atol,
             parameter_changes=perturbed,
+            max_steps=MOST_STEPS,
         )
         motion.advance(duration)
         by_parameter = np.zeros(n) if perturbed is None else motion.changes[:, n]

@@ -26,7 +26,7 @@ class Tangents:
 
     Parameters
     ----------
-    module, t_span, y0, params, rtol, atol
+    module, t_span, y0, params, rtol, atol, max_steps
         As in `integrate`; the tolerances apply to the perturbations, too.
     changes : array_like of shape (state, n)
         Perturbations of the initial state, in columns; the nearest ones that constraints permit, in
@@ -60,6 +60,7 @@ class Tangents:
         rtol: float,
         atol: float,
         parameter_changes: Array | None = None,
+        max_steps: int = Options.max_steps,
     ) -> None:
         constants = validation.parameters(module, params)
         if parameter_changes is None:
@@ -67,7 +68,7 @@ class Tangents:
         else:
             form, perturbed = "sensitivity", [*parameter_changes, *constants]
             constants = np.concatenate([np.zeros(len(parameter_changes)), constants])
-        options = Options(METHOD, form, rtol, atol)
+        options = Options(METHOD, form, rtol, atol, max_steps=max_steps)
         problem = validation.problem_at_rest(module, t_span, options, constants)
         problem = problem.with_params(perturbed)
         self._problem, self._program = compiled_loop.select(problem, lanes=True)
