@@ -4,15 +4,15 @@ import warnings
 from dataclasses import replace
 from typing import Any
 
+import linkages
 import numpy as np
 import pytest
 import sympy as sp
-from linkages import slider_crank
 from scipy.integrate import solve_ivp
 
 import generated.four_bar as four_bar
-from derive import Coordinate, Parameter, PointMass, System
-from holonomic import Event, build, consistent_start, ensemble, integrate, prepare
+from derive import Coordinate, Input, Parameter, PointMass, System
+from holonomic import Event, Held, build, consistent_start, ensemble, integrate, prepare
 from solvers import Status
 from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import UnfinishedWarning
@@ -82,7 +82,7 @@ def test_square_loops_fold_and_open_as_a_pendulum(
 
 def test_a_single_constraint_without_gradient_is_passed() -> None:
     """Crank and rod of equal lengths turn together about a slider at rest, uniformly."""
-    crank = build(replace(slider_crank(), name="folded", keep_coordinates=False))
+    crank = build(replace(linkages.slider_crank(), name="folded", keep_coordinates=False))
     start = {"phi": 0.3, "psi": 0.3 - np.pi, "phi_dot": 4.0, "psi_dot": 4.0}
     params = {"b": 0.25, "g": 0.0}
     run = integrate(crank, (0, 1), start, params, method="radau5", backend="python")
@@ -90,6 +90,29 @@ def test_a_single_constraint_without_gradient_is_passed() -> None:
     assert len(crank.MULTIPLIERS) == 2  # of which one eliminates the slider
     assert np.abs(run.y[0] - 0.3 - 4 * run.t).max() < 1e-7
     assert np.abs(run.y[1] - 0.3 + np.pi - 4 * run.t).max() < 1e-7
+
+
+@pytest.mark.parametrize("inputs", [
+    Held([0.0, 0.2, 0.4], [[0.5, 0.4, 0.5]]), Held(0.1, lambda _t, y: (0.5 - 0.1 * y[3],)),
+])  # fmt: skip
+def test_a_parallelogram_with_held_inputs_remains_one(inputs: Held) -> None:
+    """Bars of equal lengths in pairs: the rod keeps its direction."""
+    torque = sp.Symbol("torque", real=True)
+    bars = replace(
+        linkages.four_bar(),
+        name="driven_bars",
+        forces=(torque, 0, 0),
+        inputs=[Input(torque, "N m", "on the crank")],
+    )
+    start = {"phi": 1.0, "theta": 0.0, "psi": 1.0, "phi_dot": 9.0, "theta_dot": 0, "psi_dot": 9.0}
+    options: dict[str, Any] = {"inputs": inputs, "method": "gauss8", "backend": "python"}
+    times = np.linspace(0, 0.6, 11)
+    run = integrate(build(bars), (0, 0.6), start, {"c": 0.25}, t_eval=times, **options)
+    assert run.status is Status.FINISHED
+    assert run.t.tolist() == times.tolist()
+    assert abs(run.y[0, -1] - run.y[0, 0]) > np.pi
+    assert np.abs(run.y[1]).max() < 1e-6
+    assert run.inputs.shape == (1, 11)
 
 
 def test_ten_seconds_keep_energy_and_constraints(squares: GeneratedModule) -> None:

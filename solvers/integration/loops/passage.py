@@ -16,6 +16,8 @@ import scipy
 
 from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
+from solvers.equations.module import integrals
+from solvers.equations.quantities import NotFiniteNumberError
 from solvers.equations.singular_configuration import condition_of_constraints
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
@@ -54,6 +56,36 @@ def run(problem: Problem, outcome: Outcome, program: Kernel | None) -> None:
     not accurately; no sample lies beyond it then.
     """
     loop = partial(compiled_loop.run, program=program) if program else python_loop.run
+    is_watched = problem.schedule and replace(problem, schedule=None).collapse
+    if not is_watched or integrals(problem.form.module):  # whose values each segment would set anew
+        _run(problem, outcome, loop)
+        return
+    try:  # polynomials do not reach across jumps of inputs
+        for segment in problem.segments(lambda: outcome.end[1], outcome.history):
+            _run_segment(segment, problem, outcome, loop)
+            if outcome.status is not Status.FINISHED:
+                return
+    except NotFiniteNumberError as failure:
+        outcome.end_with(outcome.fail(failure), problem)
+
+
+def _run_segment(segment: Problem, problem: Problem, outcome: Outcome, loop: Loop) -> None:
+    """Integrate from one sample of held inputs to the next."""
+    (begin, end), samples = segment.span, problem.samples
+    if samples is not None:
+        is_first = begin == problem.span[0]
+        samples = samples[((samples > begin) | ((samples == begin) & is_first)) & (samples <= end)]
+    steps = max(problem.max_steps - outcome.steps, 0)
+    part = replace(segment, schedule=None, start=outcome.end[1], samples=samples, max_steps=steps)
+    own = Outcome.at_start(part)
+    try:
+        _run(part, own, loop)
+    finally:
+        _append(outcome, own)
+
+
+def _run(problem: Problem, outcome: Outcome, loop: Loop) -> None:
+    """Integrate a problem, and continue it where it reaches singular configurations."""
     loop(problem, outcome)
     while outcome.status is Status.SINGULAR:
         part = _remaining(problem, outcome)
@@ -85,13 +117,14 @@ def _remaining(problem: Problem, outcome: Outcome) -> Problem:
 def _append(outcome: Outcome, part: Outcome) -> None:
     """Append the outcome of a later part, which may begin with the state reached before."""
     t, y = part.rows()
-    first = int(len(t) > 0 and t[0] == outcome.end[0])
+    first = int(len(outcome.t) > 0 and len(t) > 0 and t[0] == outcome.end[0])
     outcome.t.append(t[first:])
     outcome.y.append(y[first:])
     for event, (times, states) in enumerate(zip(part.t_events, part.y_events, strict=True)):
         outcome.t_events[event] += times
         outcome.y_events[event] += states
     outcome.end, outcome.status, outcome.cause = part.end, part.status, part.cause
+    outcome.backend = part.backend
     for name in ("nfev", "njev", "steps", "rejected"):
         setattr(outcome, name, getattr(outcome, name) + getattr(part, name))
 
