@@ -51,7 +51,7 @@ def condition_of_constraints(
     assembly = Assembly(module, np.array([params]), t)
     rng, scales = np.random.default_rng(0), assembly.scales
     others = np.repeat(y, STATES, axis=0)
-    others[:, : assembly.n] += scales * rng.uniform(-1, 1, (STATES, assembly.n))
+    others[:, : assembly.n] += _spread(assembly, y[0]) * rng.uniform(-1, 1, (STATES, assembly.n))
     G, typical = assembly.jacobian(y)[0], assembly.jacobian(others)
     M = np.array(module.mass_matrix(t, y[0].tolist(), params)) * np.outer(scales, scales)
     if not (np.isfinite(G).all() and np.isfinite(M).all()):
@@ -69,3 +69,16 @@ def condition_of_constraints(
     largest = max(singular[0], 1.0)  # of a single constraint the least is the largest one here
     condition = float((largest / least) ** 2) if least > 0 else float("inf")
     return condition, assembly.names[int(np.argmax(np.abs(left[:, -1])))]
+
+
+def _spread(assembly: Assembly, y: Array) -> Array:
+    """How far generic states are from a state: an angle, or as far as the largest coordinate.
+
+    A parameter may be longer than all parts, so that gradients of squares are larger there.
+    """
+    units = [assembly.module.UNITS[name] for name in assembly.module.COORDINATES]
+    largest: dict[str, float] = {}
+    for unit, value in zip(units, np.abs(y).tolist(), strict=False):
+        largest[unit] = max(largest.get(unit, 0.0), value)
+    of = [1.0 if unit == "rad" else largest[unit] or np.inf for unit in units]
+    return np.minimum(assembly.scales, of)
