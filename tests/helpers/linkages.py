@@ -43,3 +43,23 @@ def four_bar() -> System:
     values = {a: 0.25, b: 0.75, c: 0.5, d: 0.75, m: 2.0, M: 1.0, g: 9.75}
     rocker = (d + c * sp.cos(psi), c * sp.sin(psi))
     return linkage("four_bar", (phi, theta, psi), values, rocker)
+
+
+def ring(n: int) -> System:
+    """Links of lengths l1 to ln with a mass at each joint, from the origin to a fixed point."""
+    angles = sp.symbols(f"q1:{n + 1}", real=True)
+    lengths = sp.symbols(f"l1:{n + 1}", positive=True)
+    ends, end = [], sp.zeros(2, 1)
+    for length, angle in zip(lengths, angles, strict=True):
+        end = end + length * sp.Matrix([sp.sin(angle), -sp.cos(angle)])
+        ends.append(tuple(end))
+    values = [(m, 1.0), (g, 9.81), (d, 1.0), *((length, 1.0) for length in lengths)]
+    return System(
+        f"ring_{n}",
+        "A ring of links",
+        [Coordinate(angle, "rad", "from the vertical") for angle in angles],
+        [Parameter(s, UNITS.get(s, "m"), value, "of a part") for s, value in values],
+        [PointMass(m, place) for place in ends],
+        coincide=[(ends[-1], (0, d))],
+        keep_coordinates=True,
+    )

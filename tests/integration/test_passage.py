@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import linkages
@@ -229,3 +230,35 @@ def test_linkages_with_aligned_bars_keep_energy_and_constraints(seed: int) -> No
     assert run.status in (Status.FINISHED, Status.SINGULAR)
     assert np.abs(run.energy - run.energy[0]).max() < 3e3 * tolerance * size
     assert np.abs(four_bar.constraints_many(0, run.y, params)).max() < 1e3 * tolerance
+
+
+@cache
+def built_ring(n: int) -> GeneratedModule:
+    return build(linkages.ring(n))
+
+
+@pytest.mark.campaign
+@pytest.mark.filterwarnings("ignore::UserWarning")  # near singular starts, and chaotic motions
+@pytest.mark.parametrize("seed", range(300))
+def test_rings_that_start_nearly_folded_keep_energy_and_constraints(seed: int) -> None:
+    """Of 3 to 12 links that can lie on one line, up to small angles at the start."""
+    rng, n = np.random.default_rng(seed), 3 + seed % 10
+    lengths, signs = rng.uniform(0.3, 1, n), rng.choice([-1, 1], n)
+    ground = float((signs * lengths).sum())
+    if abs(ground) < 0.05:
+        pytest.skip("the last point would be the first one")
+    module = built_ring(n)
+    params = (*module.DEFAULTS[:2], abs(ground), *lengths.tolist())
+    folded = np.where(signs * ground > 0, np.pi, 0.0)
+    angles = folded + 10 ** rng.uniform(-3, -0.5) * rng.normal(size=n)
+    guess = np.concatenate([angles, rng.uniform(0.3, 3) * rng.normal(size=n)])
+    method = ("verner853", "verner98", "gauss8", "radau5", "dop853")[seed // 10 % 5]
+    try:
+        start = consistent_start(module, {}, params, guess=guess).y
+        run = integrate(module, (0, 3), start, params, method=method, energy=True, **TOLERANCES)
+    except ValueError as refusal:
+        pytest.skip(str(refusal))
+    if run.status is Status.FINISHED:
+        assert run.energy is not None
+        assert np.abs(run.energy - run.energy[0]).max() < 1e-6 * max(1.0, abs(run.energy[0]))
+        assert np.abs(module.constraints_many(run.t, run.y, params)).max() < 1e-7
