@@ -8,6 +8,7 @@ from derive import Constraint, Coordinate, Parameter, PointMass, RigidBody, Syst
 
 l, m, M, J, k, c, g, d = symbols("l m M J k c g d", positive=True)  # noqa: E741
 x = Symbol("x", real=True)
+s = symbols("s1:5", real=True)
 a = symbols("a1:5", real=True)
 b = symbols("b1:4", real=True)
 Point = tuple[Expr, Expr]
@@ -23,6 +24,16 @@ def arm(start: Point, angles: Sequence[Expr]) -> tuple[list[PointMass], Point]:
         bars.append(RigidBody(m, centre, J, direction))
         start = (start[0] + step[0], start[1] + step[1])
     return [*bars, PointMass(M, start)], start
+
+
+def springs() -> list[PointMass]:
+    """Masses on springs, one below the other; increments depend on an angle and an elongation."""
+    masses, place = list[PointMass](), (sin(0), sin(0))
+    for angle, elongation in zip(a, s, strict=True):
+        length = l + elongation
+        place = (place[0] + length * sin(angle), place[1] - length * cos(angle))
+        masses.append(PointMass(m, place))
+    return masses
 
 
 def parameters(*others: tuple[Symbol, float]) -> list[Parameter]:
@@ -61,4 +72,14 @@ closed = System(
         Constraint(arm((0, 0), a)[1][0] - d, "horizontal", "N"),
         Constraint(arm((0, 0), a)[1][1], "vertical", "N"),
     ],
+)
+#: Four masses on springs.
+elastic = System(
+    name="elastic",
+    title="A chain of springs",
+    coordinates=[*coordinates(*a), *(Coordinate(one, "m", "") for one in s)],
+    parameters=[Parameter(one, "1", 1.5, "") for one in (l, m, k, g)],
+    masses=springs(),
+    potential=k * sum(one**2 for one in s) / 2,
+    gravity=(0, -g),
 )

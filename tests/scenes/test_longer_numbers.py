@@ -5,9 +5,12 @@ from math import e
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import generated.double_bar_pendulum as bars
 import generated.double_pendulum as dp
+from derive import Coordinate, Parameter, PointMass, System
+from holonomic import build
 from solvers.app.modules import load as load_module
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended, kernel
@@ -107,6 +110,24 @@ def test_every_check_has_a_perturbation_of_its_own(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(IntegrationRun, "extended_states", recorded)
     by_longer_numbers(motion_of(LONG), 1e-9, LONG.times, {}, lambda _: None)
     assert seeds == [0, 1, 2, 3]
+
+
+def test_runs_are_compared_where_motions_are_fast() -> None:
+    # a comet is near its star for a ten millionth of its period, between all samples
+    (x, y), mu = sp.symbols("x y", real=True), sp.Symbol("mu", positive=True)
+    coordinates = [Coordinate(one, "m", "position") for one in (x, y)]
+    strength = [Parameter(mu, "m^3/s^2", 1.0, "of the star")]
+    potential = -mu / sp.sqrt(x**2 + y**2)
+    comet = build(
+        System("comet", "comet", coordinates, strength, [PointMass(1, (x, y))], potential)
+    )
+    farthest = 1.9999
+    slowest = np.sqrt(2 / farthest - 1)
+    scene = Scene(comet, comet.DEFAULTS, (farthest, 0.0, 0.0, slowest), 6.0, samples=9)
+    run = IntegrationRun(motion_of(scene), MethodChoice("gauss8", "lagrangian", ""), 1e-12)
+    times = longer_numbers._compared_times(run, scene.times)
+    assert np.abs(times - np.pi).min() < 1e-5
+    assert np.abs(np.array([*scene.times, *run.motion.sample_times]) - np.pi).min() > 1e-3
 
 
 @pytest.mark.long("long motions with many digits")
