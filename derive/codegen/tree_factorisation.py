@@ -59,7 +59,8 @@ class TreeFactorisation:
         """Add the inertia of a branch's end to its parent's end and to its variables."""
         branch, let = self._tree.branches[k], self._graph.let
         size = range(len(branch.increment))
-        coupled = {i: c for (i, end), c in self._couplings.items() if end == k}
+        remaining = {i for i, end in self._couplings if end == k} - {*self._inverses}
+        coupled = {i: self._couplings[i, k] for i in sorted(remaining)}
         moved: dict[int, Vector] = {}
         for j in branch.variables:
             E = self._tangents[k, j]

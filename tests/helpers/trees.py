@@ -26,12 +26,13 @@ def arm(start: Point, angles: Sequence[Expr]) -> tuple[list[PointMass], Point]:
     return [*bars, PointMass(M, start)], start
 
 
-def springs() -> list[PointMass]:
-    """Masses on springs, one below the other; increments depend on an angle and an elongation."""
+def sliders() -> list[PointMass]:
+    """Masses in curved slots of links, each on the mass before; tangents are not orthogonal."""
     masses, place = list[PointMass](), (sin(0), sin(0))
-    for angle, elongation in zip(a, s, strict=True):
-        length = l + elongation
-        place = (place[0] + length * sin(angle), place[1] - length * cos(angle))
+    for angle, along in zip(a, s, strict=True):
+        below, beside = l + along, along**2 / (2 * l)
+        x_step = beside * cos(angle) + below * sin(angle)
+        place = (place[0] + x_step, place[1] + beside * sin(angle) - below * cos(angle))
         masses.append(PointMass(m, place))
     return masses
 
@@ -73,13 +74,13 @@ closed = System(
         Constraint(arm((0, 0), a)[1][1], "vertical", "N"),
     ],
 )
-#: Four masses on springs.
-elastic = System(
-    name="elastic",
-    title="A chain of springs",
+#: Four masses on springs, in slots.
+sliding = System(
+    name="sliding",
+    title="A chain of masses that slide in links",
     coordinates=[*coordinates(*a), *(Coordinate(one, "m", "") for one in s)],
     parameters=[Parameter(one, "1", 1.5, "") for one in (l, m, k, g)],
-    masses=springs(),
+    masses=sliders(),
     potential=k * sum(one**2 for one in s) / 2,
     gravity=(0, -g),
 )

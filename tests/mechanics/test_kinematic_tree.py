@@ -40,7 +40,7 @@ def test_operations_grow_linearly(name: str, *, relative: bool) -> None:
 @pytest.mark.parametrize(("system", "last"), [
     (trees.branching, "a1 + a2 + a3 + a4"),
     (trees.closed, "a1 + a2 + a3 + a4"),
-    (trees.elastic, "s4"),
+    (trees.sliding, "s4"),
 ])  # fmt: skip
 def test_branching_and_closed_chains_have_trees(system: System, last: str) -> None:
     """Their values are compared with d'Alembert's principle in test_catalogue."""

@@ -38,7 +38,7 @@ SYSTEMS = Path(systems.__path__[0])
 #: Lines of a system's definition, and of one with many bodies.
 LINES, LINES_OF_LARGE = 25, 60
 #: Systems that are not in the catalogue.
-OTHERS = {one.name: one for one in (strange.system, trees.branching, trees.closed, trees.elastic)}
+OTHERS = {one.name: one for one in (strange.system, trees.branching, trees.closed, trees.sliding)}
 Case = tuple[float, list[float], list[float]]
 
 
