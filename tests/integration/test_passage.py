@@ -93,27 +93,50 @@ def test_a_single_constraint_without_gradient_is_passed() -> None:
     assert np.abs(run.y[1] - 0.3 + np.pi - 4 * run.t).max() < 1e-7
 
 
+@pytest.fixture(scope="module")
+def driven_bars() -> GeneratedModule:
+    """A four-bar linkage with a torque on its crank."""
+    torque = sp.Symbol("torque", real=True)
+    inputs = [Input(torque, "N m", "on the crank")]
+    bars = linkages.four_bar()
+    return build(replace(bars, name="driven_bars", forces=(torque, 0, 0), inputs=inputs))
+
+
 @pytest.mark.parametrize("inputs", [
     Held([0.0, 0.2, 0.4], [[0.5, 0.4, 0.5]]), Held(0.1, lambda _t, y: (0.5 - 0.1 * y[3],)),
 ])  # fmt: skip
-def test_a_parallelogram_with_held_inputs_remains_one(inputs: Held) -> None:
+def test_a_parallelogram_with_held_inputs_remains_one(
+    inputs: Held, driven_bars: GeneratedModule
+) -> None:
     """Bars of equal lengths in pairs: the rod keeps its direction."""
-    torque = sp.Symbol("torque", real=True)
-    bars = replace(
-        linkages.four_bar(),
-        name="driven_bars",
-        forces=(torque, 0, 0),
-        inputs=[Input(torque, "N m", "on the crank")],
-    )
     start = {"phi": 1.0, "theta": 0.0, "psi": 1.0, "phi_dot": 9.0, "theta_dot": 0, "psi_dot": 9.0}
     options: dict[str, Any] = {"inputs": inputs, "method": "gauss8", "backend": "python"}
     times = np.linspace(0, 0.6, 11)
-    run = integrate(build(bars), (0, 0.6), start, {"c": 0.25}, t_eval=times, **options)
+    run = integrate(driven_bars, (0, 0.6), start, {"c": 0.25}, t_eval=times, **options)
     assert run.status is Status.FINISHED
     assert run.t.tolist() == times.tolist()
     assert abs(run.y[0, -1] - run.y[0, 0]) > np.pi
     assert np.abs(run.y[1]).max() < 1e-6
     assert run.inputs.shape == (1, 11)
+
+
+def test_motions_with_a_table_of_inputs_are_passed_together_and_one_by_one(
+    driven_bars: GeneratedModule,
+) -> None:
+    """The rod of a parallelogram keeps its direction, with 30 jumps of the torque."""
+    times = np.linspace(0, 3, 31)[:-1]
+    torques = Held(times, [[0.5 * np.cos(3 * t) for t in times]])
+    start = np.array([1.0, 0.0, 1.0, 9.0, 0.0, 9.0])
+    options: dict[str, Any] = {"inputs": torques, "method": "verner98", **TOLERANCES}
+    samples = np.linspace(0, 3, 11)
+    run = integrate(driven_bars, (0, 3), start, {"c": 0.25}, t_eval=samples, **options)
+    assert run.status is Status.FINISHED
+    assert run.t.tolist() == samples.tolist()
+    assert run.y[0, -1] > 4 * np.pi
+    assert np.abs(run.y[1]).max() < 1e-9
+    motions = ensemble(driven_bars, (0, 3), np.transpose([start, start]), {"c": 0.25}, **options)
+    assert {*motions.status} == {Status.FINISHED}
+    assert np.abs(motions.y - run.y[:, -1:]).max() < 1e-7
 
 
 def test_ten_seconds_keep_energy_and_constraints(squares: GeneratedModule) -> None:

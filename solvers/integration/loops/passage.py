@@ -56,37 +56,43 @@ def run(problem: Problem, outcome: Outcome, program: Kernel | None) -> None:
     not accurately; no sample lies beyond it then.
     """
     loop = partial(compiled_loop.run, program=program) if program else python_loop.run
-    is_watched = problem.schedule and replace(problem, schedule=None).collapse
-    if not is_watched or integrals(problem.form.module):  # whose values each segment would set anew
-        _run(problem, outcome, loop)
+    # the values of integrals would be set anew with each part of a motion
+    is_watched = replace(problem, schedule=None).collapse and not integrals(problem.form.module)
+    if problem.schedule and problem.schedule.table is None and is_watched:
+        _run_controlled(problem, outcome, loop)
         return
-    try:  # polynomials do not reach across jumps of inputs
+    loop(problem, outcome)
+    while outcome.status is Status.SINGULAR:
+        # polynomials do not reach across jumps of inputs
+        held = _remaining(problem.held_at(outcome.end[0]), outcome)
+        status = _extend(outcome, held, partial(_resume, loop=loop))
+        if status is not Status.FINISHED or outcome.end[0] == problem.span[1]:
+            return
+        _extend(outcome, _remaining(problem, outcome), loop)
+
+
+def _run_controlled(problem: Problem, outcome: Outcome, loop: Loop) -> None:
+    """Integrate from sample to sample of a controller."""
+    try:
         for segment in problem.segments(lambda: outcome.end[1], outcome.history):
-            _run_segment(segment, problem, outcome, loop)
+            part = _remaining(replace(segment, schedule=None), outcome)
+            _extend(outcome, part, partial(_run_held, loop=loop))
             if outcome.status is not Status.FINISHED:
                 return
     except NotFiniteNumberError as failure:
         outcome.end_with(outcome.fail(failure), problem)
 
 
-def _run_segment(segment: Problem, problem: Problem, outcome: Outcome, loop: Loop) -> None:
-    """Integrate from one sample of held inputs to the next."""
-    (begin, end), samples = segment.span, problem.samples
-    if samples is not None:
-        is_first = begin == problem.span[0]
-        samples = samples[((samples > begin) | ((samples == begin) & is_first)) & (samples <= end)]
-    steps = max(problem.max_steps - outcome.steps, 0)
-    part = replace(segment, schedule=None, start=outcome.end[1], samples=samples, max_steps=steps)
-    own = Outcome.at_start(part)
-    try:
-        _run(part, own, loop)
-    finally:
-        _append(outcome, own)
-
-
-def _run(problem: Problem, outcome: Outcome, loop: Loop) -> None:
-    """Integrate a problem, and continue it where it reaches singular configurations."""
+def _run_held(problem: Problem, outcome: Outcome, loop: Loop) -> None:
+    """Integrate a problem with constant inputs."""
     loop(problem, outcome)
+    if outcome.status is Status.SINGULAR:
+        _resume(problem, outcome, loop)
+
+
+def _resume(problem: Problem, outcome: Outcome, loop: Loop) -> None:
+    """Continue a problem with constant inputs from where steps have collapsed."""
+    outcome.status = Status.SINGULAR
     while outcome.status is Status.SINGULAR:
         part = _remaining(problem, outcome)
         if _approaches(part):
@@ -97,11 +103,17 @@ def _run(problem: Problem, outcome: Outcome, loop: Loop) -> None:
             if passage and _recorded(part, outcome, passage):
                 return
             part = _remaining(problem, outcome)
-        own = Outcome.at_start(part)
-        try:
-            loop(part, own)
-        finally:
-            _append(outcome, own)
+        _extend(outcome, part, loop)
+
+
+def _extend(outcome: Outcome, part: Problem, run: Loop) -> Status:
+    """Append the outcome of the remaining part of a motion, and return its status."""
+    own = Outcome.at_start(part)
+    try:
+        run(part, own)
+    finally:
+        _append(outcome, own)
+    return own.status
 
 
 def _remaining(problem: Problem, outcome: Outcome) -> Problem:
@@ -109,7 +121,8 @@ def _remaining(problem: Problem, outcome: Outcome) -> Problem:
     (begin, end), (t, y) = problem.span, outcome.end
     direction, samples = np.sign(end - begin), problem.samples
     if samples is not None:
-        samples = samples[direction * samples > direction * t]
+        later, last = direction * (samples - t), direction * (end - t)
+        samples = samples[((later > 0) | ((later == 0) & (not outcome.t))) & (later <= last)]
     steps = max(problem.max_steps - outcome.steps, 0)
     return replace(problem, span=(t, end), start=y, samples=samples, max_steps=steps)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
+from solvers.equations.module import integrals
 from solvers.equations.quantities import Values
 from solvers.integration.problem.inputs import Controller, Held, History, Schedule
 from solvers.integration.problem.switch import Switch
@@ -138,8 +139,21 @@ class Problem:
     @property
     def collapse(self) -> float:
         """Part of the longest step below which constraints may be singular; 0 without these."""
-        watches = self.form.has_constraints and self.h is None and self.schedule is None
+        watches = self.form.has_constraints and self.h is None
+        schedule = self.schedule
+        if watches and schedule is not None:  # a part of the motion must be able to start anew
+            watches = schedule.table is not None and not integrals(self.form.module)
         return COLLAPSE * watches
+
+    def held_at(self, t: float) -> "Problem":
+        """The problem with the inputs of a table from the sample before `t` to the next one."""
+        schedule = self.schedule
+        if schedule is None or schedule.table is None:
+            return self
+        first, begins, ends = schedule.pieces(self.span)
+        k = min(int(np.searchsorted(ends, t, "right")), len(ends) - 1)
+        held = self.with_inputs(schedule.table[:, first + k])
+        return replace(held, span=(float(begins[k]), float(ends[k])), schedule=None)
 
     @property
     def backend(self) -> str | None:
