@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 Motion = tuple[str, Sequence[float], Sequence[float] | None]
 #: Conditions of G M⁻¹ Gᵀ: above the first digits are lost, above the second all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
+#: A smallest singular value of constraints, usually of the size 1, that is near a singularity.
+NEAR = 0.02
 #: States that give the sizes of the rows of G.
 STATES = 16
 
@@ -69,6 +71,14 @@ def condition_of_constraints(
     largest = max(singular[0], 1.0)  # of a single constraint the least is the largest one here
     condition = float((largest / least) ** 2) if least > 0 else float("inf")
     return condition, assembly.names[int(np.argmax(np.abs(left[:, -1])))]
+
+
+def distance_from_singularity(
+    module: GeneratedModule, params: Sequence[float], y: Sequence[float], t: float
+) -> float:
+    """The smallest singular value of constraints of the size 1: in proportion to the distance."""
+    condition, _ = condition_of_constraints(module, params, y, t)
+    return condition**-0.5 if condition else float("inf")
 
 
 def _spread(assembly: Assembly, y: Array) -> Array:

@@ -30,7 +30,7 @@ double residual(const double (*state)[PARTS], const double *params, double rtol)
     const double changes[PARAMETERS + SIZE] = {{0}}, times[] = {{0, 1.5}};
     double rows[2][ORDINARY], largest = 0;
     extended_start(&motion, 0, 1.5, state, params, changes);
-    extended_advance(&motion, times, 2, *rows, rtol, 1e-12, 10000, 60);
+    extended_advance(&motion, times, 2, *rows, rtol, 1e-12, 0, 10000, 60);
     number y[ORDINARY], all[PARAMETERS + 1], values[{count}];
     for (int k = 0; k < ORDINARY; k++) {{
         y[k] = {of_state};

@@ -17,6 +17,7 @@ from holonomic import Event, Held, build, consistent_start, ensemble, integrate,
 from solvers import Status
 from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import UnfinishedWarning
+from solvers.integration.compiled.extended import ExtendedError, integrate_extended
 from solvers.integration.loops import passage
 
 #: Bars stand upright; their tips move by 1 m/s.
@@ -192,6 +193,22 @@ def test_a_parallelogram_remains_one(method: str) -> None:
     assert np.abs(run.y[2] - run.y[0]).max() < 1e-9
     assert run.energy is not None
     assert np.abs(run.energy - run.energy[0]).max() < 1e-8
+
+
+@pytest.mark.long("compiles three loops", keep=1)
+@pytest.mark.parametrize("precision", ["double-double", "long double", "quadruple"])
+def test_longer_numbers_end_before_a_singular_configuration(precision: str) -> None:
+    """All bars lie on one line when the crank has turned to π."""
+    start = consistent_start(four_bar, {"phi": 1.0, "phi_dot": 8.0}, EQUAL,
+        guess={"psi": 0.0, "chi": 1.0}).y  # fmt: skip
+    params = four_bar.params(**EQUAL)
+    at_line = Event(four_bar, "phi", np.pi, terminal=True)
+    line = integrate(four_bar, (0, 1), start, EQUAL, events=at_line, **TOLERANCES).t[-1]
+    states = integrate_extended(four_bar, params, start, [0, 0.9 * line], precision, 1e-16)
+    assert np.abs(states[:, 1]).max() < 1e-15
+    for tolerance in (1e-14, 1e-16, 1e-19):
+        with pytest.raises(ExtendedError, match="constraints nearly depend on each other"):
+            integrate_extended(four_bar, params, start, [0, 2], precision, tolerance)
 
 
 def test_an_antiparallelogram_remains_one() -> None:

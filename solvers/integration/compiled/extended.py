@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
-from solvers.equations.module import GeneratedModule, has_header, integrals
+from solvers.equations.module import GeneratedModule, has_constraints, has_header, integrals
+from solvers.equations.singular_configuration import NEAR, distance_from_singularity
 from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.double_double import DoubleDouble
 from solvers.integration.compiled.extended_source import (
@@ -25,7 +26,7 @@ from solvers.integration.compiled.extended_source import (
 )
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.compiled.native import equations
-from solvers.integration.problem.problem import shortest_step
+from solvers.integration.problem.problem import COLLAPSE, shortest_step
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.stepper import Array
 
@@ -76,7 +77,7 @@ class ExtendedKernel:
         number, whole, pointer = ctypes.c_double, ctypes.c_int64, ctypes.c_void_p
         self.start.argtypes = [pointer, number, number, pointer, pointer, pointer]
         arrays = [pointer, pointer, whole, pointer]
-        self.advance.argtypes = [*arrays, number, number, whole, number]
+        self.advance.argtypes = [*arrays, number, number, number, whole, number]
         self.progress.argtypes = [pointer, pointer]
         self.start.restype = self.progress.restype = None
         self.advance.restype = size.restype = whole
@@ -144,7 +145,8 @@ def integrate_extended(
     Raises
     ------
     ExtendedError
-        When the last of the times is not reached: at a singularity, or after `max_steps`.
+        When the last of the times is not reached: at a singularity, near a configuration where
+        constraints depend on each other, or after `max_steps`.
     solvers.integration.compiled.compiler.NoCompilerError
         When no compiler has numbers of this type, or the equations cannot be written in them.
 
@@ -163,7 +165,8 @@ def integrate_extended(
     """
     loop, samples = kernel(module, precision), np.ascontiguousarray(times, dtype=float)
     begin, end = float(samples[0]), float(samples[-1])
-    rows, numbers = np.empty((len(samples), len(module.STATE))), np.zeros(4)
+    size = len(module.STATE)
+    rows, numbers = np.empty((len(samples), size)), np.zeros(4 + size)
     kept = np.zeros(len(integrals(module)))  # values that C sets
     start, values = _parts(loop.form, y0), np.array([*params, *kept], dtype=float)
     signs = np.random.default_rng(perturbation).choice([-CHANGE, CHANGE], len(start) + len(values))
@@ -172,19 +175,24 @@ def integrate_extended(
     motion = -(-memory.ctypes.data // ALIGNMENT) * ALIGNMENT
     arrays = (array.ctypes.data for array in (start, values, changes))
     loop.start(motion, begin, end - begin, *arrays)
-    status = None
+    status, collapse = None, COLLAPSE * has_constraints(module)
     while status is None:
         code = loop.advance(
             *(motion, samples.ctypes.data, len(samples), rows.ctypes.data),
-            *(rtol, shortest_step(begin, end), max_steps, TIME_LIMIT),
+            *(rtol, shortest_step(begin, end), collapse, max_steps, TIME_LIMIT),
         )
         status = STATUSES[code]
         loop.progress(motion, numbers.ctypes.data)
         progress(float(numbers[0]))
+        t, y = float(numbers[0]), numbers[4:]
+        if status is Status.SINGULAR:
+            near = distance_from_singularity(module, params, y.tolist(), t) <= NEAR
+            status = status if near else None  # steps are short for another reason
     if status is not Status.FINISHED:
         reason = {
             Status.STEP_LIMIT: f"it takes more than {max_steps} steps",
             Status.STEP_TOO_SMALL: "a step is below the resolution of time, as at a singularity",
+            Status.SINGULAR: "constraints nearly depend on each other, as at a toggle point",
         }[status]
         raise ExtendedError(status, f"{reason} (t = {numbers[0]:.10g}, {precision})")
     return rows

@@ -18,7 +18,7 @@ from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
 from solvers.equations.module import integrals
 from solvers.equations.quantities import NotFiniteNumberError
-from solvers.equations.singular_configuration import condition_of_constraints
+from solvers.equations.singular_configuration import NEAR, distance_from_singularity
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.loops import compiled_loop, passage, python_loop
@@ -32,10 +32,9 @@ from solvers.runge_kutta.stepper import Array
 #: Integrates a problem up to its end, or up to a step that collapses.
 Loop = Callable[[Problem, Outcome], None]
 
-#: A smallest singular value of constraints, usually of the size 1, that is near a singularity, and
-#: one at which a motion ends that no polynomial continues: where steps collapse again, its states
-#: would have lost their digits.
-NEAR, LOST = 0.02, 1e-3
+#: The distance from a singularity at which a motion ends that no polynomial continues: where steps
+#: collapse again, its states would have lost their digits.
+LOST = 1e-3
 #: Tolerances of the past motion: the smallest by which its steps get away from rounding errors.
 PAST = (1e-13, 1e-12, 1e-11, 1e-10)
 #: Times from the singularity at which polynomials begin and end, in units of that from the start;
@@ -143,10 +142,7 @@ def _append(outcome: Outcome, part: Outcome) -> None:
 
 
 def _distance(problem: Problem, t: float, y: Array) -> float:
-    """The smallest singular value of the constraints: in proportion to the distance."""
-    form = problem.form
-    condition, _ = condition_of_constraints(form.module, form.constants, y.tolist(), t)
-    return float(condition**-0.5)
+    return distance_from_singularity(problem.form.module, problem.form.constants, y.tolist(), t)
 
 
 def _approaches(problem: Problem) -> bool:

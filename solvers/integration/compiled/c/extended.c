@@ -142,10 +142,11 @@ void extended_start(
     motion->h = motion->last_h = first;
 }
 
-/* Continue a motion until the last sample, for some seconds of processor time. */
+/* Continue a motion until the last sample, for some seconds of processor time. It pauses as SINGULAR
+   where steps fall below a part `collapse` of the longest one since the start or the last pause. */
 int64_t extended_advance(
     Motion *motion, const double *times, int64_t count, double *rows, double rtol, double shortest,
-    int64_t max_steps, double seconds)
+    double collapse, int64_t max_steps, double seconds)
 {
     const Task task = {.times = times, .count = count, .rows = rows, .rtol = rtol};
     const clock_t started = clock();
@@ -171,10 +172,17 @@ int64_t extended_advance(
         if (!is_last && !(magnitude(motion->h) >= shortest)) {
             return STEP_TOO_SMALL;
         }
+        if (!is_last && magnitude(motion->h) < collapse*magnitude(motion->longest)) {
+            motion->longest = motion->h;
+            return SINGULAR;
+        }
         const real h = is_last ? left : (real)motion->h;
         const double factor = step(motion, h, &task);
         if (factor > 0) {
             motion->steps++;
+            if (magnitude((lower)h) > magnitude(motion->longest)) {
+                motion->longest = (lower)h;
+            }
             if (is_last) {      /* but for the rounding error of `left` */
                 motion->t_low += motion->t - end;
                 motion->t = end;
@@ -188,9 +196,12 @@ int64_t extended_advance(
     }
 }
 
-/* Time, samples, steps and rejected steps so far. */
+/* Time, samples, steps and rejected steps so far, and the ordinary state. */
 void extended_progress(const Motion *motion, double *numbers)
 {
+    for (int k = 0; k < ORDINARY; k++) {
+        numbers[4 + k] = (double)motion->y[COLUMN[k]];
+    }
     numbers[0] = (double)motion->t;
     numbers[1] = (double)motion->rows;
     numbers[2] = motion->steps;
@@ -212,5 +223,5 @@ void probe(void)
         params[n] = 0.5;
     }
     extended_start(&motion, 0, 0.01, state, params, changes);
-    extended_advance(&motion, times, 2, *rows, 1e-10, 1e-10, 10, 1);
+    extended_advance(&motion, times, 2, *rows, 1e-10, 1e-10, 0, 10, 1);
 }

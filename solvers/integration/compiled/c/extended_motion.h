@@ -19,7 +19,7 @@ typedef struct {
     real t, t_low, y[SIZE], y_low[SIZE];            /* _low: rounding errors */
     real params[PARAMETERS + 1], params_low[PARAMETERS + 1];
     Polynomial polynomial;          /* of the last step */
-    lower h, last_h;                /* lengths of the next and the last step */
+    lower h, last_h, longest;       /* lengths of the next, the last and the longest step */
     double steps, rejected;
     int64_t rows;                   /* samples written */
 } Motion;
