@@ -175,7 +175,7 @@ def _sums(q: Sequence[sp.Symbol], motions: Sequence[Motion]) -> sp.ImmutableDens
         arguments += [wave.args[0] for wave in waves]
     counts = Counter(row for row in (_weights(q, one) for one in arguments) if row)
     rows = {k: tuple(int(i == k) for i in range(len(q))) for k in range(len(q))}
-    for row, _ in reversed(counts.most_common()):
+    for row in sorted(counts, key=lambda row: (counts[row], row)):  # the last one is kept
         rows[max(k for k, weight in enumerate(row) if weight)] = row
     return sp.ImmutableDenseMatrix([rows[k] for k in range(len(q))])
 

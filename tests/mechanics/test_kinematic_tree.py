@@ -6,6 +6,7 @@ from sympy import Abs, Symbol, cos, sin, symbols
 
 from derive import TIME, Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.codegen.functions import contents
+from derive.mechanics.kinematic_tree import _sums
 
 m, l, g = symbols("m l g", positive=True)  # noqa: E741
 
@@ -80,3 +81,11 @@ def test_coordinates_that_move_no_mass_are_named() -> None:
     system = System("idle", "idle", coordinates, whole.parameters, whole.masses)
     with pytest.raises(ValueError, match=r"coordinate 'beta' .* moves no mass"):
         Derivation(system)
+
+
+def test_of_equally_frequent_sums_one_is_chosen_in_every_process() -> None:
+    x, y = symbols("x y", real=True)
+    waves = [sin(x + y), sin(2 * x + y), sin(y), sin(y - x), sin(3 * x + y)]
+    orders = (waves, waves[::-1], waves[2:] + waves[:2])
+    chosen = [_sums((x, y), [(m, (wave, sin(x))) for wave in order]) for order in orders]
+    assert chosen[0] == chosen[1] == chosen[2]
