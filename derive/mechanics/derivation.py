@@ -112,7 +112,7 @@ class Derivation(CyclicCoordinates):
         if self.has_singular_mass_matrix:
             inertia, G = self.mass_matrix, self.constraint_jacobian
             check_independence(self.system, inertia + G.T * G)
-        elif not self.tree or is_singular(self.system, self.tree.inertia):
+        elif not self.system.conditions and not self._has_regular_tree:
             check_independence(self.system, self.mass_matrix)
 
     def _leave_out_redundant(self) -> None:
@@ -144,6 +144,10 @@ class Derivation(CyclicCoordinates):
         """Whether some motions of the coordinates, which constraints prevent, move no mass."""
         inertia = self.tree.inertia if self.tree else self.mass_matrix
         return bool(self.system.conditions) and is_singular(self.system, inertia)
+
+    @property
+    def _has_regular_tree(self) -> bool:
+        return bool(self.tree and not is_singular(self.system, self.tree.inertia))
 
     @property
     def has_tree(self) -> bool:

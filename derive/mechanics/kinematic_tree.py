@@ -24,6 +24,9 @@ Motion: TypeAlias = tuple[sp.Expr, Vector]
 #: The indices of the variables that an increment depends on, and its components.
 Increment: TypeAlias = tuple[tuple[int, ...], Vector]
 
+#: Fewest changed entries of an elimination that are worth a tree: two variables beyond a third
+#: one, in the plane, take as many with it.
+FEWEST = 8
 #: Terms of the largest component of a position that is expanded.
 MOST_TERMS = 1000
 
@@ -140,7 +143,9 @@ def kinematic_tree(
     coordinates: Sequence[sp.Symbol], motions: Sequence[Motion]
 ) -> KinematicTree | None:
     """The tree of positions that depend on coordinates alone, if it shortens the equations."""
-    q = tuple(coordinates)
+    q, without = tuple(coordinates), _dense_updates(coordinates, motions)
+    if without < FEWEST:
+        return None
     trees = [_tree(q, q, sp.ImmutableDenseMatrix.eye(len(q)), motions)]
     sums = _sums(q, motions)
     if not sums.is_Identity:
@@ -150,7 +155,7 @@ def kinematic_tree(
         trees.append(_tree(q, variables, sums, motions))
     best = min((tree for tree in trees if tree), key=lambda tree: tree.updates, default=None)
     # entries of angles that occur in sums are longer than others
-    limit = _dense_updates(q, motions) / (2 if best and best.variables == q else 1)
+    limit = without / (2 if best and best.variables == q else 1)
     return best if best and best.updates < limit else None
 
 

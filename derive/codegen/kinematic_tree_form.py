@@ -13,12 +13,12 @@ from derive.codegen.constrained_factorisation import ConstrainedFactorisation
 from derive.codegen.differentiation import Differentiation
 from derive.codegen.factorisation import Rows
 from derive.codegen.graph import Graph
+from derive.codegen.kinematic_tree_factorisation import TreeFactorisation
 from derive.codegen.lagrangian_form import HALF
 from derive.codegen.node import Node
 from derive.codegen.projection_form import ProjectionForm
 from derive.codegen.rational import substitution
 from derive.codegen.translation import Translation
-from derive.codegen.tree_factorisation import TreeFactorisation
 from derive.mechanics.derivation import Derivation
 
 Vector = list[Node]
