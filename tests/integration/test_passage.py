@@ -125,16 +125,18 @@ def test_motions_with_a_table_of_inputs_are_passed_together_and_one_by_one(
     driven_bars: GeneratedModule,
 ) -> None:
     """The rod of a parallelogram keeps its direction, with 30 jumps of the torque."""
-    times = np.linspace(0, 3, 31)[:-1]
-    torques = Held(times, [[0.5 * np.cos(3 * t) for t in times]])
+    samples = np.linspace(0, 3, 31)
+    torques = 0.5 * np.cos(3 * samples[:-1])
     start = np.array([1.0, 0.0, 1.0, 9.0, 0.0, 9.0])
-    options: dict[str, Any] = {"inputs": torques, "method": "verner98", **TOLERANCES}
-    samples = np.linspace(0, 3, 11)
-    run = integrate(driven_bars, (0, 3), start, {"c": 0.25}, t_eval=samples, **options)
+    held = Held(samples[:-1], [torques])
+    options: dict[str, Any] = {"inputs": held, "method": "verner98", **TOLERANCES}
+    run = integrate(driven_bars, (0, 3), start, {"c": 0.25}, t_eval=samples, energy=True, **options)
     assert run.status is Status.FINISHED
     assert run.t.tolist() == samples.tolist()
     assert run.y[0, -1] > 4 * np.pi
     assert np.abs(run.y[1]).max() < 1e-9
+    assert run.energy is not None  # the torques' work
+    assert np.abs(np.diff(run.energy) - torques * np.diff(run.y[0])).max() < 1e-8
     motions = ensemble(driven_bars, (0, 3), np.transpose([start, start]), {"c": 0.25}, **options)
     assert {*motions.status} == {Status.FINISHED}
     assert np.abs(motions.y - run.y[:, -1:]).max() < 1e-7
