@@ -96,8 +96,9 @@ class Polynomial:
     """h dy/dt of a step of size `h`, signed, by Legendre coefficients on [0, 1].
 
     It predicts the stages of a step that starts at `origin`, a part of h: where the step ends, or
-    at its start for a shorter step. A step whose error is larger than `largest_error` ends early.
-    The iteration ends when the next change would be below the part `close` of the tolerance.
+    at its start for a shorter step. A step whose error is larger than `largest_error` ends early;
+    that is infinite within an accepted step. The iteration ends when the next change would be below
+    the part `close` of the tolerance.
     """
 
     h: float
@@ -174,6 +175,8 @@ class ParallelStages:
         limit = last.close**2 if self._is_controlled else 0.0
         previous, square, norm, is_last = np.inf, 0.0, None if limit else 0.0, False
         allowed = self._atol + self._rtol * np.abs(y) + SMALLEST
+        # with fixed steps and within accepted ones; other steps are shortened at once
+        may_grow = not limit or last.largest_error == np.inf
         for iteration in range(1, MAX_ITERATIONS + 1):
             before = increments
             increments = h * self.b[:, np.newaxis] * derivatives(y + self.ratios @ increments)
@@ -191,8 +194,7 @@ class ParallelStages:
                 is_last = change * (square * square) <= limit
                 if change * square <= limit or previous <= change < least:
                     break
-            # with fixed steps changes may grow at first; others are shortened at once
-            if not change < (16 * previous if limit else np.inf):
+            if not change < (np.inf if may_grow else 16 * previous):
                 message = f"the stages still change by {np.sqrt(change):.1e} tolerances"
                 raise NoFixedPointError(message)
             if iteration == EARLY and limit:

@@ -67,7 +67,8 @@ static __attribute__((noinline)) double squared_error_norm(
 typedef struct {
     const double *polynomial;
     double length, origin;
-    double largest_error;       /* a step with a larger squared error is not completed */
+    double largest_error;       /* a step with a larger squared error is not completed; infinite
+                                   within an accepted step */
     double close;               /* part of the tolerance at which the iteration ends */
 } Prediction;
 
@@ -93,6 +94,8 @@ static inline void solve_stages(
     for (int n = 0; n < DIM; n++) {
         inverse[n] = 1/(task->atol + task->rtol*fabs(start->z[n]) + SMALLEST);
     }
+    /* with fixed steps and within accepted ones; other steps are shortened at once */
+    const int may_grow = is_fixed || prediction->largest_error == INFINITY;
     int iteration = 0, is_last = 0, is_estimated = is_fixed;
     for (;;) {
         multiply(RATIOS, increments, start->z, z);
@@ -124,8 +127,7 @@ static inline void solve_stages(
                 break;
             }
         }
-        /* with fixed steps changes may grow at first; others are shortened at once */
-        if (!(change < (is_fixed ? INFINITY : 16*previous)) || iteration == MAX_ITERATIONS) {
+        if (!(change < (may_grow ? INFINITY : 16*previous)) || iteration == MAX_ITERATIONS) {
             increments[0] = splat_stages(NAN);
             break;
         }
