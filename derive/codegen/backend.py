@@ -7,8 +7,8 @@ from pkgutil import iter_modules
 from typing import ClassVar
 
 from derive.codegen import backends
-from derive.codegen.assignments import Assignments, Notation, Statement
 from derive.codegen.functions import Contents, Function
+from derive.codegen.operations.assignments import Assignments, Notation, Statement
 
 #: Place of the digest of all files of a system, by which files that belong together are known.
 DIGEST = "@digest@"

@@ -4,16 +4,16 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from derive.codegen.equations_of_motion import EquationsOfMotion
+from derive.codegen.expression_graph.rational import with_fewest_calls
+from derive.codegen.forms.equations_of_motion import EquationsOfMotion
+from derive.codegen.forms.hamiltonian_form import HamiltonianForm
+from derive.codegen.forms.kinematic_tree_form import TreeForm
+from derive.codegen.forms.lagrangian_form import LagrangianForm
+from derive.codegen.forms.output_form import OutputForm
+from derive.codegen.forms.projection_form import ProjectionForm
+from derive.codegen.forms.quaternion_form import QuaternionForm
 from derive.codegen.function_specs import SPECS, Form, FunctionSpec, is_small
-from derive.codegen.hamiltonian_form import HamiltonianForm
-from derive.codegen.kinematic_tree_form import TreeForm
-from derive.codegen.lagrangian_form import LagrangianForm
-from derive.codegen.lowering import Lowering
-from derive.codegen.output_form import OutputForm
-from derive.codegen.projection_form import ProjectionForm
-from derive.codegen.quaternion_form import QuaternionForm
-from derive.codegen.rational import with_fewest_calls
+from derive.codegen.operations.lowering import Lowering
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System

@@ -10,7 +10,7 @@ import sympy as sp
 
 from derive.codegen.backend import DIGEST, find_backends
 from derive.codegen.functions import Contents, contents
-from derive.codegen.tree import Tree
+from derive.codegen.generated_folder import Tree
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.reduced_coordinates import reduced
 from derive.system.system import System

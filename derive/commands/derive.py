@@ -6,13 +6,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from shlex import quote
 
+from derive.codegen.expression_graph.translation import UnsupportedFunctionError
+from derive.codegen.generated_folder import Difference, Tree
 from derive.codegen.summary import mobility
-from derive.codegen.translation import UnsupportedFunctionError
-from derive.codegen.tree import Difference, Tree
 from derive.codegen.writing import texts
 from derive.commands import document
 from derive.commands.arguments import add_arguments
-from derive.mechanics.constraints import Constraints
+from derive.mechanics.constraints.constraints import Constraints
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.reduced_coordinates import reduced
 from derive.system.catalogue import UnknownSystemError, load

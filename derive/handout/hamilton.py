@@ -6,8 +6,7 @@ from derive.formulas.derivative import derivative
 from derive.handout.document import Block, Paragraph
 from derive.handout.motion import has_inverse, legendre
 from derive.handout.notation import names_of, words
-from derive.handout.numbering import Numbering
-from derive.handout.tidy import tidied
+from derive.handout.numbering import Numbering, tidied
 from derive.mechanics.derivation import Derivation
 from derive.system.parts import SystemDefinitionError
 

@@ -8,10 +8,9 @@ import sympy as sp
 from derive.formulas.derivative import derivative
 from derive.handout.document import Block, Paragraph
 from derive.handout.notation import names_of
-from derive.handout.numbering import Numbering
-from derive.handout.tidy import tidied
+from derive.handout.numbering import Numbering, tidied
 from derive.mechanics.derivation import Derivation
-from derive.mechanics.reduction import reduced
+from derive.mechanics.energies.reduction import reduced
 from derive.system.symbols import TIME
 
 #: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted.

@@ -1,4 +1,4 @@
-"""The numbered formulas of a document."""
+"""The numbered formulas of a document, and sums that are short to read."""
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
@@ -11,6 +11,7 @@ from derive.formulas.line_breaks import latex_rows, width_of
 from derive.formulas.syntax import is_sum, summands
 from derive.handout.document import WIDTH, Block, Equation, Paragraph, in_text
 from derive.handout.notation import Notation
+from derive.mechanics.energies.reduction import collected
 
 #: Width of the left side of a column or matrix, and lines of the longest readable formula.
 NAME_WIDTH, READABLE = 8, 3
@@ -103,3 +104,20 @@ class Numbering:
     def text(self, *values: sp.Expr) -> str:
         """Values in a sentence."""
         return in_text(*map(self.notation.order.tree, values))
+
+
+def tidied(expression: sp.Expr, *variables: sp.Symbol) -> sp.Expr:
+    """`expression` with one term for each function of `variables`, roots and divisors unchanged.
+
+    An expanded divisor, such as the square of l² - x², hides that it is one.
+    """
+    powers = {
+        power: power.base
+        for power in expression.atoms(sp.Pow)
+        if power.base.is_Add and not (power.exp.is_Integer and power.exp > 0)
+    }
+    bases = sorted({*powers.values()}, key=sp.default_sort_key)
+    names = {base: sp.Symbol(f"root {k}", positive=True) for k, base in enumerate(bases)}
+    flat = expression.xreplace({power: names[base] ** power.exp for power, base in powers.items()})
+    total = collected(flat, *variables, *names.values())
+    return total.xreplace({name: base for base, name in names.items()})

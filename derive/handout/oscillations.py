@@ -10,7 +10,7 @@ from derive.formulas.numeric import Evaluator, mp
 from derive.handout.document import Block, Paragraph, Table
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation
-from derive.mechanics.linearisation import Linearisation
+from derive.mechanics.linearisation.small_oscillations import Linearisation
 from derive.system.parts import SystemDefinitionError
 
 #: The squared angular frequency of a normal mode, and its shape.

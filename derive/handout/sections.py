@@ -6,7 +6,7 @@ from textwrap import fill
 from typing import TypeAlias
 
 from derive.codegen.backend import find_backends
-from derive.codegen.factorisation import LARGE
+from derive.codegen.elimination.factorisation import LARGE
 from derive.codegen.functions import contents
 from derive.handout.document import WIDTH, Block, Code, Document, Paragraph, Section
 from derive.handout.hamilton import hamilton, routhian

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from derive.handout.document import Document
 from derive.handout.exercises import Exercise, with_exercises
-from derive.handout.notebook import notebook
-from derive.handout.page import page
+from derive.handout.formats.notebook import notebook
+from derive.handout.formats.page import page
+from derive.handout.formats.tex import tex
 from derive.handout.sections import document
-from derive.handout.tex import tex
 from derive.mechanics.derivation import Derivation
 from solvers.io.atomic_write import write_texts
 

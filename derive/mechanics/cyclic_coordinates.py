@@ -5,8 +5,8 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.equations import Equations
-from derive.mechanics.kinetics import Matrix
 from derive.mechanics.routhian import Routhian
 
 

@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from derive.mechanics.constraints import Constraints
+from derive.mechanics.constraints.constraints import Constraints
 from derive.mechanics.cyclic_coordinates import CyclicCoordinates
-from derive.mechanics.equilibria import equilibria
 from derive.mechanics.independence import check_independence, is_singular
-from derive.mechanics.linearisation import Linearisation, SmallOscillations
+from derive.mechanics.linearisation.equilibria import equilibria
+from derive.mechanics.linearisation.point import Formula, Point
+from derive.mechanics.linearisation.small_oscillations import Linearisation, SmallOscillations
+from derive.mechanics.linearisation.state_space import StateSpace, state_space
 from derive.mechanics.outputs import outputs as output_formulas
-from derive.mechanics.point import Formula, Point
-from derive.mechanics.state_space import StateSpace, state_space
 from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
 from derive.system.prescribed import motions
@@ -117,7 +117,7 @@ class Derivation(CyclicCoordinates):
 
     def _leave_out_redundant(self) -> None:
         # loads NumPy, which derivations without constraints do not need
-        from derive.mechanics.redundancy import independent
+        from derive.mechanics.constraints.redundancy import independent
 
         kept, redundant = independent(Constraints(self.system))
         if redundant:

@@ -7,9 +7,9 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.derivative import derivative
-from derive.mechanics.constraints import Constraints
-from derive.mechanics.kinetics import Matrix
-from derive.mechanics.reduction import collected, reduced
+from derive.mechanics.constraints.constraints import Constraints
+from derive.mechanics.energies.kinetics import Matrix
+from derive.mechanics.energies.reduction import collected, reduced
 from derive.system.parts import SystemDefinitionError
 
 HALF = sp.Rational(1, 2)

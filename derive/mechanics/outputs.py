@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS
-from derive.mechanics.kinetics import Kinetics
-from derive.mechanics.point import Formula, expression
+from derive.mechanics.energies.kinetics import Kinetics
+from derive.mechanics.linearisation.point import Formula, expression
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 from solvers.io.suggestion import did_you_mean, shortened

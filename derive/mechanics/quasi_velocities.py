@@ -18,9 +18,9 @@ import sympy as sp
 from derive.formulas.derivative import derivative
 from derive.formulas.expansion import is_expandable
 from derive.mechanics.derivation import Derivation
+from derive.mechanics.energies.kinetics import Matrix
+from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.independence import is_singular
-from derive.mechanics.kinetics import Matrix
-from derive.mechanics.reduction import reduced
 from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 

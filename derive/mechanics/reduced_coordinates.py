@@ -17,8 +17,7 @@ from derive.formulas.derivative import derivative
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import warn_of_redundancy
 from derive.mechanics.equations import Equations
-from derive.system.constraints import Constraint
-from derive.system.eliminated import Eliminated
+from derive.system.constraints import Constraint, Eliminated
 from derive.system.parts import SystemDefinitionError
 from derive.system.prescribed import motions
 from derive.system.symbols import TIME

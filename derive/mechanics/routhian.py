@@ -12,9 +12,9 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.derivative import derivative
+from derive.mechanics.energies.kinetics import Matrix
+from derive.mechanics.energies.reduction import collected, reduced
 from derive.mechanics.equations import HALF, Equations
-from derive.mechanics.kinetics import Matrix
-from derive.mechanics.reduction import collected, reduced
 from derive.system.symbols import TIME
 
 

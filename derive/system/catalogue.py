@@ -11,10 +11,10 @@ from importlib import import_module
 from os import PathLike, fspath
 from types import ModuleType
 
+from derive.system.files.system_file import read_system
 from derive.system.parts import SystemDefinitionError
 from derive.system.shipped import USUAL, large_names, names, stems
 from derive.system.system import System
-from derive.system.system_file import read_system
 from solvers.io.suggestion import did_you_mean
 
 #: The largest member of a family that is derived.

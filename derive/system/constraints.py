@@ -1,12 +1,19 @@
-"""Constraints: functions of the state that remain 0, and points that remain together."""
+"""Constraints: functions of the state that remain 0; coordinates that they determine."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self, TypeAlias
 
 import sympy as sp
 
-from derive.system.parts import SystemDefinitionError, check_text, formula, formulas, items
+from derive.system.parts import (
+    Coordinate,
+    SystemDefinitionError,
+    check_text,
+    formula,
+    formulas,
+    items,
+)
 from solvers.io.suggestion import shortened
 
 #: Components of a position.
@@ -103,3 +110,22 @@ def _points(pair: object, contents: str) -> tuple[tuple[sp.Expr, ...], ...]:
             f"coincide contains {shortened(pair)}: give {contents}, of two or three components each"
         )
     return tuple(points)
+
+
+@dataclass(frozen=True)
+class Eliminated:
+    """A coordinate, its constraint, and both as functions of the remaining coordinates."""
+
+    coordinate: Coordinate
+    constraint: Constraint
+    #: The coordinate, a function of the others, of parameters and of time.
+    formula: sp.Expr
+    #: The multiplier of the constraint, a function of the others, their velocities and
+    #: accelerations, and of the multipliers of the remaining constraints.
+    reaction: sp.Expr
+    #: Index of the constraint among all constraints.
+    index: int
+
+    def mapped(self, function: Callable[[sp.Expr], sp.Expr]) -> Self:
+        """A copy with `function` applied to formula and reaction."""
+        return replace(self, formula=function(self.formula), reaction=function(self.reaction))

@@ -8,9 +8,8 @@ from typing import cast
 
 import sympy as sp
 
-from derive.system.constraints import Constraint, Point
-from derive.system.eliminated import Eliminated
-from derive.system.link import Link, Shape
+from derive.system.constraints import Constraint, Eliminated, Point
+from derive.system.links.link import Link, Shape
 from derive.system.parts import Coordinate, Input, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import acceleration, momentum, variation, velocity
 

@@ -7,10 +7,9 @@ from itertools import chain
 import sympy as sp
 
 from derive.system.checks import check
-from derive.system.constraints import constraints
+from derive.system.constraints import Eliminated, constraints
 from derive.system.declaration import Declaration
-from derive.system.eliminated import Eliminated
-from derive.system.link import Link
+from derive.system.links.link import Link
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,

@@ -13,7 +13,7 @@ import sympy as sp
 
 from derive.formulas.expansion import is_expandable
 from derive.formulas.expression import parse
-from derive.mechanics.reduction import reduced
+from derive.mechanics.energies.reduction import reduced
 from derive.verification.derived import printed_formula
 from derive.verification.equations_of_motion import fits
 from derive.verification.goals import Goal, goals

@@ -10,9 +10,9 @@ from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
 from derive.system.catalogue import load, published
+from derive.system.files.tables import Table, read
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
-from derive.system.tables import Table, read
 from derive.verification.derived import QUANTITIES
 from derive.verification.equations_of_motion import judge_set
 from derive.verification.model import Model

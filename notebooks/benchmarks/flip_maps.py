@@ -16,10 +16,10 @@ from benchmarks.median_times import seconds
 from solvers.equations.module import GeneratedModule
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
-from solvers.sweeps.axes import Random
-from solvers.sweeps.pool import Pool
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
+from solvers.sweeps.definition.axes import Random
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.pool import Pool
+from solvers.sweeps.execution.run import sweep
 
 Array = NDArray[np.float64]
 

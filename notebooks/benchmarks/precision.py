@@ -14,9 +14,9 @@ import numpy as np
 
 from benchmarks.median_times import median_times
 from benchmarks.motions import START, Array, Curves, ordinary
-from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
+from solvers.equations.starts.decimal_state import decimal_state
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, cast
 from solvers.equations.arguments import checked
 from solvers.equations.lazy_module import LazyModule
 from solvers.equations.module import GeneratedModule
-from solvers.equations.module_cache import cached_module
-from solvers.equations.specialise import (
+from solvers.equations.module_cache import (
+    cached_module,
     projection_functions,
     required_functions,
     specialised_module,
@@ -51,7 +51,7 @@ def load(name: str) -> GeneratedModule:
         If no system has this name.
     ValueError
         If the file does not exist or does not describe a system.
-    derive.codegen.translation.UnsupportedFunctionError
+    derive.codegen.expression_graph.translation.UnsupportedFunctionError
         If its equations contain an unsupported function.
 
     Warns
@@ -111,7 +111,7 @@ def build(system: "System") -> GeneratedModule:
     ------
     ValueError
         If `system` is not a system, such as the path of a system file.
-    derive.codegen.translation.UnsupportedFunctionError
+    derive.codegen.expression_graph.translation.UnsupportedFunctionError
         If its equations contain an unsupported function.
 
     Warns

@@ -4,13 +4,13 @@ from collections.abc import Callable
 from math import inf
 from pathlib import Path
 
-from derive.codegen.tree import Tree
+from derive.codegen.generated_folder import Tree
 from derive.commands import systems
 from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.tableau import Tableau
 from solvers.scenes.models import catalogue
-from solvers.sweeps import map_kinds
+from solvers.sweeps.definition import map_kinds
 from solvers.sweeps.results import STATUSES
 
 ROOT = Path(__file__).parents[2]

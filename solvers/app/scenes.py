@@ -10,11 +10,11 @@ from solvers.scenes import run
 from solvers.scenes.reading import find as find_scene
 from solvers.scenes.run import SceneResult
 from solvers.scenes.scene import Scene
-from solvers.sweeps import reading
-from solvers.sweeps import run as sweeps
-from solvers.sweeps.pool import Pool
+from solvers.sweeps.definition import reading
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution import run as sweeps
+from solvers.sweeps.execution.pool import Pool
 from solvers.sweeps.results import Results
-from solvers.sweeps.sweep import Sweep
 
 
 @checked

@@ -1,15 +1,16 @@
-"""Modules generated on demand, and kept in the cache."""
+"""Modules generated on demand, kept in the cache; some are specialised for one scene."""
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import cast
 from warnings import warn
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
 from solvers.io.build_cache import NoPlaceError, built_folder
+from solvers.runge_kutta.catalogue import SCIPY, load
 
 
 def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> GeneratedModule:
@@ -36,3 +37,43 @@ def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -
     # the text, whose digest is known; Python would also load bytecode beside it
     exec(compile(text, module.__file__ or f"<{file}>", "exec"), vars(module))
     return cast("GeneratedModule", module)
+
+
+#: Maps a system's name, values of its parameters and names of functions to texts by file name.
+Generator = Callable[[str, Mapping[str, float], Sequence[str]], Mapping[str, str]]
+
+
+def required_functions(method: str, form: str) -> tuple[str, ...]:
+    """Names of the functions that a method requires; implicit methods require a Jacobian."""
+    conversions = ("hamiltonian_state", "lagrangian_state") if form == "hamiltonian" else ()
+    needs_jacobian = method not in SCIPY and load(method).needs_jacobian
+    jacobian = (named("jacobian", form),) if needs_jacobian else ()
+    return (named("rhs", form), *conversions, *jacobian)
+
+
+def projection_functions(module: GeneratedModule, form: str) -> tuple[str, ...]:
+    """Names of the functions that find and keep states on the constraints."""
+    if not has_constraints(module):
+        return ()
+    of_form = (named(name, form) for name in ("correction", "integrals"))
+    of_state = ("constraints", "constraints_jacobian", "redundant_constraints", "integrals")
+    names = (*of_state, *of_form, "mass_matrix")
+    return tuple(name for name in dict.fromkeys(names) if has_function(module, name))
+
+
+def specialised_module(
+    module: GeneratedModule,
+    params: Sequence[float],
+    functions: Sequence[str],
+    generator: Generator,
+    version: str,
+) -> GeneratedModule:
+    """A module with constant parameters and these functions, from the cache or newly generated.
+
+    Its functions take an empty sequence of parameters. Another `version` of the generator
+    generates it again.
+    """
+    name = module.SYSTEM
+    values = dict(zip(module.PARAMETERS, map(float, params), strict=True))
+    key = repr((name, values, tuple(functions), version))
+    return cached_module(name, key, lambda: generator(name, values, functions))

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.arguments import check_module, known_names
-from solvers.equations.mass_matrix import check_condition, examined
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import Values
+from solvers.equations.singularities.mass_matrix import check_condition, examined
 from solvers.integration.checks.accuracy_warnings import ensemble_warnings
 from solvers.integration.checks.predictability import UnfinishedWarning, is_ignored
 from solvers.integration.checks.singularity import SingularityWarning, singularities

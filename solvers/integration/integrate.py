@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.arguments import known_names
-from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import NotFiniteNumberError, Values
+from solvers.equations.singularities.mass_matrix import check_condition
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
 from solvers.integration.checks.global_error import global_error_estimate
 from solvers.integration.checks.predictability import (
@@ -135,9 +135,9 @@ def integrate(
         When errors grow to the size of the motion before its end.
     solvers.integration.checks.energy_change.EnergyWarning
         When a motion that conserves its energy ends with another one.
-    solvers.equations.mass_matrix.MassMatrixWarning
+    solvers.equations.singularities.mass_matrix.MassMatrixWarning
         When the mass matrix is nearly singular at the start, or where all coordinates are equal.
-    solvers.equations.singular_configuration.SingularConfigurationWarning
+    solvers.equations.singularities.singular_configuration.SingularConfigurationWarning
         When constraints nearly depend on each other at the start.
     UserWarning
         When no compiler could build the loop, and it runs in Python.

@@ -10,8 +10,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from solvers.equations.arguments import known_names
-from solvers.equations.assembly import Assembly
-from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import (
     GeneratedModule,
     has_constraints,
@@ -20,6 +18,8 @@ from solvers.equations.module import (
 )
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import REAL, Values
+from solvers.equations.singularities.mass_matrix import check_condition
+from solvers.equations.starts.assembly import Assembly
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
 from solvers.integration.checks.singularity import singularity
 from solvers.integration.checks.step_stability import diagnosis

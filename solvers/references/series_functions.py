@@ -9,7 +9,7 @@ from decimal import Decimal
 from math import atan2
 from operator import mul
 
-from solvers.equations.decimal_state import sine_and_cosine
+from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.references.series import ZERO, Series, Tape
 
 #: A function of series and numbers.

@@ -13,9 +13,9 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.decimal_state import decimal_state
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, with_functions
+from solvers.equations.starts.decimal_state import decimal_state
 from solvers.references.decimal_projection import DecimalProjection
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.series import Series

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.arguments import check_module, known_names
-from solvers.equations.consistent_start import consistent_start
-from solvers.equations.mass_matrix import check_condition
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import positive
+from solvers.equations.singularities.mass_matrix import check_condition
+from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.problem import validation
 from solvers.io.arguments import check_texts, check_type
 from solvers.io.toml_input import whole
@@ -80,7 +80,7 @@ class Scene:
 
     Warns
     -----
-    solvers.equations.mass_matrix.MassMatrixWarning
+    solvers.equations.singularities.mass_matrix.MassMatrixWarning
         When the mass matrix is nearly singular.
 
     Examples

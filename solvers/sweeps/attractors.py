@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, depends_on_time
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 
 #: Part of the tolerance within which states must recur for a motion to have arrived.
 ARRIVED = 0.1

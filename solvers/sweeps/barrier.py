@@ -8,7 +8,7 @@ import scipy
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 
 Positions: TypeAlias = Sequence[Mapping[str, float]]
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration.problem.status import Status
-from solvers.io.xarray_dataset import dataset
-from solvers.sweeps.checks import unit
-from solvers.sweeps.sweep import Sweep
+from solvers.io.exports import dataset
+from solvers.sweeps.definition.checks import unit
+from solvers.sweeps.definition.sweep import Sweep
 
 ENDS = (status.name.lower().replace("_", " ") for status in Status)
 #: Status of a motion, by its number in ``status.npy``.

@@ -11,7 +11,7 @@ from sympy import besselj, symbols
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, reduced
 from derive.codegen import functions as codegen
-from derive.codegen.translation import UnsupportedFunctionError
+from derive.codegen.expression_graph.translation import UnsupportedFunctionError
 from derive.codegen.writing import files as files_of
 from derive.system import catalogue
 from solvers import integrate, load

@@ -15,7 +15,7 @@ import pytest
 from folders import ROOT
 
 import generated
-from derive.codegen.tree import Tree
+from derive.codegen.generated_folder import Tree
 from derive.commands import derive as command
 from derive.commands.derive import main, planned
 from solvers import integrate
@@ -220,7 +220,7 @@ def test_the_next_run_removes_files_of_a_killed_run_but_not_of_an_active_one(
 def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
     old = {f"m{k}.py": "old\n" * 20_000 for k in range(8)}
     code = (
-        "import sys; from pathlib import Path; from derive.codegen.tree import Tree\n"
+        "import sys; from pathlib import Path; from derive.codegen.generated_folder import Tree\n"
         "for n in range(10**6):\n"
         "    texts = {f'm{k}.py': f'{n}\\n' * 20_000 for k in range(8)}\n"
         "    Tree(Path(sys.argv[1]), texts, complete=True).write()\n"

@@ -7,13 +7,13 @@ from functools import cache
 import pytest
 import sympy as sp
 
-from derive.codegen import operation as op
-from derive.codegen.assignments import Assignments, Notation
-from derive.codegen.factorisation import LARGE, Factorisation, factorisation
-from derive.codegen.graph import Graph
-from derive.codegen.lowering import Lowering
-from derive.codegen.node import Node
-from derive.codegen.translation import Translation, UnsupportedFunctionError
+from derive.codegen.elimination.factorisation import LARGE, Factorisation, factorisation
+from derive.codegen.expression_graph.graph import Graph
+from derive.codegen.expression_graph.node import Node
+from derive.codegen.expression_graph.translation import Translation, UnsupportedFunctionError
+from derive.codegen.operations import operation as op
+from derive.codegen.operations.assignments import Assignments, Notation
+from derive.codegen.operations.lowering import Lowering
 
 pi = sp.pi
 a, b, c, d, x = sp.symbols("a b c d x", positive=True)

@@ -9,8 +9,8 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System
+from derive.codegen.expression_graph.translation import UnsupportedFunctionError
 from derive.codegen.functions import contents
-from derive.codegen.translation import UnsupportedFunctionError
 from derive.commands.derive import main
 from derive.system.parts import SystemDefinitionError
 from solvers.app.modules import build, load

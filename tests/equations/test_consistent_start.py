@@ -10,15 +10,15 @@ import generated.four_bar as four_bars
 import generated.rolling_disc as disc
 from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
-from solvers.equations.assembly import EXACT, Assembly
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.equations.singular_configuration import SingularConfigurationWarning
-from solvers.equations.tangent_start import tangent_start
-from solvers.sweeps.axes import Grid
-from solvers.sweeps.initial_states import initial_states
+from solvers.equations.singularities.singular_configuration import SingularConfigurationWarning
+from solvers.equations.starts.assembly import EXACT, Assembly
+from solvers.equations.starts.tangent_start import tangent_start
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.sweep import Sweep
 
 q1, q2, q3, x, y = sp.symbols("q1 q2 q3 x y", real=True)
 a, b, c, d, m, length = sp.symbols("a b c d m l", positive=True)
@@ -250,7 +250,7 @@ def test_mistakes_in_the_assembly_are_noticed(
     if mistake == "velocities at rest":
         monkeypatch.setattr(Assembly, "_velocity_changes", lambda self, y, free: 0 * y[:, self.n :])
     if mistake == "one step only":
-        monkeypatch.setattr("solvers.equations.assembly.STEPS", 1)
+        monkeypatch.setattr("solvers.equations.starts.assembly.STEPS", 1)
     with pytest.raises((AssertionError, ValueError)):
         test_four_bar_linkages_have_freudenstein_s_angles_in_both_branches(1.0, 1, four_bar)
 

@@ -10,16 +10,16 @@ import pytest
 from handwritten import handwritten
 
 import generated.double_pendulum as dp
-from solvers.equations.mass_matrix import MassMatrixWarning, check_condition
+from solvers.equations.singularities.mass_matrix import MassMatrixWarning, check_condition
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
 from solvers.integration.problem.status import Status
-from solvers.sweeps.axes import Grid, Random
+from solvers.sweeps.definition.axes import Grid, Random
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 #: Rods that are aligned, nearly so, and at right angles: the motion aligns them.
 STARTS = [(0.1, 0.1, 0.0, 0.0), (0.1, 0.2, 0.0, 0.0), (0.0, 1.57, 0.0, 0.0)]

@@ -20,15 +20,15 @@ from derive.commands.derive import main
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.numeric import Evaluator
 from derive.formulas.sampling import STATES, sample
-from derive.handout.characters import declarations
 from derive.handout.document import Code, Document, Equation, Paragraph
 from derive.handout.exercises import with_exercises
+from derive.handout.formats.characters import declarations
+from derive.handout.formats.notebook import notebook
+from derive.handout.formats.page import BLANK, page
+from derive.handout.formats.tex import tex
 from derive.handout.mistakes import planted
 from derive.handout.notation import Notation
-from derive.handout.notebook import notebook
-from derive.handout.page import BLANK, page
 from derive.handout.sections import document
-from derive.handout.tex import tex
 from derive.handout.writing import write_document
 
 #: A system with friction, a driving force, a spring, and letters of derived quantities.

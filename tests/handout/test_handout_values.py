@@ -12,9 +12,9 @@ from latex_trees import show
 
 from derive import Derivation, load, names, reduced
 from derive.formulas.lettering import lettering
+from derive.handout.formats.tex import equation_rows
 from derive.handout.notation import Notation
 from derive.handout.sections import document, with_letters
-from derive.handout.tex import equation_rows
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
 from derive.reading.latex.reader import formulas

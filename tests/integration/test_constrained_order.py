@@ -18,10 +18,10 @@ from velocity_constraints import yoke
 
 from derive import System
 from holonomic import build, integrate
-from solvers.equations.consistent_start import consistent_start
-from solvers.equations.decimal_state import decimal_state, sine_and_cosine
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import with_functions
+from solvers.equations.starts.consistent_start import consistent_start
+from solvers.equations.starts.decimal_state import decimal_state, sine_and_cosine
 from solvers.references.decimal_projection import DecimalProjection
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.taylor import decimal_motion

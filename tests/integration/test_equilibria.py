@@ -13,7 +13,7 @@ from derive import Coordinate, Derivation, Parameter, PointMass, System, load, w
 from derive.system.parts import SystemDefinitionError
 from solvers import build, equilibria
 from solvers import load as module_of
-from solvers.equations.intervals import FUNCTIONS, Interval
+from solvers.equations.linearisation.intervals import FUNCTIONS, Interval
 
 cart = build(cart_pole)
 hoop = module_of("rotating_hoop")

@@ -31,9 +31,9 @@ from solvers.integration.problem.status import Status
 from solvers.integration.results.solution import Solution
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.sweep import Sweep
 
 RADAU = ("radau3", "radau5", "radau7")
 CONTROLLED = (*RADAU, "radau")

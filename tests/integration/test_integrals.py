@@ -35,10 +35,10 @@ from derive import (
     RigidBody,
     velocity,
 )
-from derive.mechanics.constraints import Constraints
+from derive.mechanics.constraints.constraints import Constraints
 from holonomic import build, ensemble, integrate, prepare
-from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule
+from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.extended import integrate_extended
 from solvers.integration.problem.inputs import Held

@@ -14,8 +14,8 @@ import generated.duffing as duffing
 import generated.elastic_pendulum as elastic
 import generated.henon_heiles as henon
 import generated.single_pendulum as single
-from solvers.equations.equilibria import equilibria
-from solvers.equations.linear_system import linearise
+from solvers.equations.linearisation.equilibria import equilibria
+from solvers.equations.linearisation.linear_system import linearise
 from solvers.integration.orbits.normal_mode import backbone_slope, normal_mode_orbit
 from solvers.integration.orbits.orbit_family import orbit_family
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit

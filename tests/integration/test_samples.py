@@ -80,7 +80,10 @@ def test_samples_of_gauss_steps_are_as_accurate_as_their_ends(
 def test_samples_change_neither_the_steps_nor_the_end(backend: str) -> None:
     """Close to equilibrium: changes far below the tolerance grow in the iteration of a sample."""
     params = elastic.params(m=0.656818395497523, k=149.5192837479851, l=0.575, g=6.788731362682799)
-    start, options = (0.6046667109439209, 0.00237337136018224, 0.0, 0.0), {"rtol": 8e-7, "atol": 8e-10}
+    start, options = (
+        (0.6046667109439209, 0.00237337136018224, 0.0, 0.0),
+        {"rtol": 8e-7, "atol": 8e-10},
+    )
     few, many = (
         integrate(
             elastic, (0, END), start, params, method="gauss8", t_eval=np.linspace(0, END, count),

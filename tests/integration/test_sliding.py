@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from derive import PointMass, System
 from solvers.app.modules import build
-from solvers.equations.linear_system import linearise
+from solvers.equations.linearisation.linear_system import linearise
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare

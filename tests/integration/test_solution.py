@@ -15,12 +15,12 @@ import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers import Event, StopFlag, ensemble, integrate
 from solvers.integration.problem.status import Status
-from solvers.io import xarray_dataset
-from solvers.sweeps import pool, worker
-from solvers.sweeps.axes import Grid
+from solvers.io import exports
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution import pool, worker
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 Y0 = {"r": 1.1, "theta": 0.5}
 
@@ -126,7 +126,7 @@ def test_without_xarray_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
     def missing(name: str) -> Any:
         raise ImportError(name)
 
-    monkeypatch.setattr(xarray_dataset, "import_module", missing)
+    monkeypatch.setattr(exports, "import_module", missing)
     with pytest.raises(ImportError, match=r"pip install 'holonomic\[xarray\]'"):
         integrate(sp, (0, 1), {"theta": 1.0}, {}).to_xarray()
 

@@ -14,12 +14,12 @@ from solvers.integration.problem.status import Status
 from solvers.integration.variations.frames import Frames
 from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
 from solvers.integration.variations.transition_matrix import transition_matrix
-from solvers.sweeps.axes import Grid
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.map_table import MapTable
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.lyapunov_spectrum import Spectrum
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 FINE = {"rtol": 1e-12, "atol": 1e-12}
 

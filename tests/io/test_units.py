@@ -19,7 +19,7 @@ from solvers.io.notation import axis_label
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.units import dimension, with_unit
 from solvers.scenes.summary import summary
-from solvers.sweeps import map_kinds
+from solvers.sweeps.definition import map_kinds
 
 NUMBERS = (100, 0.1, -1.5e-05, 2e20)
 

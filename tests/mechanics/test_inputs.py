@@ -22,7 +22,7 @@ from derive import (
     velocity,
     with_inputs,
 )
-from derive.handout.page import page
+from derive.handout.formats.page import page
 from derive.handout.sections import document
 from derive.system.parts import SystemDefinitionError
 from solvers import build

@@ -6,7 +6,7 @@ from sympy import Abs, Symbol, cos, sin, symbols
 
 from derive import TIME, Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.codegen.functions import contents
-from derive.mechanics.kinematic_tree import _sums
+from derive.mechanics.energies.kinematic_tree import _sums
 
 m, l, g = symbols("m l g", positive=True)  # noqa: E741
 

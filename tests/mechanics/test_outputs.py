@@ -13,7 +13,7 @@ from derive import Derivation, System, load, velocity, with_inputs
 from derive.codegen.writing import texts
 from derive.system.parts import SystemDefinitionError
 from solvers.app.modules import build
-from solvers.equations.linear_system import linearise
+from solvers.equations.linearisation.linear_system import linearise
 
 length, M = sp.Symbol("l", positive=True), sp.Symbol("M", positive=True)
 OUTPUTS = {"tip": x + length * sp.sin(theta), "push": F - M * velocity(x) ** 2, "angle": theta}

@@ -21,7 +21,7 @@ from derive import (
 )
 from derive.system.parts import SystemDefinitionError
 from solvers.app.modules import build
-from solvers.equations.linear_system import linearise
+from solvers.equations.linearisation.linear_system import linearise
 from solvers.equations.module import GeneratedModule
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare

@@ -12,10 +12,11 @@ from numpy.testing import assert_allclose
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
-from solvers.sweeps import map_kinds, maps
-from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.reading import find
-from solvers.sweeps.run import sweep
+from solvers.sweeps import maps
+from solvers.sweeps.definition import map_kinds
+from solvers.sweeps.definition.map_table import MapTable
+from solvers.sweeps.definition.reading import find
+from solvers.sweeps.execution.run import sweep
 
 KIND = '''
 """Mean speeds."""

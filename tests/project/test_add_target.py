@@ -17,7 +17,7 @@ from derive.codegen.backend import find_backends
 TARGET = '''
 """JavaScript modules."""
 
-from derive.codegen.assignments import Value
+from derive.codegen.operations.assignments import Value
 from derive.codegen.backend import Backend
 
 

@@ -12,11 +12,11 @@ from solvers import Event
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.scenes.scene import Scene
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.maps import Map
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
-from solvers.sweeps.sweep import Sweep
 
 START = (1.0, 0.0, 0.0, 0.0)
 REST = solvers.equilibria(dp, {})[0]

@@ -19,9 +19,9 @@ from solvers.integration.ode_solver import ode_solver
 from solvers.integration.prepare import prepare
 from solvers.integration.problem.events import Event
 from solvers.scenes.scene import Scene
-from solvers.sweeps.axes import Grid, Random
+from solvers.sweeps.definition.axes import Grid, Random
+from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.sweep import Sweep
 
 START, PARAMS = (0.1, 0.2, 0.0, 0.0), dp.DEFAULTS
 BY_NAME = {"theta1": [0.1, 0.2], "theta2": 0.1}

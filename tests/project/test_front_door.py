@@ -16,7 +16,7 @@ import solvers
 from solvers import Final, Grid, Sweep, load_scene, load_sweep, run_scene, sweep
 from solvers.io.toml_input import InputError
 from solvers.scenes.reading import FILES
-from solvers.sweeps import reading
+from solvers.sweeps.definition import reading
 
 HEAVY = ("sympy", "numpy", "scipy", "matplotlib")
 

@@ -13,7 +13,7 @@ from folders import ROOT
 from snippets import assert_is_printed, run_snippet
 
 import generated.double_pendulum as dp
-from derive.codegen.tree import Tree
+from derive.codegen.generated_folder import Tree
 from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.table import document_record
 from derive.verification.hand import EQUATIONS, HEADER
@@ -25,8 +25,8 @@ from solvers.scenes import reading as scenes
 from solvers.scenes.models import catalogue
 from solvers.scenes.reading import find as find_scene
 from solvers.scenes.run import run_scene
-from solvers.sweeps import reading
-from solvers.sweeps.run import sweep
+from solvers.sweeps.definition import reading
+from solvers.sweeps.execution.run import sweep
 
 READMES = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
 

@@ -19,8 +19,8 @@ import generated.foucault_pendulum as foucault
 import generated.single_pendulum as sp
 from holonomic import Coordinate, Parameter, PointMass, System, build
 from solvers.app.modules import load as load_module
-from solvers.equations.decimal_state import sine_and_cosine
 from solvers.equations.module import ELEMENTARY
+from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.references.elliptic import jacobi, pendulum
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated

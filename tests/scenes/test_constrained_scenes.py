@@ -15,12 +15,12 @@ from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
 from solvers.scenes.summary import figures, summary
-from solvers.sweeps.axes import Grid
-from solvers.sweeps.checks import FROM_ENERGY
-from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.checks import FROM_ENERGY
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.results import STATUSES
-from solvers.sweeps.sweep import Sweep
 
 ROCKER = """
 title = "Four-bar linkage"

@@ -19,7 +19,7 @@ import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 from solvers.app.modules import load as load_module
-from solvers.equations.normal_modes import _generalized_eigh, mode_spread
+from solvers.equations.linearisation.normal_modes import _generalized_eigh, mode_spread
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor

@@ -32,7 +32,9 @@ from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.plots import boundaries, regions
 from solvers.studies.work_precision import plots as chart_plots
 from solvers.studies.work_precision.curve import Curve, Point
-from solvers.sweeps.axes import Grid, Random
+from solvers.sweeps.definition.axes import Grid, Random
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
@@ -42,8 +44,6 @@ from solvers.sweeps.maps.section import Section
 from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.plots.panels import CURVES, MARKED
 from solvers.sweeps.plots.quantity import add_colour_bar, wrapped
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 PI = np.pi
 

@@ -13,8 +13,8 @@ import generated
 import generated.chain_3 as chain
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
-from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule, function, has_constraints, has_function
+from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor

@@ -15,7 +15,7 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.app.cli import main
-from solvers.equations.normal_modes import Modes, local_eigenvalues
+from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.catalogue import load, names

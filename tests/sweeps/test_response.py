@@ -11,7 +11,7 @@ from scipy.optimize import fsolve
 
 import generated.duffing as duffing
 from solvers import Extremes, Grid, Pool, Random, Response, Results, Sweep, partial_results, sweep
-from solvers.sweeps import worker
+from solvers.sweeps.execution import worker
 from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.summary import summary
 

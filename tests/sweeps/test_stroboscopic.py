@@ -15,10 +15,10 @@ import generated.single_pendulum as sp
 from solvers import Extremes, Final, Grid, Lyapunov, Samples, Section, Sweep, sweep
 from solvers.app.modules import load as load_module
 from solvers.io.quantity import QuantityError, formula
-from solvers.sweeps import worker
+from solvers.sweeps.definition.reading import find
+from solvers.sweeps.execution import worker
 from solvers.sweeps.maps.stroboscopic import Stroboscopic
 from solvers.sweeps.plots.figure import figure
-from solvers.sweeps.reading import find
 from solvers.sweeps.results import Results
 
 PERIOD = "2*pi/Omega"

@@ -20,14 +20,14 @@ from solvers.integration.compiled import compiler
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.loops import compiled_loop
-from solvers.sweeps import arithmetic, worker
-from solvers.sweeps.arithmetic import OtherArithmeticError
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution import arithmetic, worker
+from solvers.sweeps.execution.arithmetic import OtherArithmeticError
+from solvers.sweeps.execution.pool import Pool
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
-from solvers.sweeps.pool import Pool
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 # kinds of arithmetic differ in fused products, which a compiler forms where it optimises
 pytestmark = pytest.mark.usefixtures("optimised")
@@ -158,10 +158,10 @@ def test_a_library_that_rounds_a_sine_differently_has_other_arithmetic() -> None
     code = """if True:
         import hashlib, numpy as np
         import generated.henon_heiles as hh  # its motions need no sine
-        from solvers.sweeps import arithmetic
-        from solvers.sweeps.axes import Grid
+        from solvers.sweeps.execution import arithmetic
+        from solvers.sweeps.definition.axes import Grid
         from solvers.sweeps.maps.final import Final
-        from solvers.sweeps.sweep import Sweep
+        from solvers.sweeps.definition.sweep import Sweep
         axes = Grid({"x": [0.1], "y": [0.1]})
         one = Sweep(hh, axes, {"end": Final(("x",))}, 0.1)
         print(hashlib.sha256(np.sin(arithmetic.ARGUMENTS).tobytes()).hexdigest())

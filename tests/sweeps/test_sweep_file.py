@@ -8,8 +8,8 @@ from sweep_file import FILE, write_sweep
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
-from solvers.sweeps.axes import Random
-from solvers.sweeps.reading import find
+from solvers.sweeps.definition.axes import Random
+from solvers.sweeps.definition.reading import find
 
 
 @pytest.mark.parametrize(("change", "words"), [

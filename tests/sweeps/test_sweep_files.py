@@ -15,13 +15,13 @@ from sweep_file import write_sweep
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
-from solvers.sweeps import worker
-from solvers.sweeps.axes import Grid
-from solvers.sweeps.folder import DIGITS, FORMAT, FolderError
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.reading import find
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution import worker
+from solvers.sweeps.execution.folder import DIGITS, FORMAT, FolderError
+from solvers.sweeps.execution.run import partial_results, sweep
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.reading import find
-from solvers.sweeps.run import partial_results, sweep
-from solvers.sweeps.sweep import Sweep
 
 ANGLES = np.linspace(-3, 3, 8)
 DEFINITION = Sweep(dp, Grid({"theta1": ANGLES, "theta2": ANGLES}), {"end": Final(("theta1",))}, 0.1)

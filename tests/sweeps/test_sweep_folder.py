@@ -25,16 +25,16 @@ import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.integration.loops.stop_flag import StopFlag
-from solvers.sweeps import pool, worker
-from solvers.sweeps.axes import Grid, Random
-from solvers.sweeps.folder import Folder, FolderError
+from solvers.sweeps.definition.axes import Grid, Random
+from solvers.sweeps.definition.reading import find
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution import pool, worker
+from solvers.sweeps.execution.folder import Folder, FolderError
+from solvers.sweeps.execution.pool import LostWorkersError, Pool
+from solvers.sweeps.execution.run import partial_results, sweep
+from solvers.sweeps.execution.worker import run_chunk
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
-from solvers.sweeps.pool import LostWorkersError, Pool
-from solvers.sweeps.reading import find
-from solvers.sweeps.run import partial_results, sweep
-from solvers.sweeps.sweep import Sweep
-from solvers.sweeps.worker import run_chunk
 
 HOLONOMIC = str(Path(sys.executable).parent / "holonomic")
 ANGLES = np.linspace(-3, 3, 40)
@@ -137,7 +137,7 @@ def test_a_cluster_that_loses_a_worker_has_the_same_results(
     with Client(address) as client:
         sweep(DEFINITION, tmp_path, pool=Pool(client.get_executor(), 2), report=report)
         (left,) = client.run(modules).values()  # the other worker is gone
-        assert "solvers.sweeps.worker" in left
+        assert "solvers.sweeps.execution.worker" in left
         assert not {"sympy", "derive", "matplotlib"} & {*left}
     assert files(tmp_path) == expected
 
@@ -311,7 +311,7 @@ def test_maps_that_do_not_fit_the_disk_are_refused_at_the_start(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     small = disk_usage(tmp_path)._replace(free=1000)
-    monkeypatch.setattr("solvers.sweeps.folder.disk_usage", lambda _: small)
+    monkeypatch.setattr("solvers.sweeps.execution.folder.disk_usage", lambda _: small)
     with pytest.raises(OSError, match=r"the maps need .* GB, and 1e-06 GB are free"):
         sweep(DEFINITION, tmp_path / "out")
     assert not (tmp_path / "out").exists()

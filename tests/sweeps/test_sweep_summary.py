@@ -9,16 +9,16 @@ import pytest
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
-from solvers.sweeps import convergence, worker
-from solvers.sweeps.axes import Grid, Random
-from solvers.sweeps.convergence import Convergence
-from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.definition.axes import Grid, Random
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution import convergence, worker
+from solvers.sweeps.execution.convergence import Convergence
+from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 from solvers.sweeps.results import STATUSES, Results
 from solvers.sweeps.summary import as_json, ranges, summary
-from solvers.sweeps.sweep import Sweep
 
 PI = np.pi
 FLIP = {"theta1": (-PI, PI), "theta2": (-PI, PI)}

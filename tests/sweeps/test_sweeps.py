@@ -22,7 +22,11 @@ from solvers.app.modules import load as load_module
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
-from solvers.sweeps.axes import BLOCK, Grid, Random, Table
+from solvers.sweeps.definition.axes import BLOCK, Grid, Random, Table
+from solvers.sweeps.definition.reading import find, names
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.pool import Pool
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
@@ -30,11 +34,7 @@ from solvers.sweeps.maps.first import First
 from solvers.sweeps.maps.lyapunov import Lyapunov
 from solvers.sweeps.maps.samples import Samples
 from solvers.sweeps.maps.section import Section
-from solvers.sweeps.pool import Pool
-from solvers.sweeps.reading import find, names
 from solvers.sweeps.results import STATUSES, Results
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 PI = np.pi
 FLIP = {"theta1": (-PI, PI), "theta2": (-PI, PI)}

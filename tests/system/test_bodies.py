@@ -34,7 +34,7 @@ from derive.system.parts import SystemDefinitionError
 from holonomic import Status, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.equations.singular_coordinates import singular_coordinates
+from solvers.equations.singularities.singular_coordinates import singular_coordinates
 from solvers.integration.checks.singularity import SingularityWarning
 from solvers.references.rigid_bodies import free_body, top_inclination
 
@@ -180,7 +180,7 @@ MISTAKES: dict[str, tuple[object, ...]] = {
     "inertia about another point": (f"{__name__}.CENTRE", sp.zeros(3, 1)),
     "no gyroscopic forces": (QuasiVelocities, "inertial_forces", (sp.S.Zero,) * 6),
     "space for body axes": (
-        "derive.codegen.quaternion_form.columns",
+        "derive.codegen.forms.quaternion_form.columns",
         lambda parts: ((-x, -y, -z), (w, z, -y), (-z, w, x), (y, -x, w)),
     ),
 }

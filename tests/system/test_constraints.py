@@ -33,7 +33,7 @@ from derive import (
     velocity,
     write,
 )
-from derive.codegen.lagrangian_form import LagrangianForm
+from derive.codegen.forms.lagrangian_form import LagrangianForm
 from derive.system.parts import SystemDefinitionError
 from holonomic import build, ensemble, integrate
 from solvers.equations.forms import Form

@@ -18,8 +18,8 @@ from derive import (
     velocity,
     write,
 )
+from derive.system.files.system_file import read_system
 from derive.system.parts import SystemDefinitionError
-from derive.system.system_file import read_system
 from solvers import build
 
 x, y, g, F = sp.symbols("x y g F", real=True)

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 import generated.double_pendulum as dp
 from derive import TIME, Derivation, PointMass, load
-from derive.codegen.factorisation import LARGE
+from derive.codegen.elimination.factorisation import LARGE
 from derive.codegen.functions import contents
 from derive.codegen.writing import files
 from holonomic import build

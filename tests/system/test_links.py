@@ -30,7 +30,7 @@ from derive import (
     with_inputs,
 )
 from derive.codegen.writing import texts
-from derive.system.link import Link
+from derive.system.links.link import Link
 from derive.system.parts import SystemDefinitionError
 from solvers import Scene, build, run_scene
 from solvers.equations.module import links

@@ -14,9 +14,9 @@ from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.problem.status import Status
 from solvers.scenes.scene import Scene
-from solvers.sweeps.axes import Grid
+from solvers.sweeps.definition.axes import Grid
+from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.maps.final import Final
-from solvers.sweeps.sweep import Sweep
 
 NEGATIVE = (1.0, -1.0, 1.0, 1.0, 9.81)
 START = (0.1, 0.2, 0.0, 0.0)

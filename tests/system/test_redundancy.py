@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-import derive.mechanics.redundancy
+import derive.mechanics.constraints.redundancy
 import generated.single_pendulum as single
 from derive import (
     TIME,
@@ -213,7 +213,7 @@ def test_equations_with_a_redundant_row_have_no_solution(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        derive.mechanics.redundancy,
+        derive.mechanics.constraints.redundancy,
         "independent",
         lambda equations: (equations.system.conditions, ()),
     )

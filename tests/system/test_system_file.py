@@ -10,10 +10,10 @@ from counting import counted_calls
 from valid_files import BEAD
 
 from derive import Constraint, Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
-from derive.codegen.translation import NAMES
+from derive.codegen.expression_graph.translation import NAMES
 from derive.commands.derive import main
+from derive.system.files.system_file import read_system
 from derive.system.parts import SystemDefinitionError
-from derive.system.system_file import read_system
 from solvers.app.cli import main as holonomic
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser

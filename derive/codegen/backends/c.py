@@ -4,10 +4,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from textwrap import indent, wrap
 
-from derive.codegen.assignments import Factorisation, Notation, Solution, Statement, Value
 from derive.codegen.backend import DIGEST, Backend
+from derive.codegen.expression_graph.node import Number
 from derive.codegen.functions import Contents, Function
-from derive.codegen.node import Number
+from derive.codegen.operations.assignments import (
+    Factorisation,
+    Notation,
+    Solution,
+    Statement,
+    Value,
+)
 from derive.codegen.summary import broken_sum, summary
 
 WIDTH = 92

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from textwrap import indent, wrap
 
-from derive.codegen.assignments import Factorisation, Solution, Statement, Value
 from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.function_specs import Form
 from derive.codegen.functions import Contents, Function, split
+from derive.codegen.operations.assignments import Factorisation, Solution, Statement, Value
 from derive.codegen.summary import broken_sum, states, summary, units
 from derive.mechanics.derivation import Derivation
 from derive.system.system import System

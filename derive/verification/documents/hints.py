@@ -9,8 +9,8 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
+from derive.system.files.tables import Table, read
 from derive.system.system import System
-from derive.system.tables import Table, read
 from derive.verification.documents.candidates import Candidate, candidates, kind_of
 from derive.verification.documents.letters import Letters
 from derive.verification.documents.templates import named

@@ -8,7 +8,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
-from derive.mechanics.kinetics import Kinetics
+from derive.mechanics.energies.kinetics import Kinetics
 from derive.verification.documents.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
 from derive.verification.documents.scope import DocumentScope
 from derive.verification.documents.statements import DocumentFormula

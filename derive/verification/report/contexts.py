@@ -12,7 +12,7 @@ import sympy as sp
 
 from derive.formulas import expression
 from derive.mechanics.derivation import Derivation
-from derive.mechanics.reduction import reduced
+from derive.mechanics.energies.reduction import reduced
 from derive.system.catalogue import load
 from derive.verification.engine import Context
 from derive.verification.model import depends_on, time_derivative

@@ -121,7 +121,7 @@ def selected_scenes(
 
 def print_json(results: Any) -> None:
     """Print results as JSON; numbers that are not finite become null."""
-    from solvers.io.json_values import jsonable
+    from solvers.io.exports import jsonable
 
     print(json.dumps(jsonable(results), indent=2))  # in ASCII: valid in every encoding
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from solvers.app.commands import options
 
 if TYPE_CHECKING:
-    from solvers.sweeps.pool import Pool
+    from solvers.sweeps.execution.pool import Pool
 
 SUMMARY = "map many motions: flips, exponents, sections"
 #: Seconds to wait for a scheduler.
@@ -45,11 +45,11 @@ def run(arguments: Namespace) -> int:
     from solvers.app.modules import load
     from solvers.io.figures import save
     from solvers.io.progress import Progress
-    from solvers.sweeps.convergence import convergence
+    from solvers.sweeps.definition.reading import find
+    from solvers.sweeps.execution.convergence import convergence
+    from solvers.sweeps.execution.run import partial_results, sweep
     from solvers.sweeps.plots.figure import figure
-    from solvers.sweeps.reading import find
     from solvers.sweeps.results import GOOD
-    from solvers.sweeps.run import partial_results, sweep
     from solvers.sweeps.summary import as_json, summary
 
     definition = find(arguments.sweep, load)
@@ -84,7 +84,7 @@ def run(arguments: Namespace) -> int:
 @contextmanager
 def _pool(arguments: Namespace) -> "Iterator[Pool]":
     """Threads of this process, or the cluster behind a scheduler."""
-    from solvers.sweeps.pool import LostWorkersError, Pool
+    from solvers.sweeps.execution.pool import LostWorkersError, Pool
 
     address, workers = arguments.scheduler, arguments.workers
     if address is None:

@@ -6,7 +6,7 @@ from math import isfinite, isinf
 from matplotlib.figure import Figure
 
 from solvers.app.demo.stage import Number, Stage, pair, svg_image, table
-from solvers.equations.normal_modes import Modes
+from solvers.equations.linearisation.normal_modes import Modes
 from solvers.io.figures import COLOURS, panels
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction

@@ -15,10 +15,10 @@ from solvers.integration.results.solution import Solution
 from solvers.player.page import player
 from solvers.player.track import Track
 from solvers.scenes.scene import Scene
-from solvers.sweeps.convergence import convergence, tighter_rtol
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.convergence import convergence, tighter_rtol
+from solvers.sweeps.execution.run import sweep
 from solvers.sweeps.plots.figure import figure
-from solvers.sweeps.run import sweep
-from solvers.sweeps.sweep import Sweep
 
 #: Relative and absolute tolerance of both programs, and the step size of Euler's method in s.
 TOLERANCE, STEP = 1e-12, 0.01

@@ -14,7 +14,7 @@ from solvers.app.demo.verdicts import verification
 from solvers.app.modules import load
 from solvers.integration.prepare import no_compiler
 from solvers.scenes.reading import find
-from solvers.sweeps import reading
+from solvers.sweeps.definition import reading
 
 #: Packages whose versions the page states.
 PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")

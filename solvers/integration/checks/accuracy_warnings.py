@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from solvers.equations.energy import conserves_energy
-from solvers.equations.mass_matrix import examined
+from solvers.equations.singularities.mass_matrix import examined
 from solvers.integration.checks.energy_change import EnergyWarning, changed_energy
 from solvers.integration.checks.predictability import (
     PredictabilityWarning,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solvers.equations.singular_coordinates import State, singular_coordinates
+from solvers.equations.singularities.singular_coordinates import State, singular_coordinates
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble

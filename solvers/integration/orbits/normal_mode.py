@@ -3,7 +3,7 @@
 import numpy as np
 
 from solvers.equations.arguments import checked
-from solvers.equations.linear_system import LinearSystem, Mode
+from solvers.equations.linearisation.linear_system import LinearSystem, Mode
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import real_number
 from solvers.integration.orbits.curve import Curve

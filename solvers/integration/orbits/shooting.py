@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.assembly import Assembly
 from solvers.equations.module import GeneratedModule, function, has_constraints
 from solvers.equations.quantities import positive
+from solvers.equations.starts.assembly import Assembly
 from solvers.integration.orbits.nature import Nature, states_near
 from solvers.integration.orbits.symmetry import Reversal, angles
 from solvers.integration.variations.tangents import Tangents

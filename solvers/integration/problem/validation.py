@@ -10,8 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.arguments import check_module
-from solvers.equations.assembly import Assembly
-from solvers.equations.consistent_start import consistent, given_names, guesses
 from solvers.equations.forms import Form
 from solvers.equations.module import (
     GeneratedModule,
@@ -22,7 +20,9 @@ from solvers.equations.module import (
     state_names,
 )
 from solvers.equations.quantities import Values, quantities, real_number, real_numbers
-from solvers.equations.tangent_start import tangent_start
+from solvers.equations.starts.assembly import Assembly
+from solvers.equations.starts.consistent_start import consistent, given_names, guesses
+from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
 from solvers.integration.problem.memory import check_times

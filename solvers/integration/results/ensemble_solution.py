@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
+from solvers.io.exports import dataset
 from solvers.io.suggestion import counted
-from solvers.io.xarray_dataset import dataset
 from solvers.runge_kutta.stepper import Array
 
 

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import Any
 
 from solvers.integration.problem.status import Status
+from solvers.io.exports import dataset
 from solvers.io.suggestion import counted
 from solvers.io.units import with_unit
-from solvers.io.xarray_dataset import dataset
 from solvers.runge_kutta.stepper import Array
 
 

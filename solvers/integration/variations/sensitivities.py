@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.arguments import checked
-from solvers.equations.consistent_start import given_names
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.quantities import Values
-from solvers.equations.tangent_start import tangent_start
+from solvers.equations.starts.consistent_start import given_names
+from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.checks.singularity import SingularityWarning, singularity
 from solvers.integration.ensemble import ensemble

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
-from solvers.equations.tangent_start import tangent_start
+from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.layout import STATUSES
 from solvers.integration.loops import compiled_loop, python_loop

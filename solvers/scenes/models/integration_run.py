@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from solvers.equations.mass_matrix import checked_before
+from solvers.equations.singularities.mass_matrix import checked_before
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import ExtendedError, integrate_extended

@@ -5,8 +5,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule, function, has_function
-from solvers.equations.normal_modes import Modes
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
 from solvers.scenes.models.motion import Array, Motion, OutsideDomainError, golden_points
 

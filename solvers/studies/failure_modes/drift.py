@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from solvers.equations.energy import energy_error
+from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule
-from solvers.equations.normal_modes import Modes
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.io.figures import coloured, legend_beside, panels

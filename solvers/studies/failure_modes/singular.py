@@ -15,8 +15,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from solvers.equations.decimal_state import sine_and_cosine
 from solvers.equations.module import GeneratedModule, function
+from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.integration.timing import timed_run
 from solvers.io.figures import COLOURS, panels
 from solvers.io.text_table import text_table

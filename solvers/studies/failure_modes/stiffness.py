@@ -8,8 +8,8 @@ from math import cos, isfinite, nan
 import numpy as np
 from matplotlib.figure import Figure
 
+from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule
-from solvers.equations.normal_modes import Modes
 from solvers.integration.prepare import NotFinishedError, Prepared, prepare
 from solvers.integration.timing import MOST_STEPS, median_seconds
 from solvers.io.figures import coloured, columns, legend_beside, panels

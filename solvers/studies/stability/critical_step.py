@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.energy import equilibrium_state
+from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule
-from solvers.equations.normal_modes import Modes
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.runge_kutta.catalogue import load

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from solvers.equations.normal_modes import Modes, local_eigenvalues
+from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.catalogue import load, names

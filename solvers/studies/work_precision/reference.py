@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.normal_modes import mode_spread
+from solvers.equations.linearisation.normal_modes import mode_spread
 from solvers.references.elliptic import pendulum
 from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor

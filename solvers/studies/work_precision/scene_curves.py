@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from solvers.equations.normal_modes import mode_spread
-from solvers.io.json_values import jsonable
+from solvers.equations.linearisation.normal_modes import mode_spread
+from solvers.io.exports import jsonable
 from solvers.io.text_table import text_table
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision import plots

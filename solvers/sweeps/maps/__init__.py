@@ -9,9 +9,9 @@ from solvers.integration.problem.events import Event
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.io.arguments import check_texts
 from solvers.io.suggestion import did_you_mean
-from solvers.sweeps.axes import Array, Axes
-from solvers.sweeps.map_table import MapTable
-from solvers.sweeps.sampling import Sampling
+from solvers.sweeps.definition.axes import Array, Axes
+from solvers.sweeps.definition.map_table import MapTable
+from solvers.sweeps.definition.sampling import Sampling
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import positive
 from solvers.sweeps.attractors import classify
-from solvers.sweeps.axes import Array, Axes
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Array, Axes
+from solvers.sweeps.definition.map_table import MapTable
+from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.maps import Map, Motions
-from solvers.sweeps.sampling import Sampling
 
 
 @checked

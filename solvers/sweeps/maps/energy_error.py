@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import Map, Motions
 
 

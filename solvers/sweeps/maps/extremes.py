@@ -7,7 +7,7 @@ import numpy as np
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.problem.events import Event, Extremum
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import ComponentMap, Motions
 
 

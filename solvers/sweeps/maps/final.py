@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from solvers.equations.arguments import checked
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import ComponentMap, Motions
 
 

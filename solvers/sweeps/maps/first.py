@@ -10,9 +10,9 @@ from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.problem.events import Event
 from solvers.io.arguments import check_type
-from solvers.sweeps.axes import Array, Axes
 from solvers.sweeps.barrier import lower_position
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Array, Axes
+from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.maps import Map, Motions
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import Map, Motions
 
 

@@ -11,8 +11,8 @@ from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.quantities import positive
 from solvers.integration.variations.frames import Frames
-from solvers.sweeps.axes import Array, Axes
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Array, Axes
+from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.maps import Map, Motions
 
 

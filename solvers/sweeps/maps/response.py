@@ -9,11 +9,11 @@ import numpy as np
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.problem.events import Event
-from solvers.sweeps.axes import Array, Axes
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Array, Axes
+from solvers.sweeps.definition.map_table import MapTable
+from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.maps import ComponentMap, Motions
 from solvers.sweeps.maps.extremes import Extremes
-from solvers.sweeps.sampling import Sampling
 
 
 @checked

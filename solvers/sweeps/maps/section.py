@@ -8,8 +8,8 @@ import numpy as np
 from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.integration.problem.events import Event
-from solvers.sweeps.axes import Array
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Array
+from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.maps import CountedMap, Motions
 
 #: Directions of a crossing in a sweep file.

@@ -6,10 +6,10 @@ from typing import Self
 import numpy as np
 
 from solvers.equations.arguments import checked
-from solvers.sweeps.axes import Array
-from solvers.sweeps.map_table import MapTable
+from solvers.sweeps.definition.axes import Array
+from solvers.sweeps.definition.map_table import MapTable
+from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.maps import CountedMap, Motions
-from solvers.sweeps.sampling import Sampling
 
 
 @checked

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from solvers.io import figures
 from solvers.io.notation import symbol
 from solvers.io.units import with_unit
-from solvers.sweeps.checks import ENERGY
+from solvers.sweeps.definition.checks import ENERGY
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
 from solvers.sweeps.plots.quantity import Quantity, label_axis, letter
 from solvers.sweeps.plots.response import response

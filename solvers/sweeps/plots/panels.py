@@ -12,9 +12,9 @@ from solvers.equations.module import has_function
 from solvers.io.figures import COLOURS
 from solvers.io.notation import axis_label, symbol
 from solvers.io.units import with_unit
-from solvers.sweeps.axes import Array, Grid
 from solvers.sweeps.barrier import barrier, energies
-from solvers.sweeps.initial_states import initial_states
+from solvers.sweeps.definition.axes import Array, Grid
+from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.plots.quantity import Quantity, add_legend, label_axis, letter, wrapped
 from solvers.sweeps.results import PROVED, Results
 

@@ -13,8 +13,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFo
 
 from solvers.io import figures
 from solvers.io.notation import axis_label, symbol
-from solvers.sweeps.axes import Array
-from solvers.sweeps.checks import ENERGY
+from solvers.sweeps.definition.axes import Array
+from solvers.sweeps.definition.checks import ENERGY
 from solvers.sweeps.maps import Map
 from solvers.sweeps.results import Results
 

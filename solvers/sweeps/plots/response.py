@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from solvers.io.figures import COLOURS
 from solvers.io.notation import axis_label, symbol
 from solvers.io.units import with_unit
-from solvers.sweeps.axes import Array
+from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.plots.quantity import label_axis, letter
 from solvers.sweeps.results import Results
 

@@ -1,0 +1,127 @@
+"""Symmetric elimination, as straight-line operations for small matrices.
+
+M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal matrix
+of common factors of rows and columns (mostly lengths), and c the common number
+of all entries. It runs from the last coordinate to the first, since in a chain
+the last mass moves with the fewest others: its entries are the shortest.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import reduce
+from math import gcd, lcm
+
+from derive.codegen.expression_graph.graph import Graph
+from derive.codegen.expression_graph.node import Leaf, Let, Node
+
+Rows = Sequence[Sequence[Node]]
+
+#: From this size on a loop is as fast as straight-line code, which grows with the cube, unless
+#: most entries are 0.
+LARGE = 16
+MOST_UPDATES = sum(k**2 for k in range(LARGE))
+
+#: Multipliers with more factors than this are named.
+SHORT = 3
+
+
+def factorisation(graph: Graph, matrix: Rows) -> "Loops | Factorisation":
+    """The factorisation of a symmetric positive definite matrix; its updates decide which."""
+    return (Loops if _updates(matrix) >= MOST_UPDATES else Factorisation)(graph, matrix)
+
+
+def _updates(matrix: Rows) -> int:
+    """Entries that the elimination changes: few, if most entries are 0 and remain so."""
+    coupled = [{i for i in range(k) if not row[i].is_number(0)} for k, row in enumerate(matrix)]
+    for others in reversed(coupled):
+        for i in others:
+            coupled[i] |= {j for j in others if j < i}
+    return sum(len(others) ** 2 for others in coupled)
+
+
+class Loops:
+    """L D Lᵀ by loops, in functions of the generated module."""
+
+    def __init__(self, graph: Graph, matrix: Rows) -> None:
+        self._graph = graph
+        self._factors = graph.factorised(entry for i, row in enumerate(matrix) for entry in row[i:])
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        return self._graph.solution(self._factors, right)
+
+
+class Factorisation:
+    """U D Uᵀ of a symmetric positive definite matrix of nodes."""
+
+    def __init__(self, graph: Graph, matrix: Rows) -> None:
+        n, zero = len(matrix), graph.zero
+        self._graph, self._content = graph, _content(matrix)
+        self._scale = scale = _common_scale(graph, matrix)
+        self._rows = rows = [
+            [matrix[i][j] / (scale[i] * scale[j] * self._content) for j in range(n)]
+            for i in range(n)
+        ]
+        self.pivots, self._inverses = [zero] * n, [zero] * n  # all pivots are positive
+        self._multipliers: dict[tuple[int, int], Node] = {}
+        for k in reversed(range(n)):
+            # products of parameters are not named, so that they are cancelled
+            is_short = all(isinstance(factor, Leaf) for factor in rows[k][k].exponents())
+            self.pivots[k] = rows[k][k] if is_short else graph.let(rows[k][k])
+            coupled = [i for i in range(k) if not rows[i][k].is_number(0)]
+            self._inverses[k] = self._inverse(self.pivots[k], bool(coupled))
+            for i in coupled:
+                multiplier = rows[i][k] * self._inverses[k]
+                short = len(multiplier.factors()) <= SHORT
+                self._multipliers[i, k] = multiplier if short else graph.let(multiplier)
+            for i in coupled:
+                for j in (j for j in coupled if j >= i):
+                    rows[i][j] = rows[i][j] - self._multipliers[i, k] * rows[j][k]
+                    rows[j][i] = rows[i][j]
+
+    def _inverse(self, pivot: Node, is_shared: bool) -> Node:
+        inverse = self._graph.power(pivot, -1)
+        # one division instead of several, if no factors cancel
+        return self._graph.let(inverse) if is_shared and isinstance(pivot, Let) else inverse
+
+    def solve(self, right: Sequence[Node]) -> list[Node]:
+        """The solution x of M x = `right`."""
+        n = len(right)
+        scaled = (node / scale for node, scale in zip(right, self._scale, strict=True))
+        y = [self._graph.spread(node, 1 / self._content) for node in scaled]
+        for k in reversed(range(n)):
+            y[k] = y[k] * self._inverses[k]
+            for i in range(k):
+                if (i, k) in self._multipliers:
+                    y[i] = y[i] - self._rows[i][k] * y[k]
+        x: list[Node] = []
+        for k in range(n):
+            coupled = [i for i in range(k) if (i, k) in self._multipliers]
+            known = [(x[i] * self._multipliers[i, k], -1) for i in coupled]
+            x.append(self._graph.let(self._graph.sum([(y[k], 1), *known])))
+        return [node / scale for node, scale in zip(x, self._scale, strict=True)]
+
+
+def _content(matrix: Rows) -> Fraction:
+    """The largest number of which all entries are integer multiples."""
+    numbers = [abs(entry.scaled()[0]) for row in matrix for entry in row]
+    return Fraction(
+        reduce(gcd, (number.numerator for number in numbers)),
+        reduce(lcm, (number.denominator for number in numbers)),
+    )
+
+
+def _common_scale(graph: Graph, matrix: Rows) -> list[Node]:
+    """Factors s of each row such that s_i s_j divides every entry (i, j)."""
+    scales = [
+        {f: p // 2 for f, p in row[i].exponents().items() if p > 1} for i, row in enumerate(matrix)
+    ]
+    for i, row in enumerate(matrix):
+        for j, entry in enumerate(row):
+            if not entry.is_number(0):
+                scales[i] = {
+                    f: p
+                    for f, p in scales[i].items()
+                    if entry.exponents().get(f, 0) >= p + scales[j].get(f, 0)
+                }
+    return [graph.product(scale.items()) for scale in scales]

@@ -1,0 +1,1 @@
+"""Expressions as one shared graph, and what is computed on it."""

@@ -1,0 +1,1 @@
+"""Straight-line operations: from nodes to named assignments."""

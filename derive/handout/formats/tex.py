@@ -1,0 +1,99 @@
+"""Documents as LaTeX, for the packages of texlive-latex-base."""
+
+from collections.abc import Sequence
+from textwrap import TextWrapper
+
+from derive.formulas.latex import latex
+from derive.formulas.line_breaks import latex_rows
+from derive.handout.document import WIDTH, Block, Code, Document, Equation, Paragraph, Table, pieces
+from derive.handout.formats.characters import declarations, escaped
+
+DOCUMENT = r"""\documentclass[11pt,a4paper,fleqn]{article}
+\usepackage[margin=22mm]{geometry}
+\usepackage{amsmath,longtable}
+\setlength{\parindent}{0pt}
+\setlength{\parskip}{0.5\baselineskip}
+\allowdisplaybreaks
+@declarations@\title{@title@}
+\author{}
+\date{}
+\begin{document}
+\maketitle
+\abovedisplayskip 6pt plus 3pt
+\belowdisplayskip 6pt plus 3pt
+@body@
+\end{document}
+"""
+
+#: The space for a line of a formula that is left blank, and its width.
+BLANK, LINE = r"\underline{\hspace{24em}}", r"2\baselineskip"
+
+
+#: Characters of the longest line of code.
+CODE_WIDTH = 96
+#: Characters of the longest text in the last column of a table that is not wrapped.
+WIDE = 50
+
+
+def tex(document: Document) -> str:
+    """The text of a ``.tex`` file."""
+    parts: list[str] = []
+    for section in document.sections:
+        parts.append(f"\n\\section{{{escaped(section.title)}}}\n")
+        parts += map(_block, section.blocks)
+    body = "\n".join(parts)
+    declared = "".join(f"{line}\n" for line in declarations([document.title, body]))
+    filled = DOCUMENT.replace("@declarations@", declared)
+    return filled.replace("@title@", escaped(document.title)).replace("@body@", body)
+
+
+def equation_rows(equation: Equation) -> list[str]:
+    """The rows of a formula for ``aligned``; a blank takes the place of the derived side."""
+    if not equation.is_blank:
+        return latex_rows(equation.sides, WIDTH)
+    before, after = equation.known
+    first, *others = map(latex, before)
+    return [" = ".join([f"{first} & ", *others, BLANK, *map(latex, after)])]
+
+
+def aligned(equation: Equation) -> str:
+    """A formula in one environment, for a display without numbers of its own."""
+    rows = " \\\\\n".join(equation_rows(equation))
+    return f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"
+
+
+def _block(block: Block) -> str:
+    match block:
+        case Paragraph(text):
+            return f"\n{_text(text)}"
+        case Equation(number=number):
+            text = " \\notag \\\\\n".join(f"  {row}" for row in equation_rows(block))
+            display = f"\\begin{{align}}\n{text} \\tag{{{number}}}\n\\end{{align}}"
+            return display + rf"\vspace{{{LINE}}}" * block.is_blank
+        case Table(head, rows):
+            return _table(head, rows)
+        case Code(language, text):
+            code = "\n".join(map(_wrapped, text.splitlines()))
+            verbatim = f"\\begin{{verbatim}}\n{code}\n\\end{{verbatim}}"
+            return f"\n{escaped(language)}:\n\n{{\\footnotesize\n{verbatim}\n}}"
+
+
+def _text(text: str) -> str:
+    return "".join(
+        f"${latex(piece.tree)}$" if piece.tree else escaped(piece.text) for piece in pieces(text)
+    )
+
+
+def _wrapped(line: str) -> str:
+    """A line of code, continued after a backslash where it is too long."""
+    indent = " " * (len(line) - len(line.lstrip()) + 4)
+    wrapper = TextWrapper(CODE_WIDTH, subsequent_indent=indent, break_on_hyphens=False)
+    return " \\\n".join(wrapper.wrap(line)) if len(line) > CODE_WIDTH else line
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    is_wide = max(len(row[-1]) for row in rows) > WIDE
+    columns = "l" * (len(head) - 1) + (r"p{0.55\linewidth}" if is_wide else "l")
+    lines = [" & ".join(map(_text, row)) + r" \\" for row in (head, *rows)]
+    body = "\n".join([lines[0], r"\hline", r"\endhead", *lines[1:]])
+    return f"\\begin{{longtable}}[l]{{{columns}}}\n{body}\n\\end{{longtable}}"

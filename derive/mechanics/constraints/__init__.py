@@ -1,0 +1,1 @@
+"""Constraints: their derivatives, integrability and independence."""

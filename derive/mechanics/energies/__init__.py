@@ -1,0 +1,1 @@
+"""Energies from the positions of masses, and their shortest forms."""

@@ -1,0 +1,1 @@
+"""Points of a system: equilibria, and motions near a point."""

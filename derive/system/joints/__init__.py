@@ -1,0 +1,1 @@
+"""Joints: constraints whose multipliers are forces."""

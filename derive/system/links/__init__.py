@@ -1,0 +1,1 @@
+"""Links that pictures show between points."""

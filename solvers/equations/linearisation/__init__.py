@@ -1,0 +1,1 @@
+"""Equilibria, and the equations linearised about a state."""

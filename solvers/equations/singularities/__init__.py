@@ -1,0 +1,1 @@
+"""Singular mass matrices, configurations and coordinates."""

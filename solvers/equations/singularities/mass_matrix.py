@@ -1,0 +1,136 @@
+"""The condition of the mass matrix: where it is large, accelerations lose their digits."""
+
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.equations.module import (
+    GeneratedModule,
+    function,
+    has_constraints,
+    has_function,
+    position_constraints,
+)
+from solvers.equations.singularities.singular_configuration import Motion, check_constraints
+
+#: Conditions of the mass matrix: above the first digits are lost, above the second all of them.
+DOUBTFUL, SINGULAR = 1e12, 1e15
+
+
+class MassMatrixWarning(UserWarning):
+    """The mass matrix is nearly singular: digits are lost."""
+
+
+#: Motions of many whose mass matrices are examined.
+EXAMINED = 4
+
+_IS_CHECKED = ContextVar("mass matrices are checked", default=False)
+
+
+@contextmanager
+def checked_before() -> Iterator[None]:
+    """Examine no mass matrix in a ``with`` block, in this thread: the caller has done so.
+
+    Yields
+    ------
+    None
+    """
+    token = _IS_CHECKED.set(True)
+    try:
+        yield
+    finally:
+        _IS_CHECKED.reset(token)
+
+
+def examined(motions: int) -> list[int]:
+    """The motions to examine of so many: evenly distributed, with the first and the last."""
+    indices = np.linspace(0, motions - 1, EXAMINED).astype(int)
+    return np.unique(indices).tolist() if motions else []
+
+
+def check_condition(
+    module: GeneratedModule, motions: Iterable[Motion], t: float = 0.0, stacklevel: int = 4
+) -> None:
+    """Refuse a nearly singular mass matrix, or warn; coordinates without inertia are permitted.
+
+    Besides the initial state, all coordinates are equal, as in aligned rods, unless the matrix is
+    singular there whatever the masses, as at the pole of a sphere. The warning is given at a
+    `stacklevel`, as by `warnings.warn`.
+    """
+    if _IS_CHECKED.get() or not has_function(module, "mass_matrix"):
+        return
+    size = len(module.STATE)  # without perturbations
+    motions = [(name, params, y0 and y0[:size]) for name, params, y0 in motions]
+    if has_constraints(module):
+        check_constraints(module, motions, t, stacklevel + 1)
+    motion, worst, weakest = max(
+        ((name, *_worst(module, t, y0, params)) for name, params, y0 in motions),
+        key=lambda row: row[1],
+        default=("", 0.0, ""),  # without motions
+    )
+    text = (
+        f"{motion}the mass matrix has condition {worst:.0e}: {weakest} has hardly any inertia of "
+        "its own"
+    )
+    if worst >= SINGULAR:
+        way_out = "leave that coordinate out, or make masses more similar"
+        if has_function(module, "angular_momentum"):  # of bodies in space
+            way_out = (
+                "if axes of rotation coincide there (gimbal lock), give the orientation by a "
+                f"quaternion or by another sequence of rotations; otherwise {way_out}"
+            )
+        raise ValueError(f"{text}; {way_out}")
+    if worst >= DOUBTFUL:
+        lost = f"about {np.log10(worst):.0f} digits are lost"
+        warnings.warn(f"{text}; {lost}", MassMatrixWarning, stacklevel=stacklevel)
+
+
+def _worst(
+    module: GeneratedModule, t: float, y0: Sequence[float] | None, params: Sequence[float]
+) -> tuple[float, str]:
+    """The largest condition of a motion, and the coordinate of least inertia there."""
+    n = len(module.COORDINATES)
+    aligned = [0.0 if y0 is None else y0[0]] * n + [0.0] * n
+    worst, weakest = (0.0, "") if y0 is None else _condition(module, t, y0, params)
+    condition, coordinate = _condition(module, t, aligned, params)
+    is_worse = condition > max(worst, DOUBTFUL)
+    if is_worse and _condition(module, t, aligned, module.DEFAULTS)[0] < DOUBTFUL:
+        return condition, coordinate
+    return worst, weakest
+
+
+def inertia(
+    module: GeneratedModule, t: float, y: Sequence[float], params: Sequence[float]
+) -> NDArray[np.float64]:
+    """The mass matrix, with the inertia that constraints add where it is singular by design."""
+    matrix, G = function(module, "mass_matrix"), np.zeros((0, 0))
+    M = np.array(matrix(t, y, params))
+    if has_function(module, "constraints_jacobian"):
+        usual = np.array(matrix(t, y, module.DEFAULTS))
+        derivatives = np.array(function(module, "constraints_jacobian")(t, y, params))
+        G = derivatives[position_constraints(module) :, len(module.COORDINATES) :]
+        if np.linalg.matrix_rank(usual) < len(usual) and G.any():
+            # constraints prevent motions that move no mass, such as of a quaternion's norm
+            M = M + G.T @ G * (np.trace(M) / np.sum(G**2))
+    return M
+
+
+def _condition(
+    module: GeneratedModule, t: float, y: Sequence[float], params: Sequence[float]
+) -> tuple[float, str]:
+    """The condition, whatever the units of coordinates, and the coordinate of least inertia."""
+    try:
+        M = inertia(module, t, y, params)
+    except (ArithmeticError, ValueError):  # where a formula has no value
+        return 0.0, ""
+    inertial = np.flatnonzero(np.diag(M))
+    if not inertial.size or not np.isfinite(M).all():
+        return 0.0, ""
+    size = np.sqrt(np.abs(np.diag(M)[inertial]))
+    values, vectors = np.linalg.eigh(M[np.ix_(inertial, inertial)] / np.outer(size, size))
+    condition = float(values[-1] / values[0]) if values[0] > 0 else float("inf")
+    return condition, module.COORDINATES[inertial[np.argmax(np.abs(vectors[:, 0]))]]

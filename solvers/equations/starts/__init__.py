@@ -1,0 +1,1 @@
+"""Initial states that satisfy constraints, in doubles and in decimals."""

@@ -1,0 +1,1 @@
+"""The definition of a sweep: axes, maps, files and their checks."""

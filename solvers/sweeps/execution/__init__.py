@@ -1,0 +1,1 @@
+"""The computation of a sweep: chunks, workers, folders."""

@@ -1,0 +1,90 @@
+"""Chunks of a sweep: their length, and their computation in a thread or on another machine."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.results.ensemble_solution import Ensemble
+from solvers.sweeps.definition.axes import Array
+from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.continuation import continued
+from solvers.sweeps.execution.initial_states import initial_states
+from solvers.sweeps.execution.motions import after_transient, integrated
+from solvers.sweeps.maps import Motions
+from solvers.sweeps.results import CODES
+
+#: Longest duration of a chunk in s, approximately, and its overhead.
+CHUNK, COST = 1.0, 0.004
+#: Seconds for each evaluation of a right-hand side of n components: this times n^1.5.
+EVALUATION = 0.25e-9
+#: Largest number of bytes for the states of a chunk; its working memory is about ten times as much.
+MAX_BYTES = 8e6
+
+
+def run_chunk(
+    sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
+) -> NDArray[np.void]:
+    """Integrate motions and compute their maps; NaN for motions that fail."""
+    return computed(sweep, columns, stop)[0]
+
+
+def computed(
+    sweep: Sweep, columns: Mapping[str, Array], stop: StopFlag | None = None
+) -> tuple[NDArray[np.void], list[Ensemble]]:
+    """A chunk with the maps of all motions, and the motions that were integrated."""
+    if sweep.continued_along:
+        return continued(sweep, columns, stop)
+    module, maps = sweep.module, sweep.maps
+    starts, params, status = initial_states(sweep, columns)
+    chunk = np.zeros(len(status), sweep.dtype)
+    for name in sweep.dtype.names or ():
+        chunk[name] = status if name == "status" else columns.get(name, np.nan)
+    runs = np.flatnonzero(status == 0)
+    ensembles = []
+    if len(runs):
+        starts, params = starts[runs], [column[runs] for column in params]
+        if sweep.skip:
+            starts, transient = after_transient(sweep, starts, params, stop)
+            ensembles.append(transient)
+        motions = integrated(sweep, starts, params, stop)
+        ensembles.append(motions)
+        first = 0
+        for name, one in maps.items():
+            events = slice(first, first + len(one.events(module)))
+            first = events.stop
+            chunk[name][runs] = one.values(
+                Motions(module, sweep.skip, starts, params, motions, events, sweep.rtol)
+            )
+        ends, success = motions.status, motions.success
+        for transient in ensembles[:-1]:
+            ends = np.where(transient.success, ends, transient.status)
+            success &= transient.success
+        for end, code in CODES.items():
+            chunk["status"][runs[ends == end]] = code
+        for name in maps:
+            chunk[name][runs[~success]] = np.nan
+    return chunk, ensembles
+
+
+def mean_evaluations(sweep: Sweep, columns: Mapping[str, Array]) -> float:
+    """Mean number of evaluations of the right-hand side for each of some motions."""
+    chunk, ensembles = computed(sweep, columns)
+    return (1 + sum(int(motions.nfev.sum()) for motions in ensembles)) / len(chunk)
+
+
+def chunk_length(sweep: Sweep, evaluations: float) -> int:
+    """Number of motions in a chunk: about a second of work, less in short sweeps.
+
+    `evaluations` is the mean number for each motion.
+    """
+    # in short sweeps chunks cost as much as waiting for the last of them; time follows from the
+    # number of evaluations, not from the clock, so that a sweep is always divided in the same way
+    size = len(sweep.module.STATE) * (2 if sweep.form == "variational" else 1)
+    each = evaluations * EVALUATION * size**1.5
+    events = sum(one.occurrences * len(one.events(sweep.module)) for one in sweep.maps.values())
+    most = MAX_BYTES / (8 * size * (1 + sweep.samples + events))
+    seconds = min(CHUNK, (COST * each * sweep.motions) ** 0.5)
+    length = max(1, int(min(seconds / each, most)))
+    return -(-length // sweep.branch_length) * sweep.branch_length
