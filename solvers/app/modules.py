@@ -16,7 +16,7 @@ from solvers.equations.module_cache import (
     required_functions,
     specialised_module,
 )
-from solvers.scenes.models.method_choice import MethodChoice
+from solvers.integration.accuracy.method_choice import MethodChoice
 
 if TYPE_CHECKING:
     from derive import System

@@ -6,10 +6,10 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import cast
-from warnings import warn
 
 from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
 from solvers.io.build_cache import NoPlaceError, built_folder
+from solvers.io.suggestion import warn_caller
 from solvers.runge_kutta.catalogue import SCIPY, load
 
 
@@ -30,7 +30,7 @@ def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -
     try:
         path = built_folder(f"module-{digest}", write) / file
     except NoPlaceError as error:
-        warn(f"integrating in Python: {error}", stacklevel=2)
+        warn_caller(f"integrating in Python: {error}")
     text = generate()[file] if path is None else path.read_text(encoding="utf-8")
     module = ModuleType(f"holonomic_{digest}.{name}")
     module.__file__ = None if path is None else str(path)

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Sequence
-from warnings import warn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +27,7 @@ from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.integration.results.ensemble_times import EnsembleTimes
 from solvers.integration.results.solution import Interrupted
 from solvers.io.arguments import check_type
-from solvers.io.suggestion import shortened
+from solvers.io.suggestion import shortened, warn_caller
 
 #: Most threads of one ensemble.
 MOST_WORKERS = 1024
@@ -183,20 +182,20 @@ def ensemble(
         return result
     unstable = mark_unstable(problem, states, constants, result)
     if unstable:
-        warn(unstable, StepWarning, stacklevel=3)
+        warn_caller(unstable, StepWarning)
     singular = singularities(problem, states, constants, result)
     if singular:
-        warn(singular, SingularityWarning, stacklevel=3)
+        warn_caller(singular, SingularityWarning)
     if not (unstable or singular or result.success.all() or is_ignored()):
         lost = [status for status in result.status if status not in (Status.FINISHED, Status.EVENT)]
         text = "; ".join(f"{lost.count(status)}: {status.value}" for status in dict.fromkeys(lost))
         text = f"{len(lost)} of {len(states)} motions did not reach their end: {text}"
-        warn(text, UnfinishedWarning, stacklevel=3)
+        warn_caller(text, UnfinishedWarning)
     good = np.flatnonzero(result.success)
     own = constants[good] if len(constants) > 1 else constants
     ends = result.t[good], result.y.T[good]
     for warning in ensemble_warnings(problem, states[good], own, *ends):
-        warn(warning, stacklevel=3)
+        warn_caller(warning)
     return result
 
 

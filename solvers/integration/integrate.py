@@ -1,37 +1,18 @@
 """Integration of a generated module's equations of motion."""
 
 from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import replace
-from functools import partial
-from warnings import warn
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.arguments import known_names
 from solvers.equations.module import GeneratedModule
-from solvers.equations.module import inputs as input_names
-from solvers.equations.quantities import NotFiniteNumberError, Values
-from solvers.equations.singularities.mass_matrix import check_condition
-from solvers.integration.checks.accuracy_warnings import accuracy_warnings
-from solvers.integration.checks.global_error import global_error_estimate
-from solvers.integration.checks.predictability import (
-    UnfinishedWarning,
-    compile_perturbations,
-    is_ignored,
-)
-from solvers.integration.checks.singularity import singularity
-from solvers.integration.checks.step_stability import step_instability
-from solvers.integration.loops import compiled_loop, passage
+from solvers.equations.quantities import Values
+from solvers.integration.accuracy.accurate_motion import accurate_motion
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Controller, Held
-from solvers.integration.problem.memory import limit_steps
-from solvers.integration.problem.problem import EventFunction, Options, Problem
-from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
-from solvers.integration.results.solution import Interrupted, Solution
-from solvers.runge_kutta.stepper import Array
+from solvers.integration.problem.problem import METHOD, EventFunction, Options
+from solvers.integration.results.solution import Solution
+from solvers.integration.single_motion import single_motion
 
 
 @known_names
@@ -41,7 +22,8 @@ def integrate(
     y0: Values,
     params: Values,
     *,
-    method: str = "verner853",
+    accuracy: float | None = None,
+    method: str | None = None,
     form: str | None = None,
     rtol: float = 1e-9,
     atol: ArrayLike = 1e-12,
@@ -70,8 +52,14 @@ def integrate(
     params : array_like of shape (parameters,), or mapping of str to float
         In the order of ``module.PARAMETERS``. Or numbers by name: parameters that are left out
         have their default values.
+    accuracy : float, optional
+        The largest error of every returned state and velocity, in rad, m, rad/s and m/s. It chooses
+        method, form and tolerances by recorded measurements, other runs check the error, and where
+        double precision does not suffice, longer numbers or Taylor series follow. `method` and
+        `form` fix what they name. Times of events are not checked.
     method : str, optional
-        One of ``solvers.runge_kutta.catalogue.names()``, or a method of SciPy's ``solve_ivp``.
+        One of ``solvers.runge_kutta.catalogue.names()``, or a method of SciPy's ``solve_ivp``; by
+        default ``verner853``, or with `accuracy` the cheapest.
     form : {"lagrangian", "hamiltonian", "rational", "variational", "sensitivity"}, optional
         The form of the equations; by default the rational form, where it exists, in a compiled
         loop of an explicit method, and Lagrange's form otherwise. The variational form
@@ -79,8 +67,8 @@ def integrate(
         sensitivity form parameters are perturbed, too: `params` are then their perturbations,
         followed by the parameters, or by name, such as ``delta_l``.
     rtol, atol : float, optional
-        The error of a step in a component may be atol + rtol * abs(y); in Lagrange's form `atol`
-        may be an array of shape (state,). They are unused with fixed steps.
+        Without `accuracy`, the error of a step in a component may be atol + rtol * abs(y); in
+        Lagrange's form `atol` may be an array of shape (state,). They are unused with fixed steps.
     h : float, optional
         A fixed step size in s; methods without error estimate need one. The last step is
         shortened to end at the end of `t_span`.
@@ -119,7 +107,10 @@ def integrate(
     Raises
     ------
     ValueError
-        When an argument is invalid, before anything is computed.
+        When an argument is invalid, before anything is computed; when longer numbers would have to
+        locate events.
+    solvers.integration.accuracy.integration_run.NotAccurateError
+        When nothing reaches the `accuracy`; the message states what is reached.
     solvers.runge_kutta.catalogue.UnknownMethodError
         When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
@@ -149,79 +140,16 @@ def integrate(
     >>> motion.y.shape, motion.status.name
     ((4, 3), 'FINISHED')
     >>> by_name = integrate(dp, (0, 1), {"theta1": 0.1, "theta2": 0.0}, {"g": 9.81})
+    >>> chaotic = integrate(dp, (0, 30), (2.0, 0.0, 0.0, 0.0), {}, accuracy=1e-10, t_eval=[7.5, 30])
+    >>> chaotic.error_estimate < 1e-10, "double-double" in chaotic.run
+    (True, True)
     """
-    options = Options(
-        method, form, rtol, atol, h, t_eval, events, max_steps, backend, compensated, inputs
-    )
     validation.check_flag("energy", energy)
-    problem = validation.problem(module, t_span, y0, params, options)
-    check_condition(module, [("", problem.form.constants, problem.start.tolist())], problem.span[0])
-    compile_perturbations(problem)
-    problem, program = compiled_loop.select(problem, lanes=False)
-    problem = replace(problem, max_steps=limit_steps(problem))
-    outcome = Outcome.at_start(problem)
-    try:
-        passage.run(problem, outcome, program)
-    except KeyboardInterrupt as interruption:
-        raise Interrupted(_solution(problem, outcome, energy)) from interruption
-    instability = step_instability(problem, outcome)
-    if instability:
-        outcome.status = Status.UNSTABLE
-    detail = instability or singularity(problem, outcome.status, outcome.end)
-    solution = _solution(problem, outcome, energy, detail)
-    if solution.success:
-        for warning in accuracy_warnings(problem, *outcome.end):
-            warn(warning, stacklevel=3)
-    elif not is_ignored():
-        warn(solution.message, UnfinishedWarning, stacklevel=3)
-    return solution
-
-
-def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = "") -> Solution:
-    (times, rows), (t, y), form = outcome.rows(), outcome.end, problem.form
-    events = len(problem.events)
-    if outcome.status is not Status.FINISHED:
-        state = ", ".join(f"{name} = {x:.6g}" for name, x in zip(problem.units, y, strict=True))
-        detail = f" (t = {t}, {state})" if not detail else f" ({detail})"
-        detail = f": {outcome.cause}{detail}" if outcome.cause else detail
-    if outcome.status is Status.STEP_LIMIT and problem.max_steps < problem.options.max_steps:
-        detail += ": the states of more steps do not fit into memory, give times t_eval"
-    states, energies = rows.T[: len(form.module.STATE)], None
-    if energy:
-        energies = np.asarray(form.module.energy_many(times, states, form.constants))
-    return Solution(
-        t=times,
-        y=rows.T,
-        t_events=[np.array(roots) for roots in outcome.t_events[:events]],
-        y_events=[np.array(rows).reshape(-1, len(y)) for rows in outcome.y_events[:events]],
-        nfev=outcome.nfev,
-        njev=outcome.njev,
-        status=outcome.status,
-        message=outcome.status.value + detail,
-        steps=outcome.steps,
-        rejected=outcome.rejected,
-        run=f"{problem.description}, {outcome.backend}",
-        backend=outcome.backend.partition(" ")[0],
-        energy=energies,
-        end=outcome.end,
-        units=problem.units,
-        inputs=_inputs(problem, outcome, times, states),
-        compare=partial(global_error_estimate, problem),
+    control = (method or METHOD, form, rtol, atol, h)
+    options = Options(*control, t_eval, events, max_steps, backend, compensated, inputs)
+    if accuracy is None:
+        return single_motion(module, t_span, y0, params, options, energy=energy)
+    is_named = method is not None or form is not None
+    return accurate_motion(
+        module, t_span, y0, params, options, accuracy, is_named=is_named, energy=energy
     )
-
-
-def _inputs(problem: Problem, outcome: Outcome, t: Array, y: Array) -> Array | None:
-    """The inputs at times `t` and states `y` in columns; None for a system without inputs."""
-    count = len(input_names(problem.form.module))
-    if not count:
-        return None
-    if problem.schedule:
-        return outcome.history.at(t) if outcome.history.times else np.empty((count, 0))
-    if problem.form.feedback:
-        values = np.full((len(t), count), np.nan)
-        for k, point in enumerate(zip(t.tolist(), y.T, strict=True)):
-            with suppress(NotFiniteNumberError):
-                values[k] = problem.form.feedback(*point)
-        return values.T
-    constants = np.array(problem.form.params[-count:])
-    return np.tile(constants[:, np.newaxis], len(t))

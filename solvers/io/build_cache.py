@@ -18,9 +18,9 @@ from contextlib import contextmanager, suppress
 from errno import EACCES, ENOENT
 from functools import cache, partial
 from pathlib import Path
-from warnings import warn
 
 from solvers.io.atomic_write import write_text
+from solvers.io.suggestion import warn_caller
 
 #: The seal of a complete folder, and the beginning of the names of folders being built.
 DIGESTS, BUILD_PREFIX = "digests.sha256", "build-"
@@ -81,7 +81,7 @@ def built_folder(
             reasons.append(f"{where}: {error.strerror or error}")
             continue
         if reasons:
-            warn(f"building in {where} ({'; '.join(reasons)}): {HINT}", stacklevel=2)
+            warn_caller(f"building in {where} ({'; '.join(reasons)}): {HINT}")
         return folder
     raise NoPlaceError(f"nothing can be built ({'; '.join(reasons)}): {HINT}")
 

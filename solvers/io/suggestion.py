@@ -1,5 +1,7 @@
-"""Suggestions, quotations and counts in messages."""
+"""Suggestions, quotations and counts in messages, and warnings."""
 
+import sys
+import warnings
 from collections.abc import Iterable
 from difflib import get_close_matches
 
@@ -31,3 +33,11 @@ def shortened(value: object) -> str:
         return " ".join(map(str.strip, repr(value).splitlines()))[:50]
     except ValueError:  # Python writes no number of thousands of digits
         return "a number of thousands of digits"
+
+
+def warn_caller(message: Warning | str, category: type[Warning] = UserWarning) -> None:
+    """Warn at the first line outside of this project that led here."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith(("solvers.", "derive.")):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, category, stacklevel=level + 1)

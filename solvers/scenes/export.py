@@ -17,10 +17,10 @@ from matplotlib.ticker import MaxNLocator
 
 from solvers.equations.arguments import checked
 from solvers.equations.quantities import positive
+from solvers.integration.accuracy.motion import Array
 from solvers.io.atomic_write import write_text
 from solvers.io.figures import COLOURS, FORMATS, panels, save
 from solvers.scenes.geometry import links_and_points, mass_positions, projected
-from solvers.scenes.models.motion import Array
 from solvers.scenes.plots import label_axes, plain
 from solvers.scenes.run import SceneResult
 from solvers.scenes.shapes import draw_link

@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from solvers.equations.module import depends_on_time, links
+from solvers.integration.accuracy.motion import Array
 from solvers.io.figures import COLOURS, panels
 from solvers.io.notation import axis_label, symbol
 from solvers.scenes.checks import curves_of
 from solvers.scenes.geometry import energy_errors, links_and_points, mass_positions, projected
-from solvers.scenes.models.motion import Array
 from solvers.scenes.run import SceneResult
 from solvers.scenes.shapes import draw_link
 from solvers.scenes.summary import full_note

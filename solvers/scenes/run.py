@@ -10,9 +10,9 @@ import numpy as np
 
 from solvers.equations.energy import supplied_energy
 from solvers.equations.module import GeneratedModule, has_function
+from solvers.integration.accuracy.method_choice import MethodChoice, cheapest
+from solvers.integration.accuracy.motion import Array, Motion
 from solvers.io.units import with_unit
-from solvers.scenes.models.method_choice import MethodChoice, cheapest
-from solvers.scenes.models.motion import Array, Motion
 from solvers.scenes.scene import ENERGY, Scene
 from solvers.scenes.selection import ModelSelection, motion_of, select_model
 

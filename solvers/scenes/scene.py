@@ -135,7 +135,7 @@ class Scene:
             positive(name, getattr(self, name))
         checks.check_accuracy(self.accuracy)
         checks.check_masses(self.module, self.params, self.y0)
-        check_condition(self.module, [("", self.params, self.y0)], stacklevel=5)
+        check_condition(self.module, [("", self.params, self.y0)])
         checks.check_method(self.module, self.method, self.form, self.step, self.duration)
         if self.model is not None:
             from solvers.scenes.models import catalogue

@@ -5,16 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.integration.compiled.extended import PRECISIONS
-from solvers.references.taylor import SeriesError
+from solvers.integration.accuracy.method_choice import MethodChoice, cheapest, usual_form
+from solvers.integration.accuracy.motion import Motion, OutsideDomainError
+from solvers.integration.accuracy.sufficient_run import sufficient_run
 from solvers.scenes.models.catalogue import closed_forms
-from solvers.scenes.models.extended_precision import by_series
-from solvers.scenes.models.full_equations import integrated
-from solvers.scenes.models.integration_run import NotAccurateError
-from solvers.scenes.models.longer_numbers import by_longer_numbers
-from solvers.scenes.models.method_choice import SERIES, MethodChoice, cheapest, usual_form
+from solvers.scenes.models.full_equations import FullEquations
 from solvers.scenes.models.model import ClosedForm, Model
-from solvers.scenes.models.motion import Motion, OutsideDomainError
 from solvers.scenes.scene import Scene
 
 #: An error estimate above this is not reported as a number.
@@ -63,25 +59,9 @@ def select_model(
             declined[name] = f"its error may reach {model.error_estimate:.1g}"
     motion.require_inertia()
     choice = _method_choice(scene)
-    report(f"full equations by {choice.method}")
-    try:
-        full = integrated(specialise(motion, choice), choice, scene.accuracy, motion)
-        return ModelSelection(full, declined)
-    except NotAccurateError as error:
-        if choice.is_named:
-            raise
-        declined["double precision"] = str(error)
-    if longer := by_longer_numbers(motion, scene.accuracy, scene.times, declined, report):
-        return ModelSelection(longer, declined)
-    report("full equations by Taylor series")
-    why = "the motion loses more digits than double precision has, and than compiled numbers have"
-    choice = MethodChoice(SERIES, usual_form(scene.module, SERIES), why)
-    try:
-        series = by_series(motion, choice, scene.accuracy, scene.times, report)
-    except SeriesError as error:
-        reasons = [declined[name] for name in ("double precision", *PRECISIONS) if name in declined]
-        raise NotAccurateError(f"{'; '.join(reasons)}; by Taylor series {error}") from error
-    return ModelSelection(series, declined)
+    specialised = specialise(motion, choice)
+    run, reasons = sufficient_run(motion, choice, scene.accuracy, scene.times, report, specialised)
+    return ModelSelection(FullEquations.of(run), declined | reasons)
 
 
 def _closed_form(model: type[ClosedForm], motion: Motion) -> ClosedForm:

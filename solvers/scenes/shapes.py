@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from solvers.scenes.models.motion import Array
+from solvers.integration.accuracy.motion import Array
 
 #: Width of the line of each kind in points.
 WIDTHS = {

@@ -27,10 +27,10 @@ from derive.system.system import System
 from solvers.app.modules import generator_text, specialiser
 from solvers.equations.module_cache import required_functions, specialised_module
 from solvers.equations.starts.consistent_start import consistent_start
+from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.io.build_cache import cache_folder
-from solvers.scenes.models.method_choice import MethodChoice
 
 REPORT = (np.pi / 2, np.pi, 0.0, 0.0)
 

@@ -9,12 +9,12 @@ import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load
 from solvers.equations.module import GeneratedModule
+from solvers.integration.accuracy.integration_run import EndsEarlyError
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.problem.status import Status
 from solvers.references.taylor import SeriesError, taylor
-from solvers.scenes.models.integration_run import EndsEarlyError
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
 

@@ -11,9 +11,9 @@ import pytest
 import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
+from solvers.integration.accuracy.motion import OutsideDomainError
 from solvers.scenes import models
 from solvers.scenes.models import catalogue
-from solvers.scenes.models.motion import OutsideDomainError
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
@@ -27,7 +27,7 @@ from typing import ClassVar
 import numpy as np
 
 from solvers.scenes.models.model import ClosedForm
-from solvers.scenes.models.motion import OutsideDomainError
+from solvers.integration.accuracy.motion import OutsideDomainError
 
 
 @dataclass(frozen=True)

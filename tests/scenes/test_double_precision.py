@@ -11,11 +11,11 @@ import generated.double_pendulum as dp
 import generated.henon_heiles as hh
 import generated.swinging_atwood as atwood
 from solvers.app.modules import load as load_module
+from solvers.integration.accuracy import double_precision, integration_run, longer_numbers
+from solvers.integration.accuracy.double_precision import sufficient
+from solvers.integration.accuracy.integration_run import IntegrationRun, NotAccurateError
+from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.references.taylor import taylor
-from solvers.scenes.models import double_precision, integration_run, longer_numbers
-from solvers.scenes.models.double_precision import sufficient
-from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError
-from solvers.scenes.models.method_choice import MethodChoice
 from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
 from solvers.scenes.selection import ModelSelection, motion_of, select_model

@@ -10,11 +10,11 @@ import generated.driven_pendulum as driven
 import generated.single_pendulum as sp
 import generated.swinging_atwood as atwood
 from solvers.equations.energy import energy_unit, supplied_energy
+from solvers.integration.accuracy.integration_run import IntegrationRun
+from solvers.integration.accuracy.method_choice import SERIES, MethodChoice
+from solvers.integration.accuracy.motion import Motion
 from solvers.player.page import Page
 from solvers.scenes.geometry import energy_errors, tracks
-from solvers.scenes.models.integration_run import IntegrationRun
-from solvers.scenes.models.method_choice import SERIES, MethodChoice
-from solvers.scenes.models.motion import Motion
 from solvers.scenes.output import write_files
 from solvers.scenes.plots import figure
 from solvers.scenes.run import run_scene

@@ -12,15 +12,14 @@ import generated.double_pendulum as dp
 from derive import Coordinate, Parameter, PointMass, System
 from holonomic import build
 from solvers.app.modules import load as load_module
+from solvers.integration.accuracy import longer_numbers, sufficient_run
+from solvers.integration.accuracy.checked_run import CheckedRun
+from solvers.integration.accuracy.integration_run import IntegrationRun
+from solvers.integration.accuracy.longer_numbers import by_longer_numbers
+from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended, kernel
 from solvers.references.taylor import taylor
-from solvers.scenes import selection
-from solvers.scenes.models import longer_numbers
-from solvers.scenes.models.full_equations import FullEquations
-from solvers.scenes.models.integration_run import IntegrationRun
-from solvers.scenes.models.longer_numbers import by_longer_numbers
-from solvers.scenes.models.method_choice import MethodChoice
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
@@ -146,7 +145,7 @@ def test_rounding_errors_of_constants_count() -> None:
 def test_an_estimate_contains_the_error_that_series_show() -> None:
     scene = Scene(dp, (0.7, 1.3, 1.1, 0.9, 9.81), (2.0, -1.0, 1.0, 0.5), 4.0, 1e-12, samples=9)
     model = by_longer_numbers(motion_of(scene), 1e-12, scene.times, {}, lambda _: None)
-    assert isinstance(model, FullEquations)
+    assert isinstance(model, CheckedRun)
     exact = taylor(dp, scene.params, scene.y0, scene.times, 24)
     assert np.abs(model.states(scene.times) - exact).max() <= model.error_estimate <= 1e-12
     other = np.array([0.1, 3.9])  # not computed before
@@ -160,10 +159,10 @@ def test_without_a_compiler_decimals_take_over(monkeypatch: pytest.MonkeyPatch) 
         raise NoCompilerError(f"no {name} numbers")
 
     def series(motion, choice, *arguments):
-        return FullEquations.of(IntegrationRun(motion, choice, 24), 1e-15)
+        return CheckedRun(IntegrationRun(motion, choice, 24), 1e-15)
 
     monkeypatch.setattr(longer_numbers, "kernel", missing)
-    monkeypatch.setattr(selection, "by_series", series)
+    monkeypatch.setattr(sufficient_run, "by_series", series)
     result = selected(LONG)
     assert result.model.run.method_choice.is_series
     assert [result.declined[name] for name in PRECISIONS] == [

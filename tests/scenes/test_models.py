@@ -20,25 +20,24 @@ import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 from solvers.app.modules import load as load_module
 from solvers.equations.linearisation.normal_modes import _generalized_eigh, mode_spread
+from solvers.integration.accuracy import checked_run, longer_numbers
+from solvers.integration.accuracy.checked_run import estimated_error
+from solvers.integration.accuracy.double_precision import check_times
+from solvers.integration.accuracy.integration_run import (
+    IntegrationRun,
+    NotAccurateError,
+    TooLongError,
+)
+from solvers.integration.accuracy.method_choice import RECORD, MethodChoice, cheapest, usual_form
+from solvers.integration.accuracy.motion import Motion, OutsideDomainError
+from solvers.integration.accuracy.series import by_series
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
-from solvers.scenes.models import (
-    equilibrium,
-    full_equations,
-    longer_numbers,
-    normal_modes,
-    quadrature,
-)
+from solvers.scenes.models import equilibrium, normal_modes, quadrature
 from solvers.scenes.models.catalogue import closed_forms, load
-from solvers.scenes.models.double_precision import check_times
 from solvers.scenes.models.equilibrium import Equilibrium, _exponentials
-from solvers.scenes.models.extended_precision import by_series
-from solvers.scenes.models.full_equations import estimated_error
-from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
-from solvers.scenes.models.method_choice import RECORD, MethodChoice, cheapest, usual_form
-from solvers.scenes.models.motion import Motion, OutsideDomainError
 from solvers.scenes.models.normal_modes import NormalModes
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 from solvers.scenes.models.pendulum import Pendulum
@@ -461,7 +460,7 @@ def test_the_full_equations_are_checked_by_another_method() -> None:
     # a check of the run by itself would find nothing
     choice = MethodChoice("verner98", "rational", "")
     assert estimated_error(IntegrationRun(motion, choice, 1e-6), motion) > 1e-9
-    assert set(full_equations.CHECKS) == {"dop853", "verner98"}
+    assert set(checked_run.CHECKS) == {"dop853", "verner98"}
 
 
 @pytest.mark.long("a decimal series of a chaotic motion")

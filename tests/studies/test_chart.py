@@ -554,7 +554,7 @@ def test_the_command_prints_curves_reference_and_frontier(
     assert main(["chart", "singel"]) == 2
     assert "did you mean 'single'" in capsys.readouterr().err
     file = tmp_path / "measured.json"
-    monkeypatch.setattr("solvers.scenes.models.method_choice.RECORD", file)
+    monkeypatch.setattr("solvers.integration.accuracy.method_choice.RECORD", file)
     assert main(["chart", "single", "--record", "--output", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "single pendulum from 2 rad, 10 s" in text

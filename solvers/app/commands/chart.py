@@ -33,9 +33,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Measure, plot and print."""
+    from solvers.integration.accuracy.method_choice import RECORD
     from solvers.io.atomic_write import write_text
     from solvers.io.figures import save
-    from solvers.scenes.models.method_choice import RECORD
     from solvers.studies.work_precision.scene_curves import record
 
     results, plots = [], []

@@ -1,6 +1,5 @@
 """The condition of the mass matrix: where it is large, accelerations lose their digits."""
 
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -16,6 +15,7 @@ from solvers.equations.module import (
     position_constraints,
 )
 from solvers.equations.singularities.singular_configuration import Motion, check_constraints
+from solvers.io.suggestion import warn_caller
 
 #: Conditions of the mass matrix: above the first digits are lost, above the second all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
@@ -52,21 +52,18 @@ def examined(motions: int) -> list[int]:
     return np.unique(indices).tolist() if motions else []
 
 
-def check_condition(
-    module: GeneratedModule, motions: Iterable[Motion], t: float = 0.0, stacklevel: int = 4
-) -> None:
+def check_condition(module: GeneratedModule, motions: Iterable[Motion], t: float = 0.0) -> None:
     """Refuse a nearly singular mass matrix, or warn; coordinates without inertia are permitted.
 
     Besides the initial state, all coordinates are equal, as in aligned rods, unless the matrix is
-    singular there whatever the masses, as at the pole of a sphere. The warning is given at a
-    `stacklevel`, as by `warnings.warn`.
+    singular there whatever the masses, as at the pole of a sphere.
     """
     if _IS_CHECKED.get() or not has_function(module, "mass_matrix"):
         return
     size = len(module.STATE)  # without perturbations
     motions = [(name, params, y0 and y0[:size]) for name, params, y0 in motions]
     if has_constraints(module):
-        check_constraints(module, motions, t, stacklevel + 1)
+        check_constraints(module, motions, t)
     motion, worst, weakest = max(
         ((name, *_worst(module, t, y0, params)) for name, params, y0 in motions),
         key=lambda row: row[1],
@@ -86,7 +83,7 @@ def check_condition(
         raise ValueError(f"{text}; {way_out}")
     if worst >= DOUBTFUL:
         lost = f"about {np.log10(worst):.0f} digits are lost"
-        warnings.warn(f"{text}; {lost}", MassMatrixWarning, stacklevel=stacklevel)
+        warn_caller(f"{text}; {lost}", MassMatrixWarning)
 
 
 def _worst(

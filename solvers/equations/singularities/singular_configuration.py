@@ -1,6 +1,5 @@
 """Configurations at which constraints depend on each other, as at toggle points of linkages."""
 
-import warnings
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -8,6 +7,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.starts.assembly import Assembly
+from solvers.io.suggestion import warn_caller
 
 Array = NDArray[np.float64]
 #: A motion in a report, its parameters, and its initial state; None examines no initial state.
@@ -24,9 +24,7 @@ class SingularConfigurationWarning(UserWarning):
     """Constraints nearly depend on each other: digits are lost."""
 
 
-def check_constraints(
-    module: GeneratedModule, motions: Iterable[Motion], t: float, stacklevel: int
-) -> None:
+def check_constraints(module: GeneratedModule, motions: Iterable[Motion], t: float) -> None:
     """Refuse motions that start where constraints depend on each other, or warn near it."""
     for name, params, y0 in motions:
         if y0 is None:
@@ -42,7 +40,7 @@ def check_constraints(
             )
         if condition >= DOUBTFUL:
             lost = f"about {np.log10(condition):.0f} digits are lost"
-            warnings.warn(f"{text}; {lost}", SingularConfigurationWarning, stacklevel=stacklevel)
+            warn_caller(f"{text}; {lost}", SingularConfigurationWarning)
 
 
 def condition_of_constraints(

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
-from warnings import warn
 
 from solvers.integration.compiled.command import CommandError
 from solvers.integration.compiled.compilation import LIBRARY, Attempts, Compilation, identity
 from solvers.io.build_cache import NoPlaceError, built_folder
+from solvers.io.suggestion import warn_caller
 
 #: ``-ffast-math`` would switch the whole process to flushing small numbers to zero.
 #: Vectors are explicit in the source: loops over a small state are slower when vectorised.
@@ -69,7 +69,7 @@ def build(source: str, *, reproducible: bool = False) -> Library:
             raise NoCompilerError(str(error)) from error
         else:
             if errors:
-                warn(f"compiling with {library.compiler}: {'; '.join(errors)}", stacklevel=2)
+                warn_caller(f"compiling with {library.compiler}: {'; '.join(errors)}")
             return library
     tried = "; ".join(errors) or "none was found"
     raise NoCompilerError(

@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from threading import Thread
-from warnings import warn
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, has_header
@@ -15,6 +14,7 @@ from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.outcome import Outcome
+from solvers.io.suggestion import warn_caller
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.tableau import Tableau
 
@@ -67,7 +67,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     if reason and must_compile:
         raise ValueError(f"no compiled loop can solve this problem: {reason}")
     if reason and lanes and problem.backend is None and isinstance(problem.method, Tableau):
-        warn(f"integrating one motion after another in Python: {reason}", stacklevel=4)
+        warn_caller(f"integrating one motion after another in Python: {reason}")
     if reason:
         return problem, None
     is_free = problem.options.form is None and not load(problem.options.method).needs_jacobian
@@ -77,7 +77,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
     except NoCompilerError as error:
         if must_compile:
             raise
-        warn(f"integrating in Python: {error}", stacklevel=4)
+        warn_caller(f"integrating in Python: {error}")
         return problem, None
 
 

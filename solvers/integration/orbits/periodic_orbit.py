@@ -9,7 +9,6 @@ from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, function, integrals
 from solvers.equations.quantities import Values, positive, real_number
 from solvers.integration.checks.predictability import ignore_predictability
-from solvers.integration.integrate import integrate
 from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.newton import NoPeriodicOrbitError, solve
 from solvers.integration.orbits.orbit import PeriodicOrbit
@@ -17,7 +16,9 @@ from solvers.integration.orbits.shooting import SMALL, Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
 from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
+from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
+from solvers.integration.single_motion import single_motion
 from solvers.io.suggestion import shortened
 from solvers.runge_kutta.stepper import Array
 
@@ -165,10 +166,8 @@ def _met(module: GeneratedModule, y0: Array, section: Event, params: Array) -> t
     """The time after which a motion meets a section, and the state there."""
     for duration in DURATIONS:
         with ignore_predictability():  # of motions that do not meet the section
-            motion = integrate(
-                module, (0.0, duration), y0, params,
-                events=section, t_eval=(), max_steps=MAX_STEPS,
-            )  # fmt: skip
+            options = Options(events=section, t_eval=(), max_steps=MAX_STEPS)
+            motion = single_motion(module, (0.0, duration), y0, params, options)
         if len(motion.t_events[0]):
             return float(motion.t_events[0][0]), motion.y_events[0][0].copy()
         if motion.status is not Status.FINISHED:

@@ -21,6 +21,8 @@ SHORTEST = 10
 #: short as the distance from such a configuration.
 COLLAPSE = 1e-2
 EventFunction = Callable[[float, Array], float]
+#: The default method.
+METHOD = "verner853"
 
 
 def shortest_step(begin: float, end: float) -> float:
@@ -32,7 +34,7 @@ def shortest_step(begin: float, end: float) -> float:
 class Options:
     """Options of `integrate`, `ensemble` and `prepare`, before any check; documented there."""
 
-    method: str = "verner853"
+    method: str = METHOD
     form: str | None = None
     rtol: float = 1e-9
     atol: ArrayLike = 1e-12

@@ -4,7 +4,6 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
-from warnings import warn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +27,7 @@ from solvers.integration.problem.inputs import Held, Schedule, controlled, given
 from solvers.integration.problem.memory import check_times
 from solvers.integration.problem.problem import Options, Problem, shortest_step
 from solvers.io.arguments import check_type
-from solvers.io.suggestion import counted, shortened
+from solvers.io.suggestion import counted, shortened, warn_caller
 from solvers.runge_kutta.catalogue import SCIPY, load
 from solvers.runge_kutta.stepper import Array
 from solvers.runge_kutta.tableau import Tableau
@@ -312,9 +311,8 @@ def event_functions(events: object, module: GeneratedModule) -> list[Callable[..
 def warn_if_flushed() -> None:
     """Warn if this thread sets numbers below ``sys.float_info.min`` to zero."""
     if sys.float_info.min * 0.5 == 0:
-        warn(
+        warn_caller(
             f"this process sets numbers below {sys.float_info.min:.2g} to zero: motions next to "
             "rest lose their digits. A library built with -ffast-math has switched that on; import "
             "it after the integration, or integrate in a process without it",
-            stacklevel=5,
         )

@@ -47,6 +47,9 @@ class Solution:
         Takes times and states and returns their estimated errors, for the next one.
     inputs : ndarray of shape (inputs, n) or None
         The inputs at these times, held ones from there on; None for a system without inputs.
+    error_estimate : float or None
+        Largest estimated error of any value of `y`, if an accuracy is requested. Of numbers longer
+        than doubles, evaluations and steps are not counted.
     global_error_estimate : ndarray of shape (state, n)
         Estimated errors of `y`, computed on first use, which takes longer than the run.
 
@@ -78,6 +81,7 @@ class Solution:
     units: Mapping[str, str]
     compare: Callable[[Array, Array], Array] | None = field(default=None, compare=False)
     inputs: Array | None = None
+    error_estimate: float | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """The attributes to copy or send to other processes, which modules cannot be."""
@@ -113,12 +117,13 @@ class Solution:
         t = " to ".join(dict.fromkeys(f"{t:.6g}" for t in (*self.t[:1], *self.t[-1:])))
         components = zip(self.units.items(), y_end, strict=True)
         state = [f"{name} = {with_unit(y, unit)}" for (name, unit), y in components]
+        error = "" if self.error_estimate is None else f", error below {self.error_estimate:.1e}"
         headline = self.message.partition(" (t = ")[0]  # the state follows anyway
         times, steps = counted(len(self.t), "time"), counted(self.steps, "step")
         return (
             f"Solution: {headline}\n"
             f"  {t and f't = {t} s, '}{times}, {steps}, {self.rejected} rejected\n"
-            f"  {self.run}\n"
+            f"  {self.run}{error}\n"
             f"  final state, t = {t_end:.6g} s: {', '.join(state)}"
         )
 

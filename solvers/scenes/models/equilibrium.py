@@ -6,8 +6,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, depends_on_time
+from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError, golden_points
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
-from solvers.scenes.models.motion import Array, Motion, OutsideDomainError, golden_points
 
 #: Safety factor for times between the samples.
 MARGIN = 1.5

@@ -1,32 +1,12 @@
 """The full equations, integrated by one method and checked by others."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
-import numpy as np
-
-from solvers.equations.forms import fastest_form
-from solvers.runge_kutta.catalogue import SCIPY, load
-from solvers.scenes.models.double_precision import check_times, sufficient
-from solvers.scenes.models.integration_run import (
-    MAX_STEPS,
-    EndsEarlyError,
-    IntegrationRun,
-    NotAccurateError,
-    TooLongError,
-)
-from solvers.scenes.models.method_choice import MethodChoice
+from solvers.integration.accuracy.checked_run import CheckedRun
+from solvers.integration.accuracy.integration_run import IntegrationRun
+from solvers.integration.accuracy.motion import Array
 from solvers.scenes.models.model import Model
-from solvers.scenes.models.motion import Array, Motion
-
-#: Methods of the check, how much finer its tolerance is, and the finest tolerance.
-CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14
-#: Safety factor of the difference between run and check.
-MARGIN = 2.0
-#: Number of tolerances or steps to try, and the share of the requested accuracy to aim at.
-TRIES, RESERVE = 6, 0.3
-#: How much smaller an error may be than in proportion to the tolerance, by compensated sums, too.
-MOST_GAIN = 2e4
 
 
 @dataclass(frozen=True)
@@ -39,121 +19,20 @@ class FullEquations(Model):
     error_source: ClassVar[str] = "comparison with two methods in another form of the equations"
 
     run: IntegrationRun = field(kw_only=True)
-    computed: tuple[Array, Array] | None = None  # times and states that are known already
-    computing_seconds: float | None = None  # where it takes too long to be repeated
+    checked: CheckedRun = field(kw_only=True)
 
     @classmethod
     def key(cls) -> str:
         return "full"
 
     @classmethod
-    def of(cls, run: IntegrationRun, error_estimate: float) -> Self:
-        """The model of one run and its error estimate."""
-        return cls(run=run, error_estimate=error_estimate, why=run.method_choice.why)
+    def of(cls, checked: CheckedRun) -> Self:
+        """The model of a run whose error is estimated."""
+        why, error = checked.run.method_choice.why, checked.error_estimate
+        return cls(run=checked.run, checked=checked, error_estimate=error, why=why)
 
     def states(self, t: Array) -> Array:
-        if self.computed and np.array_equal(self.computed[0], t):
-            return self.computed[1]
-        return self.run.states(t)
+        return self.checked.states(t)
 
     def seconds(self, duration: float) -> float:
-        return self.computing_seconds or self.run.seconds()
-
-
-def integrated(
-    motion: Motion, choice: MethodChoice, accuracy: float, checked: Motion
-) -> FullEquations:
-    """The full equations at the largest tolerance or step that is sufficient; else an error.
-
-    `checked` is the same motion with general code. Where no check is much more accurate than the
-    run, several that are as accurate as double precision permits check each other.
-    """
-    check_length(checked, MAX_STEPS)
-    if choice.step is not None:
-        run = IntegrationRun(motion, choice, choice.step)
-        return FullEquations.of(run, estimated_error(run, checked))
-    finest = FINEST if choice.method in SCIPY else TIGHTER * FINEST
-    setting, power = max(accuracy / 3, finest), 1.0
-    if choice.is_fixed:
-        setting, power = motion.duration / 200, float(load(choice.method).order)
-    may_compensate = not choice.is_fixed and choice.method not in SCIPY
-    best = np.inf
-    for _ in range(TRIES):
-        run = IntegrationRun(motion, choice, setting)
-        error = estimated_error(run, checked)
-        if error <= accuracy:
-            return FullEquations.of(run, error)
-        best = min(best, error)
-        least = error * finest / setting / MOST_GAIN
-        if may_compensate and not choice.is_named and accuracy < least < np.inf:
-            best, may_compensate = least, False
-            break
-        if not choice.is_fixed and setting <= finest:
-            break
-        factor = (RESERVE * accuracy / error) ** (1 / power) if np.isfinite(error) else 0.1
-        setting = max(setting * min(max(factor, 1e-4), 0.5), 0.0 if choice.is_fixed else finest)
-    if may_compensate:
-        run, error = sufficient(checked, accuracy, choice if choice.is_named else None)
-        if error <= accuracy:
-            return FullEquations.of(run, error)
-        best = min(best, error)
-    method = choice.method if choice.is_named else "double precision"
-    raise NotAccurateError(
-        f"{method} reaches {best:.1g} at best where {accuracy:.1g} is requested: the motion "
-        "loses more digits than double precision has"
-    )
-
-
-def estimated_error(run: IntegrationRun, checked: Motion) -> float:
-    """Estimated error of a run; infinity for one that does not reach its end.
-
-    `EndsEarlyError` where the motion itself does not.
-    """
-    checks = _checks(run, checked)
-    try:
-        times = check_times(run)
-        states = run.states(times)
-        references = [check.states(times) for check in checks]
-    except NotAccurateError:
-        _refuse_early_end(checks[0])
-        return np.inf
-    # a check's own error counts where the run is more accurate than its tolerance
-    rest = checks[0].setting * float(np.abs(references[0]).max())
-    return max(difference(run.motion, states, reference) for reference in references) + rest
-
-
-def _checks(run: IntegrationRun, checked: Motion) -> list[IntegrationRun]:
-    """Runs with a finer tolerance to compare with."""
-    # another form has no rounding in common, not even of the initial state; two methods, since
-    # the error of one may exceed its tolerance by so much that it equals the run's
-    choice = run.method_choice
-    form = fastest_form(checked.module) if choice.form == "lagrangian" else "lagrangian"
-    tolerance = FINEST if choice.is_fixed else max(run.setting / TIGHTER, FINEST)
-    return [IntegrationRun(checked, MethodChoice(name, form, ""), tolerance) for name in CHECKS]
-
-
-def _refuse_early_end(check: IntegrationRun) -> None:
-    """Raise `EndsEarlyError` where the finest check ends early, as every other run would."""
-    try:
-        replace(check, setting=FINEST).integrate(None)
-    except NotAccurateError as failure:
-        raise EndsEarlyError(f"{failure}: end the motion before") from failure
-
-
-def difference(motion: Motion, one: Array, other: Array) -> float:
-    """The error that the difference of two results, shape (n, state), stands for."""
-    return float(MARGIN * np.abs(one - other)[:, list(motion.requested)].max())
-
-
-def check_length(motion: Motion, most: float) -> None:
-    """Refuse motions of more than `most` turns, by the rates at the start."""
-    jacobian = np.array(motion.module.jacobian(0.0, motion.y0, motion.params))
-    if not np.isfinite(jacobian).all():
-        raise NotAccurateError(f"the equations are not finite at {motion.y0}")
-    velocities = np.abs(motion.y0[motion.n_coordinates :])
-    rate = max(np.abs(np.linalg.eigvals(jacobian)).max(), *velocities)
-    if rate * motion.duration > most:
-        raise TooLongError(
-            f"rates of {rate:.3g} per s over {motion.duration:g} s are more than {most:g} turns: "
-            "shorten the duration or request less accuracy"
-        )
+        return self.checked.seconds()

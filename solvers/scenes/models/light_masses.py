@@ -5,11 +5,15 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from solvers.integration.accuracy.double_precision import check_times
+from solvers.integration.accuracy.integration_run import (
+    IntegrationRun,
+    NotAccurateError,
+    TooLongError,
+)
+from solvers.integration.accuracy.method_choice import MethodChoice, usual_form
+from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError
 from solvers.references.elliptic import pendulum as exact
-from solvers.scenes.models.double_precision import check_times
-from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
-from solvers.scenes.models.method_choice import MethodChoice, usual_form
-from solvers.scenes.models.motion import Array, Motion, OutsideDomainError
 from solvers.scenes.models.pendulum import ANGLES, SAME, Pendulum, rounding_errors
 
 #: Method and tolerance of the motion of the other coordinates, and number of kicks.

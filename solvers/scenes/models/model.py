@@ -8,9 +8,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, depends_on_time, has_function
+from solvers.integration.accuracy.integration_run import IntegrationRun
+from solvers.integration.accuracy.motion import Array, Motion
 from solvers.integration.timing import median_seconds
-from solvers.scenes.models.integration_run import IntegrationRun
-from solvers.scenes.models.motion import Array, Motion
 
 #: Relative rounding of a number, and roundings that a closed form is assumed to accumulate.
 EPS, ROUNDINGS = float(np.finfo(float).eps), 32

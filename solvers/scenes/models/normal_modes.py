@@ -7,8 +7,8 @@ import numpy as np
 
 from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule, function, has_function
+from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError, golden_points
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
-from solvers.scenes.models.motion import Array, Motion, OutsideDomainError, golden_points
 
 #: Fewest times at which the defect is evaluated, their number in a period of the fastest mode, and
 #: the most with which errors are propagated.

@@ -102,7 +102,7 @@ class Sweep:
         checks.check_duration(self.maps, self.duration, self.skip)
         validation.problem_at_rest(self.module, (0.0, 1.0), Options(**self.options))
         some = checks.examined_motions(self.module, self.axes, self.values)
-        check_condition(self.module, some, stacklevel=4)
+        check_condition(self.module, some)
         for _, params, _ in checks.examined_motions(self.module, self.axes, self.values):
             self.times([np.array([value]) for value in params])  # periods must be positive
 

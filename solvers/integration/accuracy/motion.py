@@ -1,12 +1,14 @@
-"""A motion that models describe."""
+"""A motion, and the components of its state and the times whose errors matter."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, has_constraints
+from solvers.equations.module import GeneratedModule, has_constraints, has_perturbation
+from solvers.integration.problem.inputs import Controller, Held
 
 Array = NDArray[np.float64]
 
@@ -25,9 +27,11 @@ class Motion:
     module: GeneratedModule
     params: tuple[float, ...]
     y0: tuple[float, ...]
-    duration: float  # in s
+    duration: float  # in s, negative for a motion that ends before it begins
     requested: tuple[int, ...]  # indices of components of the state
     times: tuple[float, ...] = ()  # of the samples that are returned
+    begin: float = 0.0  # in s
+    inputs: Held | Controller | None = None  # those that vary
 
     @property
     def n_coordinates(self) -> int:
@@ -51,7 +55,28 @@ class Motion:
     @property
     def sample_times(self) -> Array:
         """Times at which errors are estimated: commensurate with no period, both ends included."""
-        return self.duration * np.unique([*golden_points(SAMPLES), 1.0])
+        return self.begin + self.duration * np.unique([*golden_points(SAMPLES), 1.0])
+
+    @property
+    def forms(self) -> list[str]:
+        """Forms of the equations that can integrate it: functions of inputs have Lagrange's."""
+        if callable(self.inputs):
+            return ["lagrangian"]
+        return [form for form in self.module.FORMS if not has_perturbation(form)]
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Start and end in s."""
+        return self.begin, self.begin + self.duration
+
+    def ordered(self, times: Sequence[float] | Array) -> Array:
+        """These times, each of them once, from the start of the motion to its end."""
+        ascending = np.unique(times)
+        return ascending if self.duration >= 0 else ascending[::-1]
+
+    def with_start(self, times: Array) -> Array:
+        """These times, preceded by that of the start unless it is the first of them."""
+        return times if len(times) and times[0] == self.begin else np.array([self.begin, *times])
 
 
 def golden_points(count: int) -> Array:

@@ -11,10 +11,13 @@ from itertools import product
 import numpy as np
 
 from solvers.equations.forms import fastest_form
-from solvers.equations.module import has_perturbation
-from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
-from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.motion import Array, Motion, golden_points
+from solvers.integration.accuracy.integration_run import (
+    IntegrationRun,
+    NotAccurateError,
+    TooLongError,
+)
+from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.integration.accuracy.motion import Array, Motion, golden_points
 
 #: The fastest method, run in every form, and others, run in one.
 BEST, OTHERS = "verner98", ("tsit54", "dop853")
@@ -62,7 +65,7 @@ def _finished(motion: Motion, choice: MethodChoice) -> IntegrationRun:
     *finer, coarsest = (IntegrationRun(motion, choice, x, MOST_STEPS) for x in TOLERANCES)
     for run in finer:
         try:
-            run.integrate(np.array([motion.duration]))
+            run.integrate(np.array([motion.span[1]]))
         except TooLongError:
             continue
         return run
@@ -76,12 +79,12 @@ def check_times(run: IntegrationRun) -> Array:
         times = times[np.unique((len(times) * golden_points(MOST_SAMPLES)).astype(int))]
     # steps are dense where the motion is fast; between two of them it may be faster
     middles, motion = (times[1:] + times[:-1]) / 2, run.motion
-    return np.unique([*times, *middles, *motion.sample_times, *motion.times])
+    return motion.ordered([*times, *middles, *motion.sample_times, *motion.times])
 
 
 def _choices(motion: Motion) -> list[MethodChoice]:
     fastest = fastest_form(motion.module)
-    forms = [form for form in motion.module.FORMS if not has_perturbation(form)]
+    forms = motion.forms
     forms.sort(key=lambda form: form != fastest)
     # in the fastest form and the one that differs most from it
     pairs = [*product([BEST], forms), *zip(OTHERS, (forms[0], forms[-1]), strict=True)]

@@ -1,4 +1,4 @@
-"""The full equations in compiled numbers longer than doubles, before Taylor series in decimals."""
+"""Motions in compiled numbers longer than doubles, before Taylor series in decimals."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -10,13 +10,17 @@ import numpy as np
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import named, operations_on_state
+from solvers.integration.accuracy.checked_run import CheckedRun, check_length
+from solvers.integration.accuracy.double_precision import MARGIN
+from solvers.integration.accuracy.integration_run import (
+    IntegrationRun,
+    NotAccurateError,
+    TooLongError,
+)
+from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.integration.accuracy.motion import Array, Motion, golden_points
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, kernel
-from solvers.scenes.models.double_precision import MARGIN
-from solvers.scenes.models.full_equations import FullEquations, check_length
-from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
-from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.motion import Array, Motion, golden_points
 
 #: Most turns, and most products of a run, which take up to a minute.
 MOST_TURNS, MOST_PRODUCTS = 20_000.0, 2e8
@@ -37,8 +41,8 @@ def by_longer_numbers(
     times: Array,
     declined: dict[str, str],
     report: Callable[[str], None],
-) -> FullEquations | None:
-    """The full equations in the shortest numbers that are sufficient; None if none are.
+) -> CheckedRun | None:
+    """The run in the shortest numbers that are sufficient; None if none are.
 
     The reasons against insufficient ones are added to `declined`.
     """
@@ -75,7 +79,7 @@ def by_longer_numbers(
 
 def _checked(
     motion: Motion, precision: str, finest: float, times: Array, report: Callable[[str], None]
-) -> tuple[FullEquations, float]:
+) -> tuple[CheckedRun, float]:
     """The run with the finest tolerance, checked by others; and the growth of its errors.
 
     The others are perturbed by a few rounding errors: those of constants are the same in all runs.
@@ -86,22 +90,23 @@ def _checked(
     most = int(MOST_PRODUCTS / (stages * (operations + 2 * stages * len(motion.y0))))
 
     def progress(t: float) -> None:
-        report(f"{choice.method}, {precision}, at {t:.3g} of {motion.duration:g} s")
+        report(f"{choice.method}, {precision}, at {t:.3g} of {motion.span[1]:g} s")
 
     run, before = IntegrationRun(motion, choice, finest, most), perf_counter()
     compared = _compared_times(run, times)
-    together = np.union1d(times, compared)
+    together = motion.ordered([*times, *compared])
     states = run.states(together, progress)
     seconds, distances = perf_counter() - before, list[Array]()
-    computed, fine = (states[np.searchsorted(together, t)] for t in (times, compared))
+    direction = np.sign(motion.duration)
+    places = (np.searchsorted(direction * together, direction * t) for t in (times, compared))
+    computed, fine = (states[k] for k in places)
     for k, multiple in enumerate(MULTIPLES, 1):
         other = replace(run, setting=multiple * finest).extended_states(compared, progress, k)
         distances.append(np.abs(fine - other)[:, list(motion.requested)].max(axis=1))
     error = MARGIN * float(np.max(distances)) + float(np.spacing(np.abs(fine).max()))
-    model = replace(
-        FullEquations.of(run, error), computed=(times, computed), computing_seconds=seconds
-    )
-    return model, _growth(compared, distances[-1], MULTIPLES[-1] * finest)
+    model = replace(CheckedRun(run, error), computed=(times, computed), computing_seconds=seconds)
+    elapsed = np.abs(compared - motion.begin)
+    return model, _growth(elapsed, distances[-1], MULTIPLES[-1] * finest)
 
 
 def _compared_times(run: IntegrationRun, times: Array) -> Array:
@@ -111,7 +116,7 @@ def _compared_times(run: IntegrationRun, times: Array) -> Array:
         parts.append(run.step_times())
     spread = golden_points(MOST_SAMPLES)
     some = (part[np.unique((len(part) * spread).astype(int))] for part in parts)
-    return np.unique([*np.concatenate([*some]), times[-1]])
+    return run.motion.ordered([*np.concatenate([*some]), times[-1]])
 
 
 def _growth(times: Array, errors: Array, tolerance: float) -> float:

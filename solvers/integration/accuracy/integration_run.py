@@ -7,16 +7,17 @@ from typing import Any
 import numpy as np
 
 from solvers.equations.singularities.mass_matrix import checked_before
+from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.integration.accuracy.motion import Array, Motion
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import ExtendedError, integrate_extended
-from solvers.integration.integrate import integrate
 from solvers.integration.prepare import no_compiler, prepare
+from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
+from solvers.integration.single_motion import single_motion
 from solvers.integration.timing import median_seconds
 from solvers.references.taylor import taylor
-from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.motion import Array, Motion
 
 #: Magnitude of a state in rad or m above which it is resolved relatively.
 SMALL_STATE = 1e-3
@@ -56,6 +57,17 @@ class IntegrationRun:
         return "digits" if choice.is_series else "h" if choice.is_fixed else "rtol"
 
     @property
+    def description(self) -> str:
+        """Method, numbers, form and setting in words."""
+        choice = self.method_choice
+        if choice.is_series:
+            return f"Taylor series of {self.setting:g} digits"
+        numbers = f", {choice.precision} numbers" if choice.is_extended else ""
+        return (
+            f"{choice.method}{numbers}, {choice.form} form, {self.setting_name} = {self.setting:g}"
+        )
+
+    @property
     def is_compensated(self) -> bool:
         """Whether sums are compensated; that needs a compiled loop."""
         return self.method_choice.compensated and not no_compiler(self.motion.module)
@@ -80,7 +92,7 @@ class IntegrationRun:
         if self.method_choice.is_extended:
             return self.extended_states(t, progress)
         if self.method_choice.is_series:
-            motion, times = self.motion, t if t[0] == 0 else [0.0, *t]  # which include the start
+            motion, times = self.motion, self.motion.with_start(t)
             arguments = motion.module, motion.params, motion.y0, times, int(self.setting)
             states = taylor(*arguments, max_products=MAX_PRODUCTS, progress=progress)
             return states[-len(t) :]
@@ -90,7 +102,7 @@ class IntegrationRun:
         self, t: Array, progress: Callable[[float], None], perturbation: int = 0
     ) -> Array:
         """As `states`, of a run in longer numbers with a `perturbation`."""
-        motion, times = self.motion, t if t[0] == 0 else np.array([0.0, *t])
+        motion, times = self.motion, self.motion.with_start(t)
         arguments = motion.module, motion.params, motion.y0, times, self.method_choice.precision
         options = self.setting, self.max_steps, progress, perturbation
         try:
@@ -103,9 +115,9 @@ class IntegrationRun:
     def integrate(self, t: Array | None) -> tuple[Array, Array]:
         """Times and states: at `t`, or at the end of every step."""
         motion, method = self.motion, self.method_choice.method
-        arguments = motion.module, (0.0, motion.duration), motion.y0, motion.params
+        options = Options(t_eval=t, inputs=motion.inputs, **self.options)
         with ignore_predictability(), checked_before():
-            solution = integrate(*arguments, t_eval=t, **self.options)
+            solution = single_motion(motion.module, motion.span, motion.y0, motion.params, options)
         if solution.status is Status.STEP_LIMIT:
             raise TooLongError(
                 f"{method} needs more than {self.max_steps:.0e} steps: shorten the duration or "
@@ -126,10 +138,10 @@ class IntegrationRun:
 
     def seconds(self) -> float:
         """Seconds of an integration to the end, without preparations that are done once."""
-        motion, end = self.motion, self.motion.duration
+        motion, end = self.motion, self.motion.span[1]
         try:
             with checked_before():
                 run = prepare(motion.module, motion.params, **self.options)
         except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
             return median_seconds(lambda: self.states(np.array([end])))
-        return median_seconds(lambda: run((0.0, end), motion.y0))
+        return median_seconds(lambda: run(motion.span, motion.y0))

@@ -1,4 +1,4 @@
-"""The full equations by Taylor series with more digits than double precision has."""
+"""Motions by Taylor series with more digits than double precision has."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -6,10 +6,14 @@ from time import perf_counter
 
 import numpy as np
 
-from solvers.scenes.models.full_equations import FullEquations, check_length, difference
-from solvers.scenes.models.integration_run import IntegrationRun, NotAccurateError, TooLongError
-from solvers.scenes.models.method_choice import MethodChoice
-from solvers.scenes.models.motion import Array, Motion
+from solvers.integration.accuracy.checked_run import CheckedRun, check_length, difference
+from solvers.integration.accuracy.integration_run import (
+    IntegrationRun,
+    NotAccurateError,
+    TooLongError,
+)
+from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.integration.accuracy.motion import Array, Motion
 
 #: Digits of Taylor series: fewest, increment, most.
 DIGITS, MORE_DIGITS, MOST_DIGITS = 24, 12, 96
@@ -23,7 +27,7 @@ def by_series(
     accuracy: float,
     times: Array,
     report: Callable[[str], None],
-) -> FullEquations:
+) -> CheckedRun:
     """Taylor series with as many digits as are necessary.
 
     `NotAccurateError` where even the most digits are not sufficient, `SeriesError` where they take
@@ -36,7 +40,7 @@ def by_series(
     for digits in range(DIGITS, MOST_DIGITS + 1, MORE_DIGITS):
 
         def progress(t: float, digits: int = digits) -> None:
-            report(f"Taylor series of {digits} digits at {t:.3g} of {motion.duration:g} s")
+            report(f"Taylor series of {digits} digits at {t:.3g} of {motion.span[1]:g} s")
 
         run, before = IntegrationRun(motion, choice, digits), perf_counter()
         fine = run.states(times, progress)
@@ -45,7 +49,7 @@ def by_series(
             # the result is rounded to double precision
             error = difference(motion, coarse, fine) + float(np.spacing(np.abs(fine).max()))
         if error <= accuracy:
-            model = FullEquations.of(run, error)
+            model = CheckedRun(run, error)
             return replace(model, computed=(times, fine), computing_seconds=seconds)
         coarse = fine
     text = f"{MOST_DIGITS} digits reach {error:.1g} where {accuracy:.1g} is requested"

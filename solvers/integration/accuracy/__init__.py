@@ -1,0 +1,1 @@
+"""Motions whose errors stay below a requested accuracy: method, form, tolerance, precision."""

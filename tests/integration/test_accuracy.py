@@ -1,0 +1,167 @@
+"""A requested accuracy: the error of every returned state is below it, by Taylor series."""
+
+import re
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+from random_motions import SYSTEMS, error_of, random_scene
+
+import generated.double_pendulum as dp
+import generated.driven_pendulum as driven
+import generated.furuta_pendulum as furuta
+import generated.single_pendulum as single
+from solvers import Event, Held, run_scene
+from solvers.integration.accuracy.integration_run import (
+    EndsEarlyError,
+    NotAccurateError,
+    TooLongError,
+)
+from solvers.integration.integrate import integrate
+from solvers.integration.problem.inputs import Controller
+from solvers.integration.problem.status import Status
+from solvers.references.taylor import taylor
+from solvers.scenes.scene import Scene
+from solvers.scenes.selection import motion_of
+
+START = (2.0, 1.0, 0.0, 0.5)
+
+
+def exact(module: ModuleType, times: np.ndarray, start: tuple[float, ...] = START) -> np.ndarray:
+    """States at times, of which the first is that of the start, by series of 30 digits."""
+    return np.array(taylor(module, module.DEFAULTS, start, times.tolist(), 30), float).T
+
+
+def check_motion(seed: int) -> None:
+    """A random motion at uneven times, beside an independent reference."""
+    scene = random_scene(seed)
+    motion = motion_of(scene)
+    times = scene.duration * np.sort([0.0, *np.random.default_rng([37, seed]).random(9)])
+    arguments = scene.module, (0, scene.duration), scene.y0, scene.params
+    try:
+        solution = integrate(*arguments, accuracy=scene.accuracy, t_eval=times)
+    except (EndsEarlyError, NotAccurateError, TooLongError):
+        return
+    assert solution.error_estimate is not None
+    error = error_of(motion, solution.y.T, times, solution.error_estimate)
+    assert error <= solution.error_estimate <= scene.accuracy, (seed, scene.module.SYSTEM)
+
+
+@pytest.mark.long("more cases of the same kind", keep=8)
+@pytest.mark.parametrize("seed", range(500, 500 + len(SYSTEMS)))
+def test_errors_at_uneven_times_are_below_the_estimate(seed: int) -> None:
+    check_motion(seed)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("seed", range(600, 1100))
+def test_errors_of_hundreds_of_motions_are_below_the_estimates(seed: int) -> None:
+    check_motion(seed)
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-7, 1e-11])
+def test_a_motion_runs_backwards(accuracy: float) -> None:
+    times = np.array([5.0, 4.2, 1.0, 0.0])
+    motion = integrate(dp, (5, 0), START, {}, accuracy=accuracy, t_eval=times)
+    assert np.abs(motion.y - exact(dp, times)).max() <= motion.error_estimate <= accuracy
+
+
+def test_a_motion_backwards_in_longer_numbers() -> None:
+    times = np.array([20.0, 13.0, 0.0])
+    motion = integrate(dp, (20, 0), START, {}, accuracy=1e-11, t_eval=times)
+    assert "numbers" in motion.run
+    assert np.abs(motion.y - exact(dp, times)).max() <= motion.error_estimate <= 1e-11
+
+
+def test_equations_that_depend_on_time_start_later() -> None:
+    times, start = np.array([3.0, 4.5, 7.0]), (0.4, 0.1)
+    motion = integrate(driven, (3, 7), start, {}, accuracy=1e-9, t_eval=times)
+    assert np.abs(motion.y - exact(driven, times, start)).max() <= motion.error_estimate <= 1e-9
+
+
+def test_without_times_the_ends_of_steps_are_returned() -> None:
+    motion = integrate(dp, (0, 3), START, {}, accuracy=1e-8)
+    assert len(motion.t) == motion.steps + 1
+    assert np.abs(motion.y - exact(dp, motion.t)).max() <= motion.error_estimate <= 1e-8
+
+
+def test_long_motions_in_longer_numbers_have_times_of_steps() -> None:
+    motion = integrate(dp, (0, 20), START, {}, accuracy=1e-11, energy=True)
+    assert len(motion.t) > 50
+    assert (motion.t[0], motion.t[-1], motion.end[0]) == (0.0, 20.0, 20.0)
+    assert np.abs(motion.y - exact(dp, motion.t)).max() <= motion.error_estimate <= 1e-11
+    assert np.ptp(motion.energy) < 1e-9
+
+
+def test_the_motion_is_as_accurate_up_to_an_event_that_ends_it() -> None:
+    event = Event(dp, "theta2", 0.0, terminal=True)
+    motion = integrate(dp, (0, 1e5), START, {}, accuracy=1e-9, events=event, t_eval=[0.1, 0.2, 9e4])
+    assert motion.status is Status.EVENT
+    times = np.array([0.0, *motion.t, *motion.t_events[0]])
+    states = np.column_stack([motion.y, motion.y_events[0].T])
+    assert np.abs(states - exact(dp, times)[:, 1:]).max() <= 1e-9
+
+
+def test_a_named_method_and_form_are_used() -> None:
+    options = {"accuracy": 1e-6, "method": "dp54", "form": "hamiltonian"}
+    motion = integrate(dp, (0, 3), START, {}, t_eval=[3.0], **options)
+    assert motion.run.startswith("Dormand-Prince 5(4), hamiltonian form")
+    error = np.abs(motion.y[:, 0] - exact(dp, np.array([0.0, 3.0]))[:, 1]).max()
+    assert error <= motion.error_estimate <= 1e-6
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [Held([0.0, 0.5, 1.1], [[2.0, -1.0, 0.3]]), lambda t, y: [-3 * y[0] - 2 * y[2] + np.sin(t)]],
+    ids=["held", "controller"],
+)
+def test_inputs_that_vary_are_those_of_the_checks(inputs: Held | Controller) -> None:
+    arguments, times = (furuta, (0, 1.5), (0.1, 0.2, 0.0, 0.0), {}), [0.3, 1.0, 1.5]
+    options = {"t_eval": times, "inputs": inputs}
+    motion = integrate(*arguments, accuracy=1e-8, **options)
+    fine = integrate(*arguments, method="gauss3", h=5e-4, form="lagrangian", **options)
+    assert np.abs(motion.y - fine.y).max() <= motion.error_estimate <= 1e-8
+
+
+def test_scenes_integrate_in_the_same_way() -> None:
+    scene = Scene(dp, dp.DEFAULTS, START, 5.0, accuracy=1e-8, samples=51)
+    result = run_scene(scene)
+    motion = integrate(dp, (0, 5), START, {}, accuracy=1e-8, t_eval=result.t)
+    assert np.array_equal(motion.y, result.y)
+    assert motion.error_estimate == result.selection.model.error_estimate
+
+
+def test_the_error_estimates_of_all_values_are_the_bound() -> None:
+    motion = integrate(single, (0, 3), (1.0, 0.0), {}, accuracy=1e-6, t_eval=[1.0, 3.0])
+    assert np.array_equal(motion.global_error_estimate, np.full((2, 2), motion.error_estimate))
+    assert f"error below {motion.error_estimate:.1e}" in repr(motion)
+    assert replace(motion, error_estimate=None).run == motion.run
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"accuracy": 0.0}, "accuracy = 0.0 must be positive"),
+        ({"accuracy": float("nan")}, "accuracy"),
+        ({"accuracy": "high"}, "accuracy"),
+        ({"accuracy": 1e-6, "rtol": 1e-8}, "rtol = 1e-08 beside accuracy, which determines it"),
+        ({"accuracy": 1e-6, "atol": [1e-9] * 4}, "atol = "),
+        ({"accuracy": 1e-6, "h": 0.01}, "h = 0.01 beside accuracy"),
+        ({"accuracy": 1e-6, "backend": "python"}, "backend = python beside accuracy"),
+        ({"accuracy": 1e-6, "form": "variational"}, "perturbations are not checked"),
+    ],
+)
+def test_what_an_accuracy_excludes_is_refused(options: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        integrate(dp, (0, 1), START, {}, **options)
+
+
+def test_longer_numbers_locate_no_events() -> None:
+    with pytest.raises(ValueError, match=r"numbers, .* in which no events are located"):
+        integrate(dp, (0, 20), START, {}, accuracy=1e-11, events=lambda t, y: y[0])
+
+
+def test_an_accuracy_that_nothing_reaches_is_refused() -> None:
+    with pytest.raises(NotAccurateError, match="where 1e-18 is requested"):
+        integrate(dp, (0, 0.1), START, {}, accuracy=1e-18, t_eval=[0.1])
