@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, has_perturbation
+from solvers.equations.quantities import real_numbers
 from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.catalogue import SCIPY, load
 
@@ -82,3 +83,15 @@ def check_choice(name: str, value: object, allowed: Sequence[str]) -> None:
     if value is not None and value not in allowed:
         words = " or ".join(map(repr, allowed))
         raise ValueError(f"{name} = {str(value)[:50]!r} must be {words}, or be left out")
+
+
+def sample_times(values: object, duration: float) -> tuple[float, ...]:
+    """Increasing times in s of at least two samples, within the duration."""
+    times = real_numbers("samples", values, "s")
+    allowed = f"times in s that increase, two at least, from 0 to {duration:g} s"
+    if times.ndim != 1 or not 2 <= len(times) <= MOST_SAMPLES:
+        raise ValueError(f"samples has shape {times.shape}: give a number, or {allowed}")
+    wrong = np.flatnonzero((times < 0) | (times > duration) | (np.diff(times, prepend=-1) <= 0))
+    if wrong.size:
+        raise ValueError(f"samples[{wrong[0]}] = {times[wrong[0]]:g} s: give {allowed}")
+    return tuple(times.tolist())

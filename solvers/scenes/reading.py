@@ -63,7 +63,7 @@ def scene(name: str, table: Mapping[str, Any], load: Callable[[str], GeneratedMo
         module = load(toml_input.text("system", table["system"]))
     except LookupError as error:
         raise InputError(f"system = {table['system'][:50]!r}: {error.args[0]}") from error
-    if "samples" in table:
+    if not isinstance(table.get("samples", []), list):
         toml_input.whole("samples", table["samples"], 2, MOST_SAMPLES)
     others = table.get("beside", [])
     if not isinstance(others, list) or not all(isinstance(other, dict) for other in others):
@@ -107,7 +107,10 @@ def _scene(
         raise InputError("outputs = [] requests nothing: leave it out to request the state")
     params = _parameters(module, table.get("parameters", {}))
     y0, guess = _initial(module, table["initial"])
-    values |= {"y0": y0, "guess": guess, "samples": table.get("samples", 0)}
+    samples = table.get("samples", 0)
+    if isinstance(samples, list):
+        samples = [toml_input.number(f"samples[{k}]", t, "s") for k, t in enumerate(samples)]
+    values |= {"y0": y0, "guess": guess, "samples": samples}
     return Scene(module, params, name=name, beside=beside, **values)
 
 

@@ -137,7 +137,8 @@ def run_scene(
     model, t = selection.model, scene.times
     report(model.name)
     y = model.states(t).T
-    y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
+    if t[0] == 0:
+        y[:, 0] = np.where(np.isfinite(y[:, 0]), scene.y0, np.nan)
     energy = energies(scene, t, y) if ENERGY in scene.outputs else None
     full_seconds = cheapest(scene.module, scene.params, scene.accuracy).seconds * scene.duration
     costs = (selection_seconds, model.seconds(scene.duration), full_seconds, nan)

@@ -1,6 +1,6 @@
 """A scene: a motion, its accuracy and its outputs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,9 +44,9 @@ class Scene:
         Largest permitted error of any requested component at any time, in rad, rad/s, m, m/s.
     outputs : tuple of str, optional
         The requested outputs: components of the state, and ``energy``; by default the state.
-    samples : int, optional
+    samples : int or sequence of float, optional
         Number of times, evenly spaced over the duration, both ends included; 0 for a hundred a
-        second, within `FEWEST` and `MOST`.
+        second, within `FEWEST` and `MOST`. Or increasing times in s.
     model : str or None
         A key of `solvers.scenes.models.catalogue.load`; by default the smallest sufficient model.
     method, form : str or None
@@ -100,7 +100,7 @@ class Scene:
     duration: float
     accuracy: float = 1e-6
     outputs: tuple[str, ...] = ()
-    samples: int = 0
+    samples: int | Sequence[float] = 0
     model: str | None = None
     method: str | None = None
     form: str | None = None
@@ -142,8 +142,10 @@ class Scene:
 
             checks.check_choice("model", self.model, tuple(catalogue.load()))
         checks.check_choice("code", self.code, ("general", "specialised"))
-        check_type("samples", self.samples, int, "a whole number")
-        if self.samples:
+        if not isinstance(self.samples, int):
+            samples = checks.sample_times(self.samples, self.duration)
+            object.__setattr__(self, "samples", samples)
+        elif self.samples:
             whole("samples", self.samples, 2, checks.MOST_SAMPLES)
         checks.check_outputs(self.outputs, state, (*state, ENERGY))
         checks.check_pictures(self.pictures, state)
@@ -158,6 +160,8 @@ class Scene:
     @property
     def times(self) -> NDArray[np.float64]:
         """Times of the samples, in s."""
+        if not isinstance(self.samples, int):
+            return np.array(self.samples)
         usual = min(max(round(RATE * self.duration) + 1, FEWEST), MOST)
         return np.linspace(0, self.duration, self.samples or usual)
 

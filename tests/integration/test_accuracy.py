@@ -12,7 +12,8 @@ import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.furuta_pendulum as furuta
 import generated.single_pendulum as single
-from solvers import Event, Held, run_scene
+from solvers import Ensemble, Event, Held, ensemble, run_scene
+from solvers.integration.accuracy.accurate_ensemble import AccuracyWarning
 from solvers.integration.accuracy.integration_run import (
     EndsEarlyError,
     NotAccurateError,
@@ -165,3 +166,48 @@ def test_longer_numbers_locate_no_events() -> None:
 def test_an_accuracy_that_nothing_reaches_is_refused() -> None:
     with pytest.raises(NotAccurateError, match="where 1e-18 is requested"):
         integrate(dp, (0, 0.1), START, {}, accuracy=1e-18, t_eval=[0.1])
+
+
+def check_ensemble(motions: Ensemble, starts: np.ndarray, accuracy: float) -> None:
+    """Every returned state beside series."""
+    assert motions.success.all()
+    for k, start in enumerate(starts.T):
+        times = np.array([0.0, *motions.t_eval, motions.t[k]])
+        states = np.column_stack([motions.samples[:, k], motions.y[:, k]])
+        error = np.abs(states - exact(dp, times, tuple(start))[:, 1:]).max()
+        assert error <= motions.error_estimate[k] <= accuracy
+
+
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-8])
+def test_errors_of_all_motions_of_an_ensemble_are_below_the_estimates(accuracy: float) -> None:
+    starts = np.random.default_rng(1).uniform(-2, 2, (4, 9))
+    motions = ensemble(dp, (0, 5), starts, {}, accuracy=accuracy, t_eval=[0.7, 3.1])
+    check_ensemble(motions, starts, accuracy)
+
+
+def test_chaotic_motions_of_an_ensemble_are_integrated_in_longer_numbers() -> None:
+    starts = np.array([[0.1, 2.0], [0.0, 1.0], [0.0, 0.0], [0.0, 0.5]])
+    motions = ensemble(dp, (0, 15), starts, {}, accuracy=1e-11, t_eval=[4.0, 15.0])
+    check_ensemble(motions, starts, 1e-11)
+    assert motions.nfev[0] > motions.nfev[1] == 0
+
+
+def test_motions_of_an_ensemble_have_their_own_ends_parameters_and_times() -> None:
+    starts, lengths = {"theta": [0.5, 2.0], "theta_dot": 0.0}, np.array([0.7, 1.6])
+    times = np.array([[0.3, 1.0], [0.4, 2.0]])
+    motions = ensemble(single, (0, [1.0, 2.5]), starts, {"l": lengths}, accuracy=1e-9, t_eval=times)
+    for k, (angle, end) in enumerate(((0.5, 1.0), (2.0, 2.5))):
+        params = single.params(l=lengths[k])
+        states = np.array(taylor(single, params, (angle, 0.0), [0.0, *times[k], end], 30), float)
+        returned = np.vstack([motions.samples[:, k].T, motions.y[:, k]])
+        assert np.abs(returned - states[1:]).max() <= motions.error_estimate[k] <= 1e-9
+
+
+def test_an_ensemble_reports_motions_above_the_accuracy() -> None:
+    starts, event = (
+        np.array([[0.1, 2.0], [0.0, 1.0], [0.0, 0.0], [0.0, 0.5]]),
+        Event(dp, "theta1", 0),
+    )
+    with pytest.warns(AccuracyWarning, match="1 motion of 2 are above 1e-11"):
+        motions = ensemble(dp, (0, 15), starts, {}, accuracy=1e-11, events=event)
+    assert motions.error_estimate[0] <= 1e-11 < motions.error_estimate[1]

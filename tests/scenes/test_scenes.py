@@ -1,10 +1,12 @@
 """Scenes are read strictly and safely, and invalid scenes are refused."""
 
+from dataclasses import replace
 from math import pi
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 from counting import counted_calls
 
@@ -15,6 +17,7 @@ from solvers.equations.singularities.mass_matrix import MassMatrixWarning
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.toml_input import InputError
 from solvers.scenes.reading import find, names, read, scene
+from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
 
 PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "theta2": 2}}
@@ -124,6 +127,10 @@ def test_text_that_is_no_number_is_refused_with_little_work(text: object, words:
     ({"pictures": ["path"] * 99}, "up to 24 are allowed"),
     ({"beside": [{"label": "x"}] * 99}, "up to 24"),
     ({"samples": 10**5000}, "whole number"),
+    ({"samples": [1.0]}, r"samples has shape \(1,\): give a number, or times in s that increase"),
+    ({"samples": [0.0, "2 m"]}, r"samples\[1\]: '2 m' has another unit"),
+    ({"samples": [0.0, 2.0, 2.0]}, r"samples\[2\] = 2 s: give times in s that increase"),
+    ({"samples": [0.0, 5.5]}, r"samples\[1\] = 5.5 s: .* from 0 to 5 s"),
     ({"duration": 10**5000}, "not finite"),
     ({"parameters": {"l1": 1e300}}, "mass matrix is not finite"),
     ({"beside": {}}, r"write \[\[beside\]\]"),
@@ -133,6 +140,15 @@ def test_text_that_is_no_number_is_refused_with_little_work(text: object, words:
 def test_invalid_scenes_are_refused_with_a_remedy(changes: dict[str, object], words: str) -> None:
     with pytest.raises((InputError, ValueError), match=words):
         scene_from(**changes)
+
+
+def test_samples_may_be_a_list_of_times() -> None:
+    uneven = scene_from(samples=[0.5, "1500 ms", 4])
+    result, even = run_scene(uneven), run_scene(replace(uneven, samples=11))
+    assert result.t.tolist() == [0.5, 1.5, 4.0]
+    errors = [one.selection.model.error_estimate for one in (result, even)]
+    assert np.abs(result.y - even.y[:, [1, 3, 8]]).max() <= sum(errors)
+    assert max(errors) <= uneven.accuracy
 
 
 @pytest.mark.parametrize("method", ["LSODA", "verner853"])

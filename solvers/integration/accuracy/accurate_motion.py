@@ -41,7 +41,7 @@ def accurate_motion(
     The method and form of `options` are chosen, unless one of them `is_named`.
     """
     accuracy = positive("accuracy", accuracy)
-    _check_options(module, options)
+    check_options(module, options)
     problem = validation.problem(module, t_span, y0, params, options)
     motion = _motion(problem, options)
     if motion.duration == 0:
@@ -68,7 +68,7 @@ def accurate_motion(
     )
 
 
-def _check_options(module: GeneratedModule, options: Options) -> None:
+def check_options(module: GeneratedModule, options: Options) -> None:
     """Refuse options that an accuracy determines."""
     for name in ("rtol", "atol", "h", "max_steps", "backend", "compensated"):
         if np.any(getattr(options, name) != getattr(Options, name)):

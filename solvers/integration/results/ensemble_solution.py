@@ -46,6 +46,8 @@ class Ensemble:
         As in `Solution`.
     t_eval : ndarray of shape (times,) or (n, times)
         The requested times in s; a row for each motion where these differ.
+    error_estimate : ndarray of shape (n,) or None
+        Largest estimated error of the returned states of each motion, if an accuracy is requested.
 
     Examples
     --------
@@ -70,6 +72,7 @@ class Ensemble:
     run: str
     units: Mapping[str, str]
     t_eval: Array
+    error_estimate: Array | None = None
 
     @classmethod
     def empty(

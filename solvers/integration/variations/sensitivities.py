@@ -1,7 +1,7 @@
 """How a motion depends on its start and on parameters: samples, events and the end."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 from warnings import catch_warnings, simplefilter
 
@@ -16,8 +16,8 @@ from solvers.equations.starts.consistent_start import given_names
 from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.checks.singularity import SingularityWarning, singularity
-from solvers.integration.ensemble import ensemble
 from solvers.integration.loops.switching import started
+from solvers.integration.many_motions import many_motions
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
@@ -149,19 +149,10 @@ def sensitivities(
         occurrences = most
         with ignore_predictability(), catch_warnings():
             simplefilter("ignore", SingularityWarning)  # the error states it
-            motions = ensemble(
-                module,
-                t_span,
-                starts,
-                values,
-                method=options.method,
-                form="sensitivity",
-                rtol=rtol,
-                atol=atol,
-                t_eval=t_eval,
-                events=located,
-                occurrences=occurrences,
-                inputs=inputs if isinstance(inputs, Held) else None,
+            held = inputs if isinstance(inputs, Held) else None
+            perturbed = replace(options, form="sensitivity", t_eval=t_eval, inputs=held)
+            motions = many_motions(
+                module, t_span, starts, values, perturbed, occurrences=occurrences
             )
         most = int(motions.occurred.max(initial=0))
     return _collected(problem, names, motions, units)

@@ -1,0 +1,162 @@
+"""Many motions, integrated with given tolerances or a given step size."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solvers.equations.arguments import check_module
+from solvers.equations.module import GeneratedModule
+from solvers.equations.module import inputs as input_names
+from solvers.equations.quantities import Values
+from solvers.equations.singularities.mass_matrix import check_condition, examined
+from solvers.integration.checks.accuracy_warnings import ensemble_warnings
+from solvers.integration.checks.predictability import UnfinishedWarning, is_ignored
+from solvers.integration.checks.singularity import SingularityWarning, singularities
+from solvers.integration.checks.step_stability import StepWarning, mark_unstable
+from solvers.integration.loops import compiled_loop
+from solvers.integration.loops.ensemble_loop import EnsembleRun
+from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem import memory, validation
+from solvers.integration.problem.events import Extremum
+from solvers.integration.problem.problem import EventFunction, Options, Problem
+from solvers.integration.problem.status import Status
+from solvers.integration.results.ensemble_solution import Ensemble
+from solvers.integration.results.ensemble_times import EnsembleTimes
+from solvers.integration.results.solution import Interrupted
+from solvers.io.arguments import check_type
+from solvers.io.suggestion import shortened, warn_caller
+from solvers.runge_kutta.stepper import Array
+
+#: Most threads of one ensemble.
+MOST_WORKERS = 1024
+
+
+@dataclass(frozen=True)
+class Motions:
+    """Checked arguments of `ensemble`: initial states and parameters of all motions, in rows."""
+
+    problem: Problem
+    states: Array
+    constants: Array  # one row for all motions or one for each
+    times: EnsembleTimes
+
+    @classmethod
+    def of(
+        cls,
+        module: GeneratedModule,
+        t_span: ArrayLike | tuple[float, ArrayLike],
+        y0: Values,
+        params: Values,
+        options: Options,
+    ) -> Self:
+        """From the arguments; ValueError where one is invalid."""
+        check_module(module)
+        check_type("form", options.form, str | None, "the name of a form")
+        states = validation.state_rows(module, y0, options.form or "lagrangian")
+        memory.check_times(options.t_eval, states.shape[1])
+        times = EnsembleTimes.of(t_span, options.t_eval, len(states))
+        problem = validation.problem_at_rest(module, times.span, replace(options, t_eval=()))
+        if times.differ and problem.schedule:
+            raise ValueError(
+                "inputs are held between samples: t_span must be the same for all motions"
+            )
+        constants = validation.parameter_rows(module, params, len(states), problem.form.name)
+        if options.inputs is not None:
+            count = len(input_names(module))
+            constants[:, -count:] = problem.form.params[-count:]
+        own = constants.copy()
+        if problem.schedule:
+            count = len(input_names(module))
+            held = validation.params_at_start(problem.form, problem.schedule, problem.span)
+            own[:, -count:] = held[-count:]
+        name = problem.form.name
+        states = validation.consistent_rows(module, y0, states, own, problem.span[0], name)
+        return cls(problem, states, constants, times)
+
+
+def many_motions(
+    module: GeneratedModule,
+    t_span: ArrayLike | tuple[float, ArrayLike],
+    y0: Values,
+    params: Values,
+    options: Options,
+    *,
+    occurrences: int = 1,
+    skip: int | Sequence[int] = 0,
+    workers: int | None = None,
+    stop: StopFlag | None = None,
+) -> Ensemble:
+    """The motions of `ensemble` with these options, whose arguments it describes."""
+    check_type("stop", stop, StopFlag | None, "a StopFlag")
+    motions = Motions.of(module, t_span, y0, params, options)
+    problem, states, constants, times = (
+        motions.problem, motions.states, motions.constants, motions.times
+    )  # fmt: skip
+    extremes = any(isinstance(event, Extremum) for event in problem.events)
+    occurrences = validation.count("occurrences", occurrences, 2 if extremes else 1)
+    skipped = _skipped(skip, problem.events)
+    processors = len(os.sched_getaffinity(0))
+    threads = validation.count(
+        "workers", processors if workers is None else workers, 1, MOST_WORKERS
+    )
+    unperturbed = constants[:, constants.shape[1] - len(module.PARAMETERS) :]
+    some = [
+        (f"motion {k}: ", unperturbed[k % len(unperturbed)].tolist(), states[k].tolist())
+        for k in examined(len(states))
+    ]
+    check_condition(module, some, problem.span[0])
+    problem, program = compiled_loop.select(problem, lanes=True)
+    components = len(problem.start)
+    rows = len(states) * (1 + times.samples.shape[1] + len(problem.events) * occurrences)
+    remedy = "integrate fewer motions at once, or record fewer times and occurrences"
+    memory.check_memory(f"{rows} states of {len(states)} motions", rows, components, remedy)
+    loop = f"compiled by {program.library.compiler}" if program else "python"
+    result = Ensemble.empty(problem, len(states), occurrences, loop, times.samples)
+    run = EnsembleRun(problem, states, constants, times, skipped, result, stop or StopFlag())
+    try:
+        if program:
+            run.run_compiled(program, threads)
+        else:
+            run.run_one_by_one()
+        run.pass_singularities()
+    except KeyboardInterrupt as interruption:
+        raise Interrupted(result) from interruption
+    if run.stop.is_set:
+        return result
+    unstable = mark_unstable(problem, states, constants, result)
+    if unstable:
+        warn_caller(unstable, StepWarning)
+    singular = singularities(problem, states, constants, result)
+    if singular:
+        warn_caller(singular, SingularityWarning)
+    if not (unstable or singular or result.success.all() or is_ignored()):
+        lost = [status for status in result.status if status not in (Status.FINISHED, Status.EVENT)]
+        text = "; ".join(f"{lost.count(status)}: {status.value}" for status in dict.fromkeys(lost))
+        text = f"{len(lost)} of {len(states)} motions did not reach their end: {text}"
+        warn_caller(text, UnfinishedWarning)
+    good = np.flatnonzero(result.success)
+    own = constants[good] if len(constants) > 1 else constants
+    ends = result.t[good], result.y.T[good]
+    for warning in ensemble_warnings(problem, states[good], own, *ends):
+        warn_caller(warning)
+    return result
+
+
+def _skipped(skip: int | Sequence[int], events: Sequence[EventFunction]) -> list[int]:
+    """How many occurrences of each event are not stored."""
+    try:
+        given = [skip] * len(events) if isinstance(skip, int | np.integer) else [*skip]
+    except TypeError as error:
+        allowed = "must be a whole number, or one for each event"
+        raise ValueError(f"skip = {shortened(skip)} {allowed}") from error
+    if len(given) != len(events):
+        raise ValueError(f"skip has {len(given)} numbers for {len(events)} events: give one each")
+    for event, number in zip(events, given, strict=True):
+        validation.count("skip", number, 0)
+        if number and getattr(event, "terminal", False):
+            raise ValueError(f"skip = {number}, but the event is terminal: it ends the motion")
+    return given
