@@ -32,7 +32,6 @@ from solvers.integration.variations.sensitivities import sensitivities as sensit
 from solvers.integration.variations.transition_matrix import transition_matrix as transition_matrix
 from solvers.io.figures import panels as panels
 from solvers.io.figures import save as save
-from solvers.scenes.export import export_motion as export_motion
 from solvers.scenes.fitting.fit import Fit as Fit
 from solvers.scenes.fitting.measurement import Measurement as Measurement
 from solvers.scenes.run import SceneResult as SceneResult

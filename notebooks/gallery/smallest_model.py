@@ -7,8 +7,7 @@ its motion, with the error that the light mass causes.
 """
 
 from solvers import run_scene
-from solvers.scenes.plots import figure
 
 result = run_scene("flea")
 print(result)
-picture = figure([result])
+picture = result.plot()

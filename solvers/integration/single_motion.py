@@ -7,15 +7,16 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_perturbation
 from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import NotFiniteNumberError, Values
-from solvers.equations.singularities.mass_matrix import check_condition
+from solvers.equations.singularities.mass_matrix import check_condition, checked_before
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
 from solvers.integration.checks.global_error import global_error_estimate
 from solvers.integration.checks.predictability import (
     UnfinishedWarning,
     compile_perturbations,
+    ignore_predictability,
     is_ignored,
 )
 from solvers.integration.checks.singularity import singularity
@@ -27,6 +28,7 @@ from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.outcome import Outcome
 from solvers.integration.results.solution import Interrupted, Solution
+from solvers.integration.results.solved_equations import SolvedEquations
 from solvers.io.suggestion import warn_caller
 from solvers.runge_kutta.stepper import Array
 
@@ -94,6 +96,28 @@ def _solution(problem: Problem, outcome: Outcome, energy: bool, detail: str = ""
         units=problem.units,
         inputs=_inputs(problem, outcome, times, states),
         compare=partial(global_error_estimate, problem),
+        equations=equations(problem),
+    )
+
+
+def equations(problem: Problem, *, repeats: bool = True) -> SolvedEquations:
+    """What shows the motion of a problem; its states only where it `repeats`."""
+    form, varies = problem.form, problem.has_varying_inputs
+    options = replace(problem.options, events=(), form=None if varies else problem.options.form)
+
+    def states(times: Array) -> Array:
+        again = replace(options, t_eval=times)
+        if has_perturbation(form.name):
+            again = replace(again, form=None)
+        start, span = problem.start[: len(form.module.STATE)], (problem.span[0], times[-1])
+        if span[0] == span[1]:
+            return np.tile(start, (len(times), 1))
+        with ignore_predictability(), checked_before():
+            motion = single_motion(form.module, span, start, form.constants, again)
+        return motion.y[: len(start)].T
+
+    return SolvedEquations(
+        form.module, tuple(form.constants), problem.span[0], states if repeats else None, varies
     )
 
 

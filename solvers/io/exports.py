@@ -1,4 +1,4 @@
-"""Results for other programs: values that JSON can represent, and datasets of xarray."""
+"""Results for other programs: values for JSON, data frames of pandas, datasets of xarray."""
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -31,3 +31,12 @@ def dataset(
     except ImportError as error:
         raise ImportError("xarray is not installed: pip install 'holonomic[xarray]'") from error
     return xarray.Dataset(variables, coordinates, attributes)
+
+
+def data_frame(columns: Mapping[str, Any]) -> Any:
+    """A ``pandas.DataFrame`` of these columns; without pandas, a dict of them."""
+    try:
+        pandas = import_module("pandas")
+    except ImportError:
+        return dict(columns)
+    return pandas.DataFrame(dict(columns))

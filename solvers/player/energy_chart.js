@@ -39,6 +39,7 @@ class EnergyChart {
     context.rect(this.left, this.top - 1, this.right - this.left, this.bottom - this.top + 2);
     context.clip();
     tracks.forEach((track, number) => {
+      if (track.energy_error === null) return;
       context.strokeStyle = colour(trackColour(number));
       context.lineWidth = 1.75;
       context.lineJoin = "round";
@@ -70,7 +71,7 @@ class EnergyChart {
 
 /** Exponents of the powers of ten that enclose all errors. */
 function exponentRange() {
-  const sizes = tracks.flatMap((track) => track.energy_error.map(Math.abs));
+  const sizes = tracks.flatMap((track) => (track.energy_error ?? []).map(Math.abs));
   const [least, most] = rangeOf(sizes.filter((size) => size > 0));
   if (most < 0) return [-17, -15]; // all are zero: the size of rounding
   const high = Math.ceil(Math.log10(most));

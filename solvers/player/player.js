@@ -68,6 +68,7 @@ function show() {
   // screen readers announce it only when paused
   if (!clock.playing) slider.setAttribute("aria-valuetext", text);
   tracks.forEach((track, number) => {
+    if (track.energy_error === null) return;
     errors[number].textContent = scientific(Math.abs(valueAt(track.t, track.energy_error, time)));
   });
   element("distance").textContent = distanceText(time);
@@ -162,6 +163,7 @@ element("panels").append(...panels.map((panel) => panel.figure));
 follow.parentElement.hidden = !canFollow;
 element("turning").hidden = !panels[0].isInSpace;
 element("distance").hidden = tracks.length < 2;
+element("energy").hidden = tracks.every((track) => track.energy_error === null);
 element("trace-seconds").textContent = String(TRACE_SECONDS);
 slider.min = String(startTime);
 slider.max = String(endTime);

@@ -51,8 +51,8 @@ class Track:
     links : tuple of pairs of str and tuple of int
         A kind, one of `KINDS`, and numbers of the points that it joins: the masses, then `points`.
         The number -1 is the pivot, which is the origin.
-    energy_error : ndarray of shape (n,)
-        Energy error, with its sign.
+    energy_error : ndarray of shape (n,) or None
+        Energy error, with its sign; None where the energy is not known.
     energy_unit : str
         Its unit ``"J"``, or the name of the energy that it is relative to, such as ``"energy above
         rest"``.
@@ -66,7 +66,7 @@ class Track:
     t: Array
     positions: Array
     links: Links
-    energy_error: Array
+    energy_error: Array | None
     energy_unit: str
     points: Array = field(default_factory=lambda: np.empty((0, 2, 0)))
     coordinates: tuple[Coordinate, ...] = ()
@@ -78,7 +78,9 @@ class Track:
 
     def _mistakes(self) -> Iterator[str]:
         """Mistakes with their remedies; those after the first may follow from it."""
-        times, positions, errors = map(np.shape, (self.t, self.positions, self.energy_error))
+        times, positions = np.shape(self.t), np.shape(self.positions)
+        energy_error = np.zeros_like(self.t) if self.energy_error is None else self.energy_error
+        errors = np.shape(energy_error)
         if len(times) != 1 or times[0] < 2:
             yield f"t has shape {times}, but it must be (n,) with n at least 2: give the times in s"
         n, masses = times[0], positions[0] if positions else 0
@@ -96,7 +98,7 @@ class Track:
         if errors != (n,):
             text = f"energy_error has shape {errors}, but with {n} times it must be ({n},)"
             yield f"{text}: give one number for each time"
-        arrays = {"t": self.t, "positions": self.positions, "energy_error": self.energy_error}
+        arrays = {"t": self.t, "positions": self.positions, "energy_error": energy_error}
         arrays["points"] = self.points
         for one in self.coordinates:
             named = {one.label: one.values, f"rate of {one.label}": one.rates}
@@ -142,7 +144,9 @@ class Track:
                 [one.label, one.unit, *(_rounded(x[indices], 6) for x in (one.values, one.rates))]
                 for one in self.coordinates
             ],
-            "energy_error": _rounded(self.energy_error[indices], 5),
+            "energy_error": (
+                None if self.energy_error is None else _rounded(self.energy_error[indices], 5)
+            ),
         }
 
 

@@ -1,6 +1,5 @@
 """Checks of the numbers and names of a scene; each raises a ValueError that states the remedy."""
 
-import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,11 +7,11 @@ import numpy as np
 from solvers.equations.module import GeneratedModule, has_perturbation
 from solvers.equations.quantities import real_numbers
 from solvers.io.suggestion import did_you_mean
+from solvers.player.sampled_motion import curves_of
 from solvers.runge_kutta.catalogue import SCIPY, load
 
 #: Most samples, and the finest accuracy.
 MOST_SAMPLES, FINEST = 1_000_001, 1e-13
-CURVES = re.compile(r"(\w+(?:, *\w+)*) +over +(\w+)\Z")
 
 
 def check_masses(module: GeneratedModule, params: Sequence[float], y0: Sequence[float]) -> None:
@@ -53,12 +52,6 @@ def check_pictures(pictures: Sequence[str], state: Sequence[str]) -> None:
         if picture not in ("path", "energy") and not {*names, over} <= set(known):
             forms = f"'path', 'energy' or such as '{state[0]} over t', of {', '.join(known)}"
             raise ValueError(f"pictures name {picture[:50]!r}: write {forms}")
-
-
-def curves_of(picture: str) -> tuple[list[str], str]:
-    """The quantities of a picture and the one on its horizontal axis; empty for other text."""
-    match = CURVES.match(picture)
-    return (re.split(", *", match[1]), match[2]) if match else ([], "")
 
 
 def check_outputs(outputs: Sequence[str], state: Sequence[str], known: Sequence[str]) -> None:

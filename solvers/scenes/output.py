@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from solvers.io.atomic_write import write_text
+from solvers.player.geometry import tracks
 from solvers.player.page import Page
-from solvers.scenes.geometry import tracks
 from solvers.scenes.run import SceneResult
 from solvers.scenes.scene import Scene
-from solvers.scenes.summary import full_note, table
+from solvers.scenes.summary import table, together
 
 
 def file_names(scene: Scene, runs: int, *, plot: bool) -> dict[str, str]:
@@ -42,16 +42,17 @@ def write_files(
     scene = results[0].scene
     names = file_names(scene, len(results), plot=plot)
     paths = {contents: folder / name for contents, name in names.items()}
+    motions = together(results)
     if "picture" in paths:
         from solvers.io.figures import save
-        from solvers.scenes.plots import figure
+        from solvers.player.plots import figure
 
-        save(figure(results), paths["picture"])
+        save(figure(motions), paths["picture"])
     write_text(paths["table"], table(results[0]))
     for n, result in enumerate(results[1:], 2):
         write_text(paths[f"table {n}"], table(result))
     if module := results[0].specialised_module:
         paths["code"] = Path(module.__file__ or "")
-    page = Page(scene.title, full_note(results), tracks(results), equations)
+    page = Page(scene.title, motions[0].note, tracks(motions), equations)
     page.write(paths["page"])
     return paths

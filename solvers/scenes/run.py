@@ -13,6 +13,8 @@ from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest
 from solvers.integration.accuracy.motion import Array, Motion
 from solvers.io.units import with_unit
+from solvers.player.playable import Playable
+from solvers.player.sampled_motion import SampledMotion
 from solvers.scenes.scene import ENERGY, Scene
 from solvers.scenes.selection import ModelSelection, motion_of, select_model
 
@@ -21,7 +23,7 @@ Specialiser = Callable[[GeneratedModule, tuple[float, ...], MethodChoice], Gener
 
 
 @dataclass(frozen=True)
-class SceneResult:
+class SceneResult(Playable):
     """The motion of a scene, its model and its cost.
 
     Attributes
@@ -105,6 +107,22 @@ class SceneResult:
         times = np.union1d(t, run.step_times()) if run else t
         energy = supplied_energy(scene.module, scene.params, times, model.states)
         return energy[np.searchsorted(times, t)]
+
+    def sampled_motions(self) -> list[SampledMotion]:
+        """The motion for pages, films and plots, with the model and its error in the note."""
+        scene, model = self.scene, self.selection.model
+        by = "" if self.method is None else f" by {self.method}"
+        h = "" if scene.step is None else f" with h = {scene.step:g} s"
+        start = f" Start {scene.completed}." if scene.completed else ""
+        error = f"error estimate {model.error_estimate:.1g}"
+        note = " ".join([*scene.note.split(), f"[{model.name}{by}{h}, {error}.{start}]"])
+        energy = energies(scene, self.t, self.y) - self.supplied_energy
+        return [
+            SampledMotion(
+                scene.module, scene.params, self.t, self.y, scene.title, scene.label, note,
+                scene.pictures, energy,
+            )
+        ]  # fmt: skip
 
     @property
     def is_met(self) -> bool:

@@ -14,10 +14,9 @@ from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.problem import validation
 from solvers.io.arguments import check_texts, check_type
 from solvers.io.toml_input import whole
+from solvers.player.sampled_motion import sample_times
 from solvers.scenes import checks
 
-#: Default number of samples: per second, at least and at most.
-RATE, FEWEST, MOST = 100, 501, 20_001
 #: An output that is no component of the state.
 ENERGY = "energy"
 
@@ -46,7 +45,7 @@ class Scene:
         The requested outputs: components of the state, and ``energy``; by default the state.
     samples : int or sequence of float, optional
         Number of times, evenly spaced over the duration, both ends included; 0 for a hundred a
-        second, within `FEWEST` and `MOST`. Or increasing times in s.
+        second, at least 501 and at most 20,001. Or increasing times in s.
     model : str or None
         A key of `solvers.scenes.models.catalogue.load`; by default the smallest sufficient model.
     method, form : str or None
@@ -162,8 +161,9 @@ class Scene:
         """Times of the samples, in s."""
         if not isinstance(self.samples, int):
             return np.array(self.samples)
-        usual = min(max(round(RATE * self.duration) + 1, FEWEST), MOST)
-        return np.linspace(0, self.duration, self.samples or usual)
+        if self.samples:
+            return np.linspace(0, self.duration, self.samples)
+        return sample_times(0.0, self.duration)
 
     @property
     def requested(self) -> tuple[int, ...]:

@@ -1,11 +1,13 @@
 """Results of scenes as text, as a note, as JSON and as a table."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, named, operations_on_state
+from solvers.player.sampled_motion import SampledMotion
 from solvers.scenes.run import SceneResult
 
 
@@ -74,21 +76,14 @@ def _time(seconds: float) -> str:
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 
-def full_note(results: Sequence[SceneResult]) -> str:
-    """The scene's note, and the model and error estimate of every run."""
-    words = results[0].scene.note.split()
-    return " ".join([*words, *(_accuracy_note(one, len(results) > 1) for one in results)])
-
-
-def _accuracy_note(result: SceneResult, is_labelled: bool) -> str:
-    """Model, method and error estimate in brackets, with the label if there are several runs."""
-    model, scene = result.selection.model, result.scene
-    text = model.name if result.method is None else f"{model.name} by {result.method}"
-    if scene.step is not None:
-        text += f" with h = {scene.step:g} s"
-    label = f"{scene.label}: " if is_labelled else ""
-    start = f" Start {scene.completed}." if scene.completed else ""
-    return f"[{label}{text}, error estimate {model.error_estimate:.1g}.{start}]"
+def together(results: Sequence[SceneResult]) -> list[SampledMotion]:
+    """The motions of a scene and those beside it; the note of the first describes all."""
+    motions = [motion for result in results for motion in result.sampled_motions()]
+    if len(motions) == 1:
+        return motions
+    own = " ".join(results[0].scene.note.split())
+    notes = (f"[{one.label}: {one.note.rpartition('[')[2]}" for one in motions)
+    return [replace(motions[0], note=" ".join(filter(None, [own, *notes]))), *motions[1:]]
 
 
 def figures(result: SceneResult) -> dict[str, Any]:

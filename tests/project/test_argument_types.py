@@ -55,7 +55,7 @@ CALLS: dict[str, Callable[..., object]] = {
     "fits": lambda fits: solvers.compare(fits, DATA),
     "kept": lambda kept: solvers.compare({}, kept),
     "ignored": lambda ignored: solvers.read_measurement("a.csv", dp, ignored),
-    "result": lambda result: solvers.export_motion(result, "a.svg"),
+    "beside": lambda beside: solvers.run_scene("rest").save("a.svg", beside=beside),
     "path": lambda path: solvers.save(solvers.panels("a")[0], path),
     "figure": lambda figure: solvers.save(figure, "a.svg"),
     "size": lambda size: solvers.panels("a", size=size),

@@ -70,7 +70,7 @@ def test_every_room_has_a_floor_and_imports_only_rooms_below_it(package: str) ->
 
 def test_rooms_have_few_arrows() -> None:
     assert len(floors("solvers")) == 10
-    assert Folder.of(ROOT / "solvers").arrows <= 35
+    assert Folder.of(ROOT / "solvers").arrows <= 36
 
 
 def test_no_files_or_rooms_import_each_other() -> None:

@@ -10,7 +10,6 @@ import pytest
 from solvers.app.modules import load
 from solvers.integration.integrate import integrate
 from solvers.io.toml_input import InputError
-from solvers.scenes.plots import full_note
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
@@ -79,7 +78,7 @@ def test_what_was_completed_is_reported(tmp_path: Path) -> None:
     assert f"\nstart {first}\n  {second}\nmodel" in text
     assert second.startswith("another solution, for guesses near it: psi = ")
     assert first.endswith(", psi_dot, chi_dot = 0")
-    assert f"Start {one.completed}." in full_note([result])
+    assert f"Start {one.completed}." in result.sampled_motions()[0].note
     assert values["completed"] == one.completed
     assert values["initial_state"] == dict(
         zip(shipped.scene.module.STATE, shipped.scene.y0, strict=True)

@@ -13,12 +13,13 @@ from solvers.equations.energy import energy_unit, supplied_energy
 from solvers.integration.accuracy.integration_run import IntegrationRun
 from solvers.integration.accuracy.method_choice import SERIES, MethodChoice
 from solvers.integration.accuracy.motion import Motion
+from solvers.player.geometry import energy_errors, tracks
 from solvers.player.page import Page
-from solvers.scenes.geometry import energy_errors, tracks
+from solvers.player.plots import figure
 from solvers.scenes.output import write_files
-from solvers.scenes.plots import figure
 from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
+from solvers.scenes.summary import together
 
 DAMPED = driven.params(c=0.3)
 DRIVEN = Scene(driven, DAMPED, {"theta": 1.0}, 2.0, accuracy=1e-6)
@@ -31,7 +32,7 @@ PENDULUM = Scene(sp, {}, {"theta": 1.0}, 1.0, title="Pendulum")
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-7, 1e-10])
 def test_the_energy_balance_is_as_accurate_as_the_state(accuracy: float, samples: int) -> None:
     result = run_scene(replace(DRIVEN, accuracy=accuracy, samples=samples))
-    (errors,), unit = energy_errors([result])
+    (errors,), unit = energy_errors(together([result]))
     assert unit == "energy above rest"
     # energies are tens of joules per rad or rad/s
     assert np.abs(errors).max() < 10 * max(result.selection.model.error_estimate, 1e-12)
@@ -41,9 +42,9 @@ def test_the_energy_balance_is_as_accurate_as_the_state(accuracy: float, samples
 
 def test_the_balance_of_fixed_steps_shows_their_error() -> None:
     result = run_scene(replace(DRIVEN, method="rk4", step=1e-3))
-    (errors,), _ = energy_errors([result])
+    (errors,), _ = energy_errors(together([result]))
     finer = run_scene(replace(DRIVEN, method="rk4", step=5e-4))
-    (fine,), _ = energy_errors([finer])
+    (fine,), _ = energy_errors(together([finer]))
     error = np.abs(result.y - finer.y).max()
     assert error / 100 < np.abs(errors).max() < 10 * error
     assert np.log2(np.abs(errors).max() / np.abs(fine).max()) == pytest.approx(4, abs=0.6)
@@ -84,7 +85,7 @@ def test_plots_and_pages_state_the_unit_of_energy_errors(
     scenes: list[Scene], unit: str, tmp_path: Path
 ) -> None:
     results = [run_scene(scene) for scene in scenes]
-    errors, shared = energy_errors(results)
+    errors, shared = energy_errors(together(results))
     assert shared == unit
     for result, error in zip(results, errors, strict=True):
         module = result.scene.module
@@ -93,7 +94,7 @@ def test_plots_and_pages_state_the_unit_of_energy_errors(
         expected = (energy - energy[0]) / (scale if unit != "J" else 1)
         assert error == pytest.approx(expected, abs=1e-18)
     panel = figure(
-        [replace(one, scene=replace(one.scene, pictures=("energy",))) for one in results]
+        together([replace(one, scene=replace(one.scene, pictures=("energy",))) for one in results])
     )
     assert panel.axes[0].get_ylabel() == f"energy error / {unit}"
     page = write_files(results, tmp_path)["page"].read_text(encoding="utf-8")
@@ -102,6 +103,6 @@ def test_plots_and_pages_state_the_unit_of_energy_errors(
 
 
 def test_a_page_refuses_energy_errors_in_different_units() -> None:
-    one, other = (tracks([run_scene(scene)])[0] for scene in (PENDULUM, ATWOOD))
+    one, other = (tracks(together([run_scene(scene)]))[0] for scene in (PENDULUM, ATWOOD))
     with pytest.raises(ValueError, match=r"'energy above rest', 'J', .* share an axis"):
         Page("", "", [one, other])

@@ -15,10 +15,10 @@ from matplotlib.animation import FFMpegWriter
 from matplotlib.figure import Figure
 from PIL import Image
 
-from solvers import SceneResult, export_motion, load_scene, run_scene
+from solvers import SceneResult, load_scene, run_scene
 from solvers.app.cli import main
-from solvers.scenes import export
-from solvers.scenes.export import at, frame_times
+from solvers.player import film
+from solvers.player.film import at, frame_times
 
 BLUE = (0x00, 0x72, 0xB2)
 
@@ -31,11 +31,11 @@ def swing() -> SceneResult:
 def frames(path: Path) -> tuple[list[int], np.ndarray]:
     """Durations in ms, and pixels of shape (frames, rows, columns, 3)."""
     durations, images = [], []
-    with Image.open(path) as film:
-        for k in range(film.n_frames):  # type: ignore[attr-defined]
-            film.seek(k)
-            durations.append(film.info["duration"])
-            images.append(np.asarray(film.convert("RGB")))
+    with Image.open(path) as images_of_film:
+        for k in range(images_of_film.n_frames):  # type: ignore[attr-defined]
+            images_of_film.seek(k)
+            durations.append(images_of_film.info["duration"])
+            images.append(np.asarray(images_of_film.convert("RGB")))
     return durations, np.array(images)
 
 
@@ -46,7 +46,7 @@ def bob(image: np.ndarray) -> np.ndarray:
 
 
 def test_a_film_has_exact_times_and_the_right_speed(swing: SceneResult, tmp_path: Path) -> None:
-    path = export_motion(swing, tmp_path / "new" / "swing.gif", speed=2.25)
+    path = swing.save(tmp_path / "new" / "swing.gif", speed=2.25)
     durations, images = frames(path)
     assert set(durations) == {40}
     times = np.arange(11) * 0.09
@@ -77,39 +77,43 @@ def test_the_last_frame_is_the_last_whole_one(duration: float, speed: float, cou
 
 def test_states_between_samples_are_smooth_and_the_end_stays(swing: SceneResult) -> None:
     coarse = replace(swing, t=swing.t[::5], y=swing.y[:, ::5])
-    between = at(coarse, swing.t)
+    between = at(coarse.sampled_motions()[0], swing.t)
     assert np.abs(between.y[0] - swing.y[0]).max() < 1e-8
     assert np.abs(np.interp(swing.t, coarse.t, coarse.y[0]) - swing.y[0]).max() > 1e-6
-    assert at(swing, np.array([5.0])).y[:, 0] == pytest.approx(swing.y[:, -1])
+    assert at(swing.sampled_motions()[0], np.array([5.0])).y[:, 0] == pytest.approx(swing.y[:, -1])
 
 
 @pytest.mark.parametrize("suffix", [".svg", ".pdf"])
 def test_pictures_for_slides(suffix: str, swing: SceneResult, tmp_path: Path) -> None:
-    path = export_motion([swing, swing], tmp_path / f"swing{suffix}")
+    path = swing.save(tmp_path / f"swing{suffix}", beside=[swing])
     data = path.read_bytes()
     assert data.startswith({".svg": b"<?xml", ".pdf": b"%PDF"}[suffix])
     if suffix == ".svg":
-        assert export_motion([swing, swing], path).read_bytes() == data
+        assert swing.save(path, beside=[swing]).read_bytes() == data
         text = data.decode()
         assert "t = 0 to 0.9 s, every 0.11" in text
         assert "<image" not in text
         rods = re.findall(r"<path [^>]*stroke: #4a5259", text)
-        assert len(rods) >= 2 * export.INSTANTS
+        assert len(rods) >= 2 * film.INSTANTS
 
 
 def test_an_absent_mass_is_left_out() -> None:
     scene = replace(load_scene("one_bob"), duration=0.2, beside=())
     result = run_scene(scene)
     assert np.isnan(result.y).any()
-    moved = at(result, np.array([0.05, 0.1]))
+    moved = at(result.sampled_motions()[0], np.array([0.05, 0.1]))
     assert np.isnan(moved.y).all(axis=1).tolist() == np.isnan(result.y).all(axis=1).tolist()
-    assert export._Panel(Figure().subplots(), result, moved.t).masses.shape == (1, 2, 2)
+    assert film._Panel(Figure().subplots(), result.sampled_motions()[0], moved.t).masses.shape == (
+        1,
+        2,
+        2,
+    )
 
 
 @pytest.mark.parametrize("name", ["rest", "spring"])
 def test_motions_along_a_line_have_room_beside_it(name: str) -> None:
     result = run_scene(replace(load_scene(name), duration=0.2, beside=()))
-    figure, (panel,) = export._figure([result], result.t[:1])
+    figure, (panel,) = film._figure(result.sampled_motions(), result.t[:1])
     for low, high in (panel.axes.get_xlim(), panel.axes.get_ylim()):
         assert high - low > 0.5 * panel.size
     figure.draw_without_rendering()
@@ -126,11 +130,11 @@ def test_a_failed_export_leaves_the_old_file_and_nothing_else(
     def stop(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    for target, name in ((os, "replace"), (export._Panel, "draw")):
+    for target, name in ((os, "replace"), (film._Panel, "draw")):
         with monkeypatch.context() as patch:
             patch.setattr(target, name, stop)
             with pytest.raises(OSError, match="No space"):
-                export_motion(replace(swing, t=swing.t[:9], y=swing.y[:, :9]), path)
+                replace(swing, t=swing.t[:9], y=swing.y[:, :9]).save(path)
         assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [
             ("swing.gif", b"old")
         ]
@@ -144,7 +148,7 @@ def test_a_failed_export_leaves_the_old_file_and_nothing_else(
 ])  # fmt: skip
 def test_wrong_exports_are_refused(name: str, speed: float, words: str, swing: SceneResult) -> None:
     with pytest.raises(ValueError, match=words):
-        export_motion(swing, name, speed=speed)
+        swing.save(name, speed=speed)
 
 
 def test_mp4_without_ffmpeg_names_the_way_out(
@@ -152,12 +156,12 @@ def test_mp4_without_ffmpeg_names_the_way_out(
 ) -> None:
     monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
     with pytest.raises(ValueError, match=r"ffmpeg, which is not found: install it, .*or export a"):
-        export_motion(swing, "a.mp4")
+        swing.save("a.mp4")
 
 
 @pytest.mark.skipif(not shutil.which("ffmpeg"), reason="needs ffmpeg")
 def test_an_mp4_has_the_same_frames(swing: SceneResult, tmp_path: Path) -> None:
-    path = export_motion(swing, tmp_path / "swing.mp4")
+    path = swing.save(tmp_path / "swing.mp4")
     command = ["ffmpeg", "-i", str(path), "-f", "null", "-"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     assert "25 fps" in shown

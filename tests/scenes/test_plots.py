@@ -21,13 +21,14 @@ import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.energy import EnergyUnit
 from solvers.io.figures import panels
+from solvers.player import plots as scene_plots
+from solvers.player.geometry import mass_positions, projected
 from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
-from solvers.scenes import plots as scene_plots
-from solvers.scenes.geometry import mass_positions, projected
 from solvers.scenes.reading import find
 from solvers.scenes.run import SceneResult, run_scene
 from solvers.scenes.scene import Scene
+from solvers.scenes.summary import together
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.plots import boundaries, regions
 from solvers.studies.work_precision import plots as chart_plots
@@ -69,8 +70,8 @@ def report(*pictures: str, **changes: Any) -> SceneResult:
 
 def test_paths_end_in_markers_of_their_colour_joined_by_rods() -> None:
     result = report("path")
-    panel = one_panel(scene_plots.figure([result]))
-    paths = projected(mass_positions(result))
+    panel = one_panel(scene_plots.figure(together([result])))
+    paths = projected(mass_positions(result.sampled_motions()[0]))
     lines = {"None": [], "o": [], "+": []}
     for line in panel.lines:
         lines[str(line.get_marker())].append(line)
@@ -91,13 +92,13 @@ def test_paths_end_in_markers_of_their_colour_joined_by_rods() -> None:
 
 def test_a_pivot_that_moves_is_not_drawn_at_rest() -> None:
     scene = Scene(driven, driven.DEFAULTS, (1.0, 0.0), 1.0, accuracy=1e-6, pictures=("path",))
-    panel = one_panel(scene_plots.figure([run_scene(scene)]))
+    panel = one_panel(scene_plots.figure(together([run_scene(scene)])))
     assert "+" not in {line.get_marker() for line in panel.lines}
 
 
 def test_coordinates_and_the_energy_error_are_drawn_over_the_whole_time() -> None:
     result = report("theta1_dot over t", "energy", "theta2 over theta1")
-    rate, energy, angles = panels_of(scene_plots.figure([result]))
+    rate, energy, angles = panels_of(scene_plots.figure(together([result])))
     assert np.array_equal(points(rate.lines[0]), np.column_stack([result.t, result.y[2]]))
     assert rate.get_xlim() == (0, 5)
     assert np.array_equal(points(angles.lines[0]), result.y[:2].T)
@@ -114,7 +115,7 @@ def test_coordinates_and_the_energy_error_are_drawn_over_the_whole_time() -> Non
 def test_runs_side_by_side_differ_in_style_and_are_named() -> None:
     main = report("theta1, theta2 over t", label="first $1")
     other = report("theta1, theta2 over t", method="rk4", step=0.01, label="second")
-    chart = scene_plots.figure([main, other])
+    chart = scene_plots.figure(together([main, other]))
     panel = one_panel(chart)
     assert len({(line.get_color(), line.get_linestyle()) for line in panel.lines}) == 4
     assert len({line.get_color() for line in panel.lines}) == 4
@@ -127,7 +128,7 @@ def test_runs_side_by_side_differ_in_style_and_are_named() -> None:
 def test_a_scene_s_figure_grows_with_its_panels_and_its_note() -> None:
     def size(count: int, note: str = "") -> tuple[float, float]:
         pictures = ["theta1 over t"] * count
-        chart = scene_plots.figure([report(*pictures, note=note)])
+        chart = scene_plots.figure(together([report(*pictures, note=note)]))
         assert len(panels_of(chart)) == count
         return tuple(chart.get_size_inches())
 

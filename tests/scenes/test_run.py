@@ -23,13 +23,13 @@ from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.equations.module import equations_of_motion
 from solvers.io.notation import symbol
+from solvers.player.geometry import ELEVATION, projected, tracks
+from solvers.player.plots import _labelled, default_pictures, figure
 from solvers.references.taylor import taylor
-from solvers.scenes.geometry import ELEVATION, projected, tracks
 from solvers.scenes.output import file_names
-from solvers.scenes.plots import _labelled, default_pictures, figure
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
-from solvers.scenes.summary import summary, table
+from solvers.scenes.summary import summary, table, together
 
 KEYS = {"model", "method", "form", "final_state", "requested_accuracy", "error_estimate", "why"}
 
@@ -188,7 +188,7 @@ def test_a_motion_starts_exactly_at_the_initial_state(name: str) -> None:
 
 def test_rods_and_springs_are_distinguished_by_their_lengths() -> None:
     runs = (run_scene(find(name, load_module)) for name in ("report", "spring"))
-    rods, spring = tracks([*runs])
+    rods, spring = tracks(together([*runs]))
     assert rods.links == (("rod", (-1, 0)), ("rod", (0, 1)))
     assert spring.links == (("spring", (-1, 0)),)
 
@@ -202,15 +202,15 @@ def test_masses_at_a_constant_distance_are_joined(
 ) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(f'system = "{system}"\nduration = 2\naccuracy = 1e-6\n[initial]\n{initial}\n')
-    (motion,) = tracks([run_scene(find(str(path), load_module))])
+    (motion,) = tracks(together([run_scene(find(str(path), load_module))]))
     assert list(motion.links) == [("rod", pair) for pair in rods]
 
 
 def test_pages_show_coordinates_that_all_runs_have_and_the_equations(tmp_path: Path) -> None:
     both, light = run_scene(find("report", load_module)), run_scene(find("one_bob", load_module))
-    labels = [[one.label for one in track.coordinates] for track in tracks([both])]
+    labels = [[one.label for one in track.coordinates] for track in tracks(together([both]))]
     assert labels == [["θ₁", "θ₂"]]
-    common = tracks([both, light])
+    common = tracks(together([both, light]))
     assert [[one.label for one in track.coordinates] for track in common] == [["θ₁"]] * 2
     assert common[0].coordinates[0].rates.tolist() == both.y[2].tolist()
     assert run("single", folder=tmp_path) == 0
@@ -312,7 +312,7 @@ def lines_of(chart: Figure) -> list[tuple[str, int]]:
 
 def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space() -> None:
     scene = find("report", load_module)
-    assert default_pictures(run_scene(scene)) == (
+    assert default_pictures(*run_scene(scene).sampled_motions()) == (
         "theta1, theta2 over t",
         "theta1_dot over theta1",
         "theta2_dot over theta2",
@@ -321,7 +321,7 @@ def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space()
         "path",
         "energy",
     )
-    chart = figure([run_scene(scene)])
+    chart = figure(together([run_scene(scene)]))
     panels = [panel for panel in chart.axes if panel.axison]
     assert len(panels) == 7
     for panel in panels:
@@ -331,7 +331,7 @@ def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space()
     assert symbol("theta1_dot") == r"$\dot{\theta}_{1}$"
     assert (symbol("r"), symbol("t")) == ("$r$", "$t$")
     without = run_scene(find("one_bob", load_module))
-    assert default_pictures(without) == (
+    assert default_pictures(without.sampled_motions()[0]) == (
         "theta1 over t",
         "theta1_dot over theta1",
         "path",
@@ -351,7 +351,7 @@ def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None
         ("figure_4_5", 2),
     ):
         scene = find(name, load_module)
-        chart = figure([run_scene(one) for one in (scene, *scene.beside)])
+        chart = figure(together([run_scene(one) for one in (scene, *scene.beside)]))
         (panel,) = chart.axes
         assert len(panel.lines) == curves
         note = chart.get_supxlabel()

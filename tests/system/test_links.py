@@ -34,9 +34,10 @@ from derive.system.links.link import Link
 from derive.system.parts import SystemDefinitionError
 from solvers import Scene, build, run_scene
 from solvers.equations.module import links
-from solvers.scenes.geometry import tracks
-from solvers.scenes.plots import figure
-from solvers.scenes.shapes import outline
+from solvers.player.geometry import tracks
+from solvers.player.plots import figure
+from solvers.player.shapes import outline
+from solvers.scenes.summary import together
 
 x, theta, s = symbols("x theta s", real=True)
 l, m, g = symbols("l m g", positive=True)  # noqa: E741
@@ -259,13 +260,13 @@ def test_a_closed_linkage_and_its_rail_are_drawn() -> None:
     rates = np.linalg.lstsq(*_closing(module, start), rcond=None)[0]
     scene = Scene(module, (), (*start[:3], *rates), 1.0, model="full", samples=21)
     result = run_scene(scene)
-    (track,) = tracks([result])
+    (track,) = tracks(together([result]))
     assert track.links == (("rod", (3, 0)), ("rod", (0, 1)), ("rod", (2, 4)), ("rail", (3, 4)))
     assert track.points[1].tolist() == [[1.0] * 21, [0.0] * 21]
     ends = track.positions[1] - track.positions[0]
     assert_allclose(np.linalg.norm(ends, axis=0), 1, atol=1e-9)
     assert_allclose(track.positions[1], track.positions[2], atol=1e-9)  # no gap in the loop
-    panels = {panel.get_ylabel(): panel for panel in figure([result]).axes}
+    panels = {panel.get_ylabel(): panel for panel in figure(together([result])).axes}
     path = panels["y / m"]
     assert np.ptp(path.get_ylim()) < 5  # the rail does not stretch it
     assert len(path.lines) == 2 * 3 + 3 + 1  # paths with their ends, rods, the rail

@@ -17,9 +17,10 @@ from derive.system.parts import SystemDefinitionError
 from solvers.app.cli import main as holonomic
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
-from solvers.scenes.geometry import energy_errors
+from solvers.player.geometry import energy_errors
 from solvers.scenes.reading import find
 from solvers.scenes.run import run_scene
+from solvers.scenes.summary import together
 
 PENDULUM = """
 [coordinates]
@@ -245,7 +246,7 @@ def test_with_friction_only_equilibrium_and_full_equations_apply(tmp_path: Path)
     assert found.is_met
     energy = found.scene.module.energy_many(0.0, found.y, found.scene.params)
     assert energy[-1] < energy[0] - 1
-    (errors,), unit = energy_errors([found])
+    (errors,), unit = energy_errors(together([found]))
     assert abs(errors).max() < 1e-7  # with what friction took given back
     assert unit == "energy above rest"
 

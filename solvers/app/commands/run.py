@@ -40,12 +40,12 @@ def run(arguments: Namespace) -> int:
     from solvers.io.progress import Progress
     from solvers.scenes.output import write_files
     from solvers.scenes.run import run_scene
-    from solvers.scenes.summary import figures, summary
+    from solvers.scenes.summary import figures, summary, together
 
     names = partial(_files, plot=arguments.plot)
     scenes, results = options.selected_scenes(arguments, DEFAULT, names), []
     if export := arguments.export:
-        from solvers.scenes.export import check_export, export_motion
+        from solvers.player.film import check_export, write_motions
 
         if scenes[1:]:
             raise ValueError(
@@ -61,7 +61,7 @@ def run(arguments: Namespace) -> int:
             paths = write_files([first, *beside], arguments.output, written, plot=arguments.plot)
             if export:
                 report("export")
-                paths["export"] = export_motion([first, *beside], export, speed=arguments.speed)
+                paths["export"] = write_motions(together([first, *beside]), export, arguments.speed)
         files = {kind: str(path) for kind, path in paths.items()}
         results.append(figures(first) | {"beside": [*map(figures, beside)], "files": files})
         if not arguments.json:

@@ -40,6 +40,7 @@ def motion(scene: Scene) -> Stage:
         _track(scene, f"Euler, h = {STEP:g} s", euler),
     ]
     difference = float(np.abs(accurate.y[:, -1] - scipy.y[:, -1]).max())
+    assert tracks[0].energy_error is not None
     change = float(np.abs(tracks[0].energy_error).max())
     angles = zip(module.COORDINATES, accurate.y[:, -1], strict=False)
     end = ", ".join(f"{name} = {value:.9f}" for name, value in angles)

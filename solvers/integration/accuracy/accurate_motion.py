@@ -19,7 +19,7 @@ from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.solution import Solution
-from solvers.integration.single_motion import single_motion
+from solvers.integration.single_motion import equations, single_motion
 
 #: The choice whose steps show where a motion is fast.
 FINE_CHOICE = MethodChoice(*SMOOTH, "")
@@ -142,5 +142,6 @@ def _in_longer_numbers(
         energy=np.asarray(module.energy_many(times, y, constants)) if energy else None,
         end=(float(known[-1]), states[-1]),
         units=problem.units,
+        equations=equations(problem, repeats=False),
         inputs=np.tile(np.array(constants[-count:])[:, np.newaxis], len(times)) if count else None,
     )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
-from solvers.io.exports import dataset
+from solvers.io.exports import data_frame, dataset
 from solvers.io.suggestion import counted
 from solvers.runge_kutta.stepper import Array
 
@@ -115,8 +115,14 @@ class Ensemble:
             f"  state: {', '.join(self.units)}"
         )
 
-    def to_table(self) -> dict[str, NDArray[Any]]:
-        """The end of each motion in a row, as ``pandas.DataFrame`` takes it."""
+    def to_table(self) -> Any:
+        """The end of each motion in a row.
+
+        A ``pandas.DataFrame`` where pandas is installed, else a dict of arrays.
+        """
+        return data_frame(self._columns())
+
+    def _columns(self) -> dict[str, NDArray[Any]]:
         table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
         growth = {} if np.isnan(self.growth).all() else {"growth": self.growth}
         status = np.array([status.name for status in self.status], dtype=str)
@@ -127,7 +133,7 @@ class Ensemble:
         """An ``xarray.Dataset``; its dimensions are component, motion, time, event, occurrence."""
         events = ("motion", "event", "occurrence")
         times = ("motion", "time")[-self.t_eval.ndim :]
-        table = {k: ("motion", v) for k, v in self.to_table().items() if k not in self.units}
+        table = {k: ("motion", v) for k, v in self._columns().items() if k not in self.units}
         variables = table | {
             "y": (("component", "motion"), self.y),
             "samples": (("component", "motion", "time"), self.samples),

@@ -6,14 +6,17 @@ from functools import cached_property
 from typing import Any
 
 from solvers.integration.problem.status import Status
-from solvers.io.exports import dataset
+from solvers.integration.results.solved_equations import SolvedEquations
+from solvers.io.exports import data_frame, dataset
 from solvers.io.suggestion import counted
 from solvers.io.units import with_unit
+from solvers.player.playable import Playable
+from solvers.player.sampled_motion import SampledMotion
 from solvers.runge_kutta.stepper import Array
 
 
 @dataclass(frozen=True, repr=False)
-class Solution:
+class Solution(Playable):
     """An integrated motion, with the field names of SciPy's ``solve_ivp``.
 
     Attributes
@@ -50,6 +53,8 @@ class Solution:
     error_estimate : float or None
         Largest estimated error of any value of `y`, if an accuracy is requested. Of numbers longer
         than doubles, evaluations and steps are not counted.
+    equations : SolvedEquations or None
+        Module and parameters, with which the motion shows itself.
     global_error_estimate : ndarray of shape (state, n)
         Estimated errors of `y`, computed on first use, which takes longer than the run.
 
@@ -82,10 +87,11 @@ class Solution:
     compare: Callable[[Array, Array], Array] | None = field(default=None, compare=False)
     inputs: Array | None = None
     error_estimate: float | None = None
+    equations: SolvedEquations | None = field(default=None, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """The attributes to copy or send to other processes, which modules cannot be."""
-        return {name: value for name, value in vars(self).items() if name != "compare"}
+        return {k: v for k, v in vars(self).items() if k not in ("compare", "equations")}
 
     @cached_property
     def global_error_estimate(self) -> Array:
@@ -127,15 +133,37 @@ class Solution:
             f"  final state, t = {t_end:.6g} s: {', '.join(state)}"
         )
 
-    def to_table(self) -> dict[str, Array]:
-        """Columns: ``t``, the components, and ``energy`` if requested."""
+    def sampled_motions(self) -> list[SampledMotion]:
+        """The motion for pages, films and plots, integrated again at evenly spaced times.
+
+        Numbers longer than doubles, and solutions from a file, have the times of `t` only.
+
+        Raises
+        ------
+        ValueError
+            For a solution from a file or another process.
+        """
+        if self.equations is None:
+            raise ValueError("a copied solution has no equations to show it: integrate again")
+        message = self.message.partition(" (t = ")[0]
+        note = f"{message[:1].upper()}{message[1:]}: {self.run}."
+        return [self.equations.sampled(self.t, self.y, self.end[0], note)]
+
+    def _columns(self) -> dict[str, Array]:
         table = {"t": self.t, **dict(zip(self.units, self.y, strict=True))}
         return table if self.energy is None else {**table, "energy": self.energy}
+
+    def to_table(self) -> Any:
+        """Columns: ``t``, the components, and ``energy`` if requested.
+
+        A ``pandas.DataFrame`` where pandas is installed, else a dict of arrays.
+        """
+        return data_frame(self._columns())
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` of the components, and ``energy`` if requested, along ``t``."""
         units = {**self.units, "energy": "J"}
-        columns = self.to_table()
+        columns = self._columns()
         t = columns.pop("t")
         variables = {name: ("t", y, {"units": units[name]}) for name, y in columns.items()}
         about = {"run": self.run, "status": self.status.name, "message": self.message}

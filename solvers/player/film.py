@@ -15,15 +15,14 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
-from solvers.equations.arguments import checked
 from solvers.equations.quantities import positive
-from solvers.integration.accuracy.motion import Array
 from solvers.io.atomic_write import write_text
 from solvers.io.figures import COLOURS, FORMATS, panels, save
-from solvers.scenes.geometry import links_and_points, mass_positions, projected
-from solvers.scenes.plots import label_axes, plain
-from solvers.scenes.run import SceneResult
-from solvers.scenes.shapes import draw_link
+from solvers.player.geometry import links_and_points, mass_positions, projected
+from solvers.player.plots import label_axes, plain
+from solvers.player.sampled_motion import SampledMotion
+from solvers.player.shapes import draw_link
+from solvers.player.track import Array
 
 #: Frames a second of a film, of 40 ms: a GIF counts in hundredths of a second, and programs show
 #: frames of less than 20 ms more slowly. Also the most frames.
@@ -41,54 +40,21 @@ FILMS: dict[str, Callable[[], AbstractMovieWriter]] = {
 SUFFIXES = (*FILMS, *FORMATS)
 
 
-@checked
-def export_motion(
-    result: SceneResult | Sequence[SceneResult], path: str | Path, *, speed: float = 1.0
-) -> Path:
-    """Write a motion as a film or as a picture for slides, by the suffix of the file's name.
+def write_motions(motions: Sequence[SampledMotion], path: Path, speed: float = 1.0) -> Path:
+    """Write motions side by side as a film or a picture, by the suffix of the file's name.
 
-    Parameters
-    ----------
-    result : SceneResult or sequence of SceneResult
-        The motion, or several motions side by side.
-    path : str or Path
-        The file: ``.gif`` or ``.mp4`` is a film of 25 frames a second, for which MP4 needs the
-        program ffmpeg; ``.svg``, ``.pdf`` or ``.png`` is a picture of the paths with the links at
-        nine instants. Missing folders are created, and an existing file is replaced.
-    speed : float, optional
-        Seconds of the motion in a second of the film.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    ValueError
-        When the name ends in another suffix, ffmpeg is missing, or the film is too long.
-    OSError
-        When the file cannot be written; an existing file is unchanged.
-
-    Examples
-    --------
-    >>> from solvers import export_motion, run_scene
-    >>> print(export_motion(run_scene("single"), "single.svg"))
-    single.svg
+    `check_export` describes what is refused; an existing file is replaced.
     """
-    path, results = Path(path), [result] if isinstance(result, SceneResult) else [*result]
-    if not results:
-        raise ValueError("result = [] must hold one motion or more")
-    duration = max(float(one.t[-1]) for one in results)
+    duration = max(float(one.t[-1] - one.t[0]) for one in motions)
     check_export(path, duration, speed)
     suffix = path.suffix.lower()
     if suffix in FORMATS:
-        save(_instants(results), path)
+        save(_instants(motions), path)
         return path
-    times = frame_times(duration, speed)
+    times = motions[0].t[0] + frame_times(duration, speed)
     with TemporaryDirectory() as folder:
         film = Path(folder) / f"film{suffix}"
-        _write_film(FILMS[suffix](), film, results, times, speed)
+        _write_film(FILMS[suffix](), film, motions, times, speed)
         return write_text(path, film.read_bytes())
 
 
@@ -121,23 +87,23 @@ def frame_times(duration: float, speed: float) -> Array:
     return np.minimum(np.arange(frames) * speed / RATE, duration)
 
 
-def at(result: SceneResult, times: Array) -> SceneResult:
+def at(motion: SampledMotion, times: Array) -> SampledMotion:
     """The motion at other times, by cubic polynomials between samples; it ends as it ended."""
-    times = np.clip(times, result.t[0], result.t[-1])
-    y, n = np.full((len(result.y), len(times)), np.nan), len(result.y) // 2
-    for k in np.flatnonzero(np.isfinite(result.y[:n]).all(axis=1)).tolist():
-        spline = scipy.interpolate.CubicHermiteSpline(result.t, result.y[k], result.y[k + n])
+    times = np.clip(times, motion.t[0], motion.t[-1])
+    y, n = np.full((len(motion.y), len(times)), np.nan), len(motion.y) // 2
+    for k in np.flatnonzero(np.isfinite(motion.y[:n]).all(axis=1)).tolist():
+        spline = scipy.interpolate.CubicHermiteSpline(motion.t, motion.y[k], motion.y[k + n])
         y[k], y[k + n] = spline(times), spline(times, 1)
-    return replace(result, t=times, y=y, energy=None)
+    return replace(motion, t=times, y=y, energy=None)
 
 
 class _Panel:
     """The picture of one motion at given times in s."""
 
-    def __init__(self, axes: Axes, result: SceneResult, times: Array) -> None:
-        self.axes, self.t, self.sample_times = axes, times, result.t
-        self.paths = projected(mass_positions(result))
-        chosen = at(result, times)
+    def __init__(self, axes: Axes, motion: SampledMotion, times: Array) -> None:
+        self.axes, self.t, self.sample_times = axes, times, motion.t
+        self.paths = projected(mass_positions(motion))
+        chosen = at(motion, times)
         self.links, points = links_and_points(chosen)
         self.masses = projected(mass_positions(chosen))
         self.points = projected(points)
@@ -177,10 +143,9 @@ def _colours(count: int) -> list[str]:
     return [COLOURS[k % len(COLOURS)] for k in range(count)]
 
 
-def _figure(results: Sequence[SceneResult], times: Array) -> tuple[Figure, list[_Panel]]:
+def _figure(motions: Sequence[SampledMotion], times: Array) -> tuple[Figure, list[_Panel]]:
     """Panels side by side, with the same limits, of motions at given times."""
-    scene = results[0].scene
-    drawn = [_Panel(Figure().subplots(), result, times) for result in results]
+    drawn = [_Panel(Figure().subplots(), motion, times) for motion in motions]
     low = np.min([panel.low for panel in drawn], axis=0)
     high = np.max([panel.high for panel in drawn], axis=0)
     margin = 0.06 * float((high - low).max()) or 1.0
@@ -193,31 +158,31 @@ def _figure(results: Sequence[SceneResult], times: Array) -> tuple[Figure, list[
     )
     ratio = width / height
     # even numbers of pixels, as MP4 requires
-    size = (2 * round(HEIGHT * ratio * PIXELS / 2) / PIXELS * len(results), HEIGHT)
-    figure, axes = panels(plain(scene.title), columns=len(results), size=size)
-    for panel, own, result in zip(drawn, axes, results, strict=True):
+    size = (2 * round(HEIGHT * ratio * PIXELS / 2) / PIXELS * len(motions), HEIGHT)
+    figure, axes = panels(plain(motions[0].title), columns=len(motions), size=size)
+    for panel, own, motion in zip(drawn, axes, motions, strict=True):
         panel.axes = own
-        label_axes(own, "path", [result])
+        label_axes(own, "path", [motion])
         own.set(xlim=(left, right), ylim=(bottom, top))
         own.set_aspect("equal", adjustable="box")
         own.spines[["top", "right"]].set_visible(False)
         own.xaxis.set_major_locator(MaxNLocator(6))
         own.autoscale(False)
-        if len(results) > 1:
-            own.set_title(plain(result.scene.label), fontsize="medium")
+        if len(motions) > 1:
+            own.set_title(plain(motion.label), fontsize="medium")
     return figure, drawn
 
 
-def _instants(results: Sequence[SceneResult]) -> Figure:
+def _instants(motions: Sequence[SampledMotion]) -> Figure:
     """Paths, and links at instants that are the darker the later they are."""
-    duration = max(float(one.t[-1]) for one in results)
-    times = np.linspace(0, duration, INSTANTS)
-    figure, drawn = _figure(results, times)
+    begin, end = motions[0].t[0], max(float(one.t[-1]) for one in motions)
+    times = np.linspace(begin, end, INSTANTS)
+    figure, drawn = _figure(motions, times)
     for panel in drawn:
-        panel.draw_paths(INSTANTS - 1, duration)
+        panel.draw_paths(INSTANTS - 1, end - begin)
         for k in range(INSTANTS):
             panel.draw(k, alpha=max(((k + 1) / INSTANTS) ** 2, 0.08))
-    _label(figure, f"t = 0 to {duration:.4g} s, every {times[1]:.3g} s")
+    _label(figure, f"t = {begin:.4g} to {end:.4g} s, every {times[1] - times[0]:.3g} s")
     return figure
 
 
@@ -229,13 +194,13 @@ def _label(figure: Figure, text: str) -> Text:
 def _write_film(
     writer: AbstractMovieWriter,
     path: Path,
-    results: Sequence[SceneResult],
+    motions: Sequence[SampledMotion],
     times: Array,
     speed: float,
 ) -> None:
-    figure, drawn = _figure(results, times)
+    figure, drawn = _figure(motions, times)
     decimals = 2 if speed > 0.2 else 3
-    clock = _label(figure, f"t = {0:.{decimals}f} s")
+    clock = _label(figure, f"t = {times[0]:.{decimals}f} s")
     figure.draw_without_rendering()
     figure.set_layout_engine(None)  # else labels would move from frame to frame
     writer.setup(figure, str(path), PIXELS)

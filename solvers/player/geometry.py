@@ -1,4 +1,4 @@
-"""Geometry of a result: positions of masses, links between them, and the energy error."""
+"""Geometry of a motion: positions of masses, links between them, and the energy error."""
 
 from collections.abc import Sequence
 
@@ -7,8 +7,8 @@ import numpy as np
 from solvers.equations.energy import energy_unit
 from solvers.equations.module import function, links
 from solvers.io.notation import plain_symbol
+from solvers.player.sampled_motion import SampledMotion
 from solvers.player.track import Coordinate, Links, Track
-from solvers.scenes.run import SceneResult, energies
 
 #: Largest relative change of a rod's length.
 RIGID = 1e-6
@@ -16,10 +16,9 @@ RIGID = 1e-6
 AZIMUTH, ELEVATION = 0.5, 0.45
 
 
-def mass_positions(result: SceneResult) -> np.ndarray:
+def mass_positions(motion: SampledMotion) -> np.ndarray:
     """Positions in m of all masses that exist, shape (masses, axes, samples)."""
-    scene = result.scene
-    positions = np.asarray(scene.module.positions_many(result.t, result.y, scene.params))
+    positions = np.asarray(motion.module.positions_many(motion.t, motion.y, motion.params))
     return positions[np.isfinite(positions).all(axis=(1, 2))]
 
 
@@ -33,17 +32,17 @@ def projected(positions: np.ndarray) -> np.ndarray:
     return np.stack([right, np.cos(ELEVATION) * z + np.sin(ELEVATION) * depth], axis=1)
 
 
-def links_and_points(result: SceneResult) -> tuple[Links, np.ndarray]:
+def links_and_points(motion: SampledMotion) -> tuple[Links, np.ndarray]:
     """Links, and points beyond the masses, shape (points, axes, samples).
 
     Links are those of the system. Of a system without them rods join masses to the one before, or
     the first to the origin, -1, at a constant distance, and a spring joins a single mass to the
     origin if its distance is a coordinate.
     """
-    module, masses = result.scene.module, mass_positions(result)
+    module, masses = motion.module, mass_positions(motion)
     if not (stated := links(module)):
-        return _default_links(result), np.empty((0, *masses.shape[1:]))
-    points = function(module, "points_many")(result.t, result.y, result.scene.params)
+        return _default_links(motion), np.empty((0, *masses.shape[1:]))
+    points = function(module, "points_many")(motion.t, motion.y, motion.params)
     numbers: dict[int, int] = {}
     others: list[np.ndarray] = []
     for k, point in enumerate(points):
@@ -57,43 +56,46 @@ def links_and_points(result: SceneResult) -> tuple[Links, np.ndarray]:
     return numbered, np.reshape(others, (len(others), *masses.shape[1:]))
 
 
-def _default_links(result: SceneResult) -> Links:
-    positions = mass_positions(result)
+def _default_links(motion: SampledMotion) -> Links:
+    positions = mass_positions(motion)
     lengths = np.linalg.norm(np.diff(positions, axis=0, prepend=0.0), axis=1)
     is_rigid = np.ptp(lengths, axis=1) <= RIGID * lengths.max(axis=1)
     rods = tuple(("rod", (k - 1, k)) for k in np.flatnonzero(is_rigid).tolist())
     if len(positions) != 1 or rods:
         return rods
-    coordinates = result.y[: len(result.y) // 2]
+    coordinates = motion.y[: len(motion.y) // 2]
     is_spring = any(np.allclose(lengths[0], coordinate, rtol=RIGID) for coordinate in coordinates)
     return (("spring", (-1, 0)),) if is_spring else ()
 
 
-def energy_errors(results: Sequence[SceneResult]) -> tuple[list[np.ndarray], str]:
-    """Energy errors of runs, each of shape (samples,), and the unit that they share.
+def energy_errors(motions: Sequence[SampledMotion]) -> tuple[list[np.ndarray | None], str]:
+    """Energy errors of motions, each of shape (samples,), and the unit that they share.
 
-    It is the name of the energy that they are relative to, or J where one run has none above rest.
-    Energy that forces, friction and prescribed motions supply is no error.
+    It is the name of the energy that they are relative to, or J where one motion has none above
+    rest. An error is None where the energy is not known.
     """
-    kept = [energies(r.scene, r.t, r.y) - r.supplied_energy for r in results]
     units = [
-        energy_unit(r.scene.module, r.scene.params, float(energy[0]))
-        for r, energy in zip(results, kept, strict=True)
+        energy_unit(one.module, one.params, float(one.energy[0]))
+        for one in motions
+        if one.energy is not None
     ]
     is_relative = all(unit.is_relative for unit in units)
+    joules = iter(units)
     errors = [
-        (energy - energy[0]) / (unit.joules if is_relative else 1.0)
-        for energy, unit in zip(kept, units, strict=True)
+        None
+        if one.energy is None
+        else (one.energy - one.energy[0]) / (next(joules).joules if is_relative else 1.0)
+        for one in motions
     ]
-    return errors, units[0].name if is_relative else "J"
+    return errors, units[0].name if units and is_relative else "J"
 
 
-def coordinates(results: Sequence[SceneResult]) -> list[tuple[Coordinate, ...]]:
+def coordinates(motions: Sequence[SampledMotion]) -> list[tuple[Coordinate, ...]]:
     """Coordinates over time that exist in all runs, of each run."""
     runs = []
-    for result in results:
-        module, n = result.scene.module, len(result.y) // 2
-        rows = zip(module.COORDINATES, result.y[:n], result.y[n:], strict=True)
+    for motion in motions:
+        module, n = motion.module, len(motion.y) // 2
+        rows = zip(module.COORDINATES, motion.y[:n], motion.y[n:], strict=True)
         runs.append(
             {
                 name: Coordinate(plain_symbol(name), module.UNITS[name], values, rates)
@@ -105,11 +107,11 @@ def coordinates(results: Sequence[SceneResult]) -> list[tuple[Coordinate, ...]]:
     return [tuple(run[name] for name in common) for run in runs]
 
 
-def tracks(results: Sequence[SceneResult]) -> list[Track]:
+def tracks(motions: Sequence[SampledMotion]) -> list[Track]:
     """The motions for the page that plays them, with the links between masses."""
-    errors, unit = energy_errors(results)
+    errors, unit = energy_errors(motions)
     return [
-        Track(r.scene.label, r.t, mass_positions(r), joined, error, unit, points, own)
-        for r, error, own in zip(results, errors, coordinates(results), strict=True)
-        for joined, points in [links_and_points(r)]
+        Track(one.label, one.t, mass_positions(one), joined, error, unit, points, own)
+        for one, error, own in zip(motions, errors, coordinates(motions), strict=True)
+        for joined, points in [links_and_points(one)]
     ]

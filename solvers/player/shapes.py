@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from solvers.integration.accuracy.motion import Array
+from solvers.player.track import Array
 
 #: Width of the line of each kind in points.
 WIDTHS = {
