@@ -3,7 +3,7 @@
 import re
 import sys
 import warnings
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, Namespace, _SubParsersAction
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib import import_module
@@ -43,7 +43,15 @@ class Parser(ArgumentParser):
         """Print the message and a suggestion; exit with code 2."""
         if choice := re.search(r"invalid choice: '(.*)' \(choose from (.*)\)$", message):
             message += did_you_mean(choice[1], re.findall(r"[\w-]+", choice[2]))
+        if option := re.match(r"unrecognized arguments: (--[\w-]+)", message):
+            message += did_you_mean(option[1], self._options())
         super().error(message)
+
+    def _options(self) -> list[str]:
+        """The options of this parser and of its commands."""
+        commands = (one.choices for one in self._actions if isinstance(one, _SubParsersAction))
+        parsers = [self, *(parser for one in commands for parser in one.values())]
+        return [name for one in parsers for name in one._option_string_actions]
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -54,7 +62,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     name = "holonomic"
     try:
         with standard_streams():
-            arguments = command_parser().parse_args(argv)
+            given = sys.argv[1:] if argv is None else [*argv]
+            if given[:1] == ["help"]:  # as git and pip have it
+                given = [*given[1:], "--help"]
+            arguments = command_parser().parse_args(given)
             name = f"holonomic {arguments.command or ''}".rstrip()
             with _warnings_as_lines(name):
                 if "draws" in arguments:

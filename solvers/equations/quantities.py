@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.module import GeneratedModule, outputs
+from solvers.io.quantity import QuantityError
+from solvers.io.quantity import quantity as parsed_quantity
 from solvers.io.suggestion import did_you_mean, shortened
 
 Array: TypeAlias = NDArray[np.float64]
@@ -26,8 +28,11 @@ def real_numbers(
 ) -> Array:
     """`values`, of any shape, as a new array of real numbers that are finite, unless allowed.
 
-    Not `finite` allows infinity, `nan` allows all values.
+    Where there is a `unit`, texts such as ``90 deg`` are numbers, too. Not `finite` allows
+    infinity, `nan` allows all values.
     """
+    if unit:
+        values = _without_texts(name, values, unit)
     kind = "finite real number" if finite else "real number"
     allowed = f"must be a {kind}{unit and f' in {unit}'}, such as 1.0"
     if invalid := _not_real(values):
@@ -45,6 +50,18 @@ def real_numbers(
     if unusable.any() and not nan:
         raise NotFiniteNumberError(f"{_first(name, array, unusable)} {allowed}")
     return array
+
+
+def _without_texts(name: str, values: Any, unit: str) -> Any:
+    """The values with numbers in place of texts, also in lists."""
+    if isinstance(values, str):
+        try:
+            return parsed_quantity(values, unit)
+        except QuantityError as error:
+            raise ValueError(f"{name}: {error}") from error
+    if isinstance(values, list | tuple) and not REAL.issuperset(map(type, values)):
+        return [_without_texts(f"{name}[{k}]", value, unit) for k, value in enumerate(values)]
+    return values
 
 
 def _not_real(values: Any) -> tuple[str, object] | None:

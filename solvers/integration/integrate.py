@@ -46,7 +46,7 @@ def integrate(
         Start and end in s; the end may be the earlier one.
     y0 : array_like of shape (state,), or mapping of str to float
         Coordinates and velocities in the order of ``module.STATE``, whatever the form. Or numbers
-        by name, as ``{"theta1": 0.1, "theta2": 0.2}``: velocities that are left out are 0. Of
+        by name, as ``{"theta1": 0.1, "theta2": "20 deg"}``: velocities that are left out are 0. Of
         systems with constraints, which they must satisfy, also coordinates may be left out
         (`consistent_start`).
     params : array_like of shape (parameters,), or mapping of str to float

@@ -25,13 +25,17 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     "us": (1e-6, (0, 0, 1, 0)),
     "μs": (1e-6, (0, 0, 1, 0)),  # Greek mu, to which Python's parser maps the micro sign
     "min": (60.0, (0, 0, 1, 0)),
+    "h": (3600.0, (0, 0, 1, 0)),
     "rad": (1.0, (0, 0, 0, 1)),
     "deg": (pi / 180, (0, 0, 0, 1)),
     "turn": (2 * pi, (0, 0, 0, 1)),
     "rpm": (2 * pi / 60, (0, 0, -1, 1)),
     "N": (1.0, (1, 1, -2, 0)),
+    "kN": (1000.0, (1, 1, -2, 0)),
     "J": (1.0, (2, 1, -2, 0)),
+    "kJ": (1000.0, (2, 1, -2, 0)),
     "W": (1.0, (2, 1, -3, 0)),
+    "kW": (1000.0, (2, 1, -3, 0)),
 }
 KNOWN = ", ".join(name for name in UNITS if name not in ("1", "μs"))
 

@@ -283,3 +283,20 @@ def test_a_warning_is_printed_once_and_the_process_keeps_its_own_display(
     assert main(["verify"]) == 0
     assert (warnings.showwarning, list(warnings.filters)) == before
     assert capsys.readouterr().err == "holonomic verify: integrating in Python: reason\n"
+
+
+@pytest.mark.parametrize("words", [["help"], ["help", "run"]])
+def test_help_is_a_command_as_well(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    printed = []
+    for argv in (words, [*words[1:], "--help"]):
+        with pytest.raises(SystemExit) as exit_:
+            main(argv)
+        assert exit_.value.code == 0
+        printed.append(capsys.readouterr().out)
+    assert printed[0] == printed[1] != ""
+
+
+def test_the_nearest_option_is_suggested(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["run", "report", "--outptu", "x"])
+    assert "--outptu x (did you mean '--output'?)" in capsys.readouterr().err

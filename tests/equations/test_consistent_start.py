@@ -205,7 +205,7 @@ def test_rounded_decimals_are_mended_and_larger_residuals_refused(crank: Generat
     ({"q1": 1.0, "x": 0.3}, {}, "q1 = 1 rad, x = 0.3 m .* instead of 0; give fewer"),
     ((1.0, 0.0, 0.0, 0.0, 0.0, 0.0), {}, r"or take solvers.consistent_start\(module, \{\}"),
     ({"p1": 1.0}, {}, "y0 has no 'p1'; known names: q1, q2, x"),
-    ({"q1": "a"}, {}, "q1 = 'a' must be a finite real number"),
+    ({"q1": "a"}, {}, "q1: unit 'a' is not known: use m, cm"),
     ({"q1": np.nan}, {}, "q1 = nan"),
     ({"q1": [1.0, 2.0]}, {}, "y0 has shape"),
     ((1.0, 2.0), {}, "y0 has shape"),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
@@ -24,6 +24,15 @@ def test_integrations_by_name_equal_those_in_order() -> None:
     assert_array_equal(integrate(dp, (0, 2), Y0, IN_ORDER[1]).y, expected.y)
     scene = Scene(dp, PARAMS, Y0, 2.0)
     assert (scene.y0, scene.params) == IN_ORDER
+
+
+def test_texts_have_units_in_place_of_numbers() -> None:
+    numbers = integrate(dp, (0, 6), (np.pi / 2, 1.0, np.pi / 18, 0.0), {"m2": 0.3}, t_eval=[0.5, 3])
+    start = {"theta1": "90 deg", "theta2": 1, "theta1_dot": "10 deg/s"}
+    texts = integrate(dp, (0, "1/10 min"), start, {"m2": "300 g"}, t_eval=["500 ms", 3])
+    assert_allclose(texts.y, numbers.y, rtol=1e-9)
+    several = ensemble(dp, (0, "1 s"), {"theta1": ["90 deg", np.pi / 2], "theta2": 0.0}, {})
+    assert_allclose(several.y[:, 0], several.y[:, 1], rtol=1e-12)
 
 
 def test_default_parameters_and_velocities_complete_a_mapping() -> None:
@@ -76,7 +85,8 @@ def test_states_of_ensembles_have_the_axes_of_generated_functions() -> None:
     ({"theta": 1.0, "phi": 0.0}, {}, "y0 has no 'phi'; known names: theta, theta_dot"),
     ({"theta_dot": 1.0}, {}, "y0 lacks theta: only velocities may be left out"),
     ({}, {}, "y0 lacks theta"),
-    ({"theta": "1"}, {}, "theta = '1' must be a finite real number in rad"),
+    ({"theta": "1 m"}, {}, "theta: '1 m' has another unit: give rad or a unit of that kind"),
+    ({"theta": ["1 deg", "x"]}, {}, r"theta\[1\]: unit 'x' is not known"),
     ({"theta": True}, {}, "theta = True must be a finite real number"),
     ({"theta": float("nan")}, {}, "theta = nan must be a finite real number"),
     ({"theta": [1.0, 2.0]}, {}, r"y0 has shape \(2, 2\): give 2 numbers, theta, theta_dot"),
