@@ -6,7 +6,7 @@ PYTEST := $(BIN)/pytest --numprocesses auto --dist worksteal
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all campaign mutants docs derive bench lint types check clean
+.PHONY: help demo test test-all campaign mutants notebook docs derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -25,6 +25,9 @@ campaign: .venv/ready  ## run the tests over thousands of random cases
 
 mutants: .venv/ready  ## plant 200 mistakes one by one, and list those that no test notices (an hour)
 	$(BIN)/python tests/mutants.py
+
+notebook: .venv/notebook  ## open the notebooks in JupyterLab
+	$(BIN)/jupyter-lab notebooks
 
 docs: .venv/docs  ## build the documentation site, into out/docs
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going --conf-dir notebooks/docs \
@@ -51,7 +54,7 @@ check: lint types test-all docs  ## everything that decides whether a change lan
 clean:  ## remove the environment and what the tools left behind
 	rm -rf .venv out build dist .mypy_cache .pytest_cache .ruff_cache
 
-# The environment, in four sizes. Versions are those that are known to work together.
+# The environment, in five sizes. Versions are those that are known to work together.
 # pip splits PIP_CONSTRAINT at blanks, which a path from the root may have
 PIP := PIP_CONSTRAINT=.ci/constraints.txt $(BIN)/python -m pip install \
 	--quiet --disable-pip-version-check --editable
@@ -64,6 +67,10 @@ PIP := PIP_CONSTRAINT=.ci/constraints.txt $(BIN)/python -m pip install \
 
 .venv/ready: .venv/base
 	$(PIP) '.[test]'
+	@touch $@
+
+.venv/notebook: .venv/base
+	$(PIP) '.[jupyter]'
 	@touch $@
 
 .venv/docs: .venv/ready

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from derive.mechanics.constraints.constraints import Constraints
-from derive.mechanics.cyclic_coordinates import CyclicCoordinates
 from derive.mechanics.independence import check_independence, is_singular
 from derive.mechanics.linearisation.equilibria import equilibria
 from derive.mechanics.linearisation.point import Formula, Point
 from derive.mechanics.linearisation.small_oscillations import Linearisation, SmallOscillations
 from derive.mechanics.linearisation.state_space import StateSpace, state_space
 from derive.mechanics.outputs import outputs as output_formulas
+from derive.mechanics.steps import StepByStep
 from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
 from derive.system.prescribed import motions
@@ -59,8 +59,10 @@ def warn_of_redundancy(system: System, redundant: Sequence[Constraint]) -> None:
 
 
 @dataclass(frozen=True)
-class Derivation(CyclicCoordinates):
+class Derivation(StepByStep):
     """The mechanics of `system`; each result is derived when it is first used.
+
+    Notebooks display its steps as mathematics.
 
     Parameters
     ----------

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from html import escape
 
 import sympy as sp
 
 from derive.formulas.typesetting import Formula
-from derive.mechanics.derivation import Derivation
+from derive.mechanics.cyclic_coordinates import CyclicCoordinates
 
 WORDS = {
     "Positions": "The positions of the masses; with the forces, they define the system.",
@@ -34,65 +35,74 @@ class Step:
     words: str
     formulas: tuple[Formula, ...]
 
+    def _repr_html_(self) -> str:
+        """A section that can be folded."""
+        formulas = "".join(formula.html for formula in self.formulas)
+        head = f"<summary><b>{escape(self.title)}</b>: {escape(self.words)}</summary>"
+        body = f'<div style="margin: 0.3em 1.5em; line-height: 1.8">{formulas}</div>'
+        return f"<details open>{head}{body}</details>"
 
-def steps(derivation: Derivation) -> Iterator[Step]:
-    """The steps of a derivation, from positions to Hamilton's equations and Routh's.
 
-    With constraints, G contains their derivatives by coordinates, or by velocities, and there are
-    no Hamilton's equations. K and P denote kinetic and potential energy, as in the report on the
-    double pendulum.
+@dataclass(frozen=True)
+class StepByStep(CyclicCoordinates):
+    """A derivation that shows its steps."""
 
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation of any system.
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The steps, from positions to Hamilton's equations and Routh's, which notebooks display.
 
-    Yields
-    ------
-    Step
-        One result, in words and formulas.
+        With constraints, G contains their derivatives by coordinates, or by velocities, and there
+        are no Hamilton's equations. K and P denote kinetic and potential energy, as in the report
+        on the double pendulum.
 
-    Examples
-    --------
-    >>> from derive import Derivation, load
-    >>> [step.title for step in steps(Derivation(load("single_pendulum")))][:3]
-    ['Positions', 'Velocities', 'Energies']
-    """
-    system, d = derivation.system, derivation
-    names = [f"r{k}" for k in range(1, len(system.masses) + 1)]
-    positions = [sp.Matrix(mass.position) for mass in system.masses]
-    residuals = [*map(_zero, d.euler_lagrange)]
-    accelerations = _column(system.qddot)
-    reactions = f" + G**T*{_column(system.multipliers)}" if system.conditions else ""
-    formulas = {
-        "Positions": _each(names, positions),
-        "Constraints": [_zero(one.formula) for one in system.conditions],
-        "Velocities": _each([f"{name}_dot" for name in names], d.velocities),
-        "Energies": _each("KP", (d.kinetic_energy, d.potential_energy)),
-        "Lagrangian": _each("L", (d.lagrangian,)),
-        "Euler–Lagrange equations": residuals,
-        "Mass matrix": [
-            Formula(f"M*{accelerations} = f{reactions}"),
-            *_each("Mf", (d.mass_matrix, d.forcing)),
-        ],
-        "Constraints of accelerations": [
-            Formula(f"G*{accelerations} = gamma"),
-            *_each(("G", "gamma"), (d.constraint_jacobian, d.constraint_forcing)),
-        ],
-        "Momenta": _each(_names(system.p), d.momenta),
-    }
-    if not system.conditions:
-        rates, forces = d.hamilton_equations
-        pdot = [symbol.name.replace("p_", "pdot_", 1) for symbol in system.p]
-        formulas["Hamiltonian"] = _each("H", (d.hamiltonian,))
-        both = _each((*_names(system.qdot), *pdot), (*rates, *forces))
-        formulas["Hamilton's equations"] = both
-    if 0 < len(d.cyclic_coordinates) < len(system.q):
-        equations = [*map(_zero, d.routh_equations)]
-        formulas["Routhian"] = [*_each("R", (d.routhian,)), *equations]
-    for title, results in formulas.items():
-        if system.conditions or not title.startswith("Constraints"):
-            yield Step(title, WORDS[title], tuple(results))
+        Examples
+        --------
+        >>> from derive import Derivation, load
+        >>> [step.title for step in Derivation(load("single_pendulum")).steps][:3]
+        ['Positions', 'Velocities', 'Energies']
+        """
+        return tuple(self._steps())
+
+    def _repr_html_(self) -> str:
+        title = f"<h3>{escape(self.system.title)}</h3>"
+        return title + "".join(step._repr_html_() for step in self.steps)
+
+    def _steps(self) -> Iterator[Step]:
+        system = self.system
+        names = [f"r{k}" for k in range(1, len(system.masses) + 1)]
+        positions = [sp.Matrix(mass.position) for mass in system.masses]
+        residuals = [*map(_zero, self.euler_lagrange)]
+        accelerations = _column(system.qddot)
+        reactions = f" + G**T*{_column(system.multipliers)}" if system.conditions else ""
+        formulas = {
+            "Positions": _each(names, positions),
+            "Constraints": [_zero(one.formula) for one in system.conditions],
+            "Velocities": _each([f"{name}_dot" for name in names], self.velocities),
+            "Energies": _each("KP", (self.kinetic_energy, self.potential_energy)),
+            "Lagrangian": _each("L", (self.lagrangian,)),
+            "Euler–Lagrange equations": residuals,
+            "Mass matrix": [
+                Formula(f"M*{accelerations} = f{reactions}"),
+                *_each("Mf", (self.mass_matrix, self.forcing)),
+            ],
+            "Constraints of accelerations": [
+                Formula(f"G*{accelerations} = gamma"),
+                *_each(("G", "gamma"), (self.constraint_jacobian, self.constraint_forcing)),
+            ],
+            "Momenta": _each(_names(system.p), self.momenta),
+        }
+        if not system.conditions:
+            rates, forces = self.hamilton_equations
+            pdot = [symbol.name.replace("p_", "pdot_", 1) for symbol in system.p]
+            formulas["Hamiltonian"] = _each("H", (self.hamiltonian,))
+            both = _each((*_names(system.qdot), *pdot), (*rates, *forces))
+            formulas["Hamilton's equations"] = both
+        if 0 < len(self.cyclic_coordinates) < len(system.q):
+            equations = [*map(_zero, self.routh_equations)]
+            formulas["Routhian"] = [*_each("R", (self.routhian,)), *equations]
+        for title, results in formulas.items():
+            if system.conditions or not title.startswith("Constraints"):
+                yield Step(title, WORDS[title], tuple(results))
 
 
 def _zero(expression: sp.Expr) -> Formula:

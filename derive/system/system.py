@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from html import escape
 from itertools import chain
 
 import sympy as sp
 
+from derive.formulas.typesetting import Formula
 from derive.system.checks import check
 from derive.system.constraints import Eliminated, constraints
 from derive.system.declaration import Declaration
@@ -146,6 +148,21 @@ class System(Declaration):
         self._prescribe()
         self._check_names()
         check(self)
+
+    def _repr_html_(self) -> str:
+        """Title, positions and symbols with their units, for notebooks."""
+        positions = (
+            Formula.of(f"r{k}", sp.Matrix(mass.position)).html
+            for k, mass in enumerate(self.masses, 1)
+        )
+        symbols: list[Coordinate | Parameter | Input] = [*self.coordinates, *self.parameters]
+        rows = "".join(
+            f"<tr><td>{Formula(part.symbol.name).html}</td><td>{escape(part.unit)}</td>"
+            f"<td>{escape(part.meaning)}</td></tr>"
+            for part in [*symbols, *self.inputs]
+        )
+        head = f"<h3>{escape(self.title)}</h3>{''.join(positions)}"
+        return f"{head}<table><tr><th>symbol</th><th>unit</th><th>meaning</th></tr>{rows}</table>"
 
     def _prescribe(self) -> None:
         """Let motions among the inputs be functions of time with a constant acceleration."""

@@ -5,7 +5,7 @@ import sympy as sp
 
 from derive import Derivation, load, names
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.mechanics.steps import steps
+from derive.formulas.typesetting import Formula
 from derive.verification.report.comparison import EQUATIONS_OF_STEP, compare_steps
 from derive.verification.report.judgement import EQUATIONS
 from derive.verification.verdict import Verdict
@@ -50,7 +50,7 @@ def test_every_formula_is_the_derived_one(name: str) -> None:
     symbols |= {*system.qdot, *system.qddot, *system.multipliers}
     scope = {**FUNCTIONS, **{s.name: s for s in symbols}}
     names_shown, residuals = set(), []
-    for step in steps(derivation):
+    for step in derivation.steps:
         for formula in step.formulas:
             left, right = formula.text.split(" = ")
             if left not in values:
@@ -84,3 +84,16 @@ def test_every_step_is_shown_with_its_own_lines(double: Derivation) -> None:
     for one in every:
         assert one.section.count('class="line verified"') == len(one.verdicts)
         assert one.section.startswith(f"<h3>{one.step.title}</h3>")
+
+
+def test_notebooks_show_a_system_and_its_derivation_as_mathematics() -> None:
+    system = load("elastic_pendulum")
+    derivation = Derivation(system)
+    shown, own = derivation._repr_html_(), system._repr_html_()
+    assert [step.title in shown for step in derivation.steps] == [True] * len(derivation.steps)
+    assert shown.count("<details open>") == shown.count("</details>") == len(derivation.steps)
+    assert all(formula.html in shown for step in derivation.steps for formula in step.formulas)
+    assert derivation.steps[1]._repr_html_() in shown
+    for part in (*system.coordinates, *system.parameters):
+        assert f"<td>{part.unit}</td><td>{part.meaning}</td>" in own
+    assert Formula.of("r1", sp.Matrix(system.masses[0].position)).html in own

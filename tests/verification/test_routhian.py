@@ -11,7 +11,6 @@ from derive.formulas.numeric import Evaluator
 from derive.formulas.sampling import is_small, sample
 from derive.handout.writing import write_document
 from derive.mechanics.routhian import Routhian
-from derive.mechanics.steps import steps
 from derive.reading.documents import read_document
 from derive.verification.documents.hints import hints
 from derive.verification.documents.judgement import judge_document
@@ -102,9 +101,9 @@ def test_one_of_several_cyclic_coordinates_can_be_eliminated() -> None:
 
 
 def test_steps_end_with_the_routhian() -> None:
-    titles = [step.title for step in steps(Derivation(load("spherical_pendulum")))]
+    titles = [step.title for step in Derivation(load("spherical_pendulum")).steps]
     assert titles[-1] == "Routhian"
-    assert "Routhian" not in [step.title for step in steps(Derivation(load("double_pendulum")))]
+    assert "Routhian" not in [step.title for step in Derivation(load("double_pendulum")).steps]
 
 
 @pytest.mark.parametrize("name", ["spherical_pendulum", "cart_1"])

@@ -6,7 +6,7 @@ from html import escape
 
 from derive.formulas.typesetting import Formula
 from derive.mechanics.derivation import Derivation
-from derive.mechanics.steps import Step, steps
+from derive.mechanics.steps import Step
 from derive.verification.verdict import Verdict
 
 #: The report's equations for each step.
@@ -76,7 +76,7 @@ def compare_steps(
     StepComparison
         From the positions to Hamilton's equations.
     """
-    for step in steps(derivation):
+    for step in derivation.steps:
         yield StepComparison(step, tuple(map(verdict, EQUATIONS_OF_STEP[step.title].split())))
 
 
