@@ -1,5 +1,6 @@
 """Checks of numbers: real, finite, and of the sign that a generated module declares."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
@@ -16,6 +17,8 @@ Array: TypeAlias = NDArray[np.float64]
 Values: TypeAlias = ArrayLike | Mapping[str, Any]
 #: Types of which every value is real; NumPy converts text, booleans and missing values, too.
 REAL = frozenset((int, float, np.float64))
+#: A number without a unit.
+NUMBER = re.compile(r"\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*\Z")
 Defaults: TypeAlias = Mapping[str, float | Array]
 
 
@@ -28,11 +31,8 @@ def real_numbers(
 ) -> Array:
     """`values`, of any shape, as a new array of real numbers that are finite, unless allowed.
 
-    Where there is a `unit`, texts such as ``90 deg`` are numbers, too. Not `finite` allows
-    infinity, `nan` allows all values.
+    Not `finite` allows infinity, `nan` allows all values.
     """
-    if unit:
-        values = _without_texts(name, values, unit)
     kind = "finite real number" if finite else "real number"
     allowed = f"must be a {kind}{unit and f' in {unit}'}, such as 1.0"
     if invalid := _not_real(values):
@@ -52,15 +52,18 @@ def real_numbers(
     return array
 
 
-def _without_texts(name: str, values: Any, unit: str) -> Any:
-    """The values with numbers in place of texts, also in lists."""
-    if isinstance(values, str):
+def without_texts(name: str, values: Any, unit: str) -> Any:
+    """The values with numbers in place of texts such as ``90 deg``, also in lists.
+
+    A number in quotes remains a text.
+    """
+    if isinstance(values, str) and not NUMBER.match(values):
         try:
             return parsed_quantity(values, unit)
         except QuantityError as error:
             raise ValueError(f"{name}: {error}") from error
     if isinstance(values, list | tuple) and not REAL.issuperset(map(type, values)):
-        return [_without_texts(f"{name}[{k}]", value, unit) for k, value in enumerate(values)]
+        return [without_texts(f"{name}[{k}]", value, unit) for k, value in enumerate(values)]
     return values
 
 
@@ -108,7 +111,7 @@ def quantity(
     Where parts may be `absent`, a positive parameter may be 0, such as a mass that does not exist.
     """
     unit = module.UNITS.get(name, "")
-    array = real_numbers(name, values, unit, nan=nan)
+    array = real_numbers(name, without_texts(name, values, unit), unit, nan=nan)
     if name in module.POSITIVE:
         wrong = array < 0 if absent and name in module.PARAMETERS else array <= 0
         if wrong.any():

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Self
 
 import numpy as np
@@ -14,7 +15,11 @@ from solvers.equations.module import inputs as input_names
 from solvers.equations.quantities import Values
 from solvers.equations.singularities.mass_matrix import check_condition, examined
 from solvers.integration.checks.accuracy_warnings import ensemble_warnings
-from solvers.integration.checks.predictability import UnfinishedWarning, is_ignored
+from solvers.integration.checks.predictability import (
+    UnfinishedWarning,
+    ignore_predictability,
+    is_ignored,
+)
 from solvers.integration.checks.singularity import SingularityWarning, singularities
 from solvers.integration.checks.step_stability import StepWarning, mark_unstable
 from solvers.integration.loops import compiled_loop
@@ -26,7 +31,8 @@ from solvers.integration.problem.problem import EventFunction, Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.integration.results.ensemble_times import EnsembleTimes
-from solvers.integration.results.solution import Interrupted
+from solvers.integration.results.solution import Interrupted, Solution
+from solvers.integration.single_motion import single_motion
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import shortened, warn_caller
 from solvers.runge_kutta.stepper import Array
@@ -43,6 +49,16 @@ class Motions:
     states: Array
     constants: Array  # one row for all motions or one for each
     times: EnsembleTimes
+
+    def alone(self, options: Options, k: int) -> Solution:
+        """Motion `k` by itself."""
+        module, times, constants = self.problem.form.module, self.times, self.constants
+        own = replace(options, t_eval=None, events=self.problem.events)
+        if self.problem.schedule is None and self.problem.form.feedback is None:
+            own = replace(own, inputs=None)  # constants that differ between motions
+        span, params = (times.begin, times.end(k)), constants[k % len(constants)]
+        with ignore_predictability():
+            return single_motion(module, span, self.states[k], params, own)
 
     @classmethod
     def of(
@@ -116,6 +132,7 @@ def many_motions(
     memory.check_memory(f"{rows} states of {len(states)} motions", rows, components, remedy)
     loop = f"compiled by {program.library.compiler}" if program else "python"
     result = Ensemble.empty(problem, len(states), occurrences, loop, times.samples)
+    result = replace(result, alone=partial(motions.alone, options))
     run = EnsembleRun(problem, states, constants, times, skipped, result, stop or StopFlag())
     try:
         if program:

@@ -14,7 +14,7 @@ import generated.double_pendulum as dp
 import generated.duffing as duffing
 import generated.furuta_pendulum as furuta
 import generated.single_pendulum as single
-from solvers import Held, Solution, integrate
+from solvers import Held, Solution, ensemble, integrate
 from solvers.player.geometry import energy_errors
 from solvers.player.playable import Playable
 from solvers.references.taylor import taylor
@@ -152,3 +152,20 @@ def test_only_results_are_shown_beside_others(motion: Solution, beside: object) 
     assert isinstance(motion, Playable)
     with pytest.raises(ValueError, match="must be a list of results"):
         motion.plot(beside=beside)  # type: ignore[arg-type]
+
+
+def test_a_few_motions_of_an_ensemble_are_shown_side_by_side(tmp_path: Path) -> None:
+    lengths = np.array([0.5, 1.0, 2.0])
+    motions = ensemble(single, (0, 2), {"theta": np.ones(3)}, {"l": lengths})
+    assert motions.motion(2).y[:, -1] == pytest.approx(motions.y[:, 2], abs=1e-8)
+    shown = motions_of(motions.save(tmp_path / "a.html").read_text())
+    highest = [np.abs(np.array(one["positions"])).max() for one in shown]
+    assert highest == pytest.approx(lengths)
+
+
+def test_many_motions_of_an_ensemble_are_not_shown_side_by_side() -> None:
+    motions = ensemble(single, (0, 2), {"theta": np.linspace(0, 1, 13)}, {})
+    with pytest.raises(ValueError, match="13 motions are more than the 12 that can be shown"):
+        motions.plot()
+    with pytest.raises(ValueError, match="motion 13 must be a number from 0 to 12"):
+        motions.motion(13)

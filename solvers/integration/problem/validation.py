@@ -18,7 +18,13 @@ from solvers.equations.module import (
     perturbations,
     state_names,
 )
-from solvers.equations.quantities import Values, quantities, real_number, real_numbers
+from solvers.equations.quantities import (
+    Values,
+    quantities,
+    real_number,
+    real_numbers,
+    without_texts,
+)
 from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import consistent, given_names, guesses
 from solvers.equations.starts.tangent_start import tangent_start
@@ -220,13 +226,14 @@ def _rows(name: str, array: Array, expected: Sequence[str]) -> Array:
 
 def time_span(values: ArrayLike) -> tuple[float, float]:
     """Start and end."""
-    start, end = _vector("t_span", real_numbers("t_span", values, "s"), ("start", "end")).tolist()
+    seconds = real_numbers("t_span", without_texts("t_span", values, "s"), "s")
+    start, end = _vector("t_span", seconds, ("start", "end")).tolist()
     return start, end
 
 
 def times(values: ArrayLike, span: tuple[float, float]) -> Array:
     """Times within `span`, in the order of the integration."""
-    array = real_numbers("t_eval", values, "s")
+    array = real_numbers("t_eval", without_texts("t_eval", values, "s"), "s")
     if array.ndim != 1:
         raise ValueError(f"t_eval has shape {array.shape}: give a list of times")
     low, high = sorted(span)

@@ -1,7 +1,7 @@
 """The result of an integration of many motions."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -10,13 +10,19 @@ from numpy.typing import NDArray
 
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
+from solvers.integration.results.solution import Solution
 from solvers.io.exports import data_frame, dataset
 from solvers.io.suggestion import counted
+from solvers.player.playable import Playable
+from solvers.player.sampled_motion import SampledMotion
 from solvers.runge_kutta.stepper import Array
+
+#: Most motions of an ensemble that are shown side by side.
+MOST_SHOWN = 12
 
 
 @dataclass(frozen=True, repr=False)
-class Ensemble:
+class Ensemble(Playable):
     """The final states of many motions, their samples and events.
 
     Arrays of states have the component as their first axis, as those that generated functions
@@ -48,6 +54,8 @@ class Ensemble:
         The requested times in s; a row for each motion where these differ.
     error_estimate : ndarray of shape (n,) or None
         Largest estimated error of the returned states of each motion, if an accuracy is requested.
+    alone : callable or None
+        Integrates the motion of an index again, with the end of every step.
 
     Examples
     --------
@@ -73,6 +81,7 @@ class Ensemble:
     units: Mapping[str, str]
     t_eval: Array
     error_estimate: Array | None = None
+    alone: Callable[[int], Solution] | None = field(default=None, compare=False)
 
     @classmethod
     def empty(
@@ -97,6 +106,33 @@ class Ensemble:
             units=problem.units,
             t_eval=t_eval if len(t_eval) > 1 else t_eval[0],
         )
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The attributes to copy or send to other processes, which modules cannot be."""
+        return {name: value for name, value in vars(self).items() if name != "alone"}
+
+    def motion(self, k: int) -> Solution:
+        """Motion `k`, integrated again, with the states at the end of every step.
+
+        Raises
+        ------
+        ValueError
+            When there is no such motion; for an ensemble from a file or another process.
+        """
+        if self.alone is None:
+            raise ValueError("a copied ensemble has no equations: integrate again")
+        if not isinstance(k, int | np.integer) or not 0 <= k < len(self.t):
+            raise ValueError(f"motion {k!r} must be a number from 0 to {len(self.t) - 1}")
+        return self.alone(int(k))
+
+    def sampled_motions(self) -> list[SampledMotion]:
+        """All motions, up to a dozen, for pages, films and plots."""
+        if len(self.t) > MOST_SHOWN:
+            raise ValueError(
+                f"{len(self.t)} motions are more than the {MOST_SHOWN} that can be shown side by "
+                "side: choose some, as by motions.motion(0).play([motions.motion(1)])"
+            )
+        return [one for k in range(len(self.t)) for one in self.motion(k).sampled_motions()]
 
     @property
     def success(self) -> NDArray[np.bool_]:
