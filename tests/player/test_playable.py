@@ -160,7 +160,7 @@ def test_a_few_motions_of_an_ensemble_are_shown_side_by_side(tmp_path: Path) -> 
     assert motions.motion(2).y[:, -1] == pytest.approx(motions.y[:, 2], abs=1e-8)
     shown = motions_of(motions.save(tmp_path / "a.html").read_text())
     highest = [np.abs(np.array(one["positions"])).max() for one in shown]
-    assert highest == pytest.approx(lengths)
+    assert highest == pytest.approx(lengths, rel=1e-3)
 
 
 def test_many_motions_of_an_ensemble_are_not_shown_side_by_side() -> None:
