@@ -85,7 +85,8 @@ def command_parser() -> ArgumentParser:
     parser = Parser(
         "holonomic",
         description="Derive, verify, generate and integrate equations of motion.",
-        epilog="holonomic COMMAND --help shows the options of a command and an example.",
+        epilog="holonomic COMMAND --help shows the options of a command and an example; "
+        "notebooks/docs/howto.md has tasks of a few lines each.",
     )
     parser.add_argument("--version", action="store_true", help="print the version and exit")
     parser.add_argument(

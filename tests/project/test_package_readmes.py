@@ -29,6 +29,7 @@ from solvers.sweeps.definition import reading
 from solvers.sweeps.execution.run import sweep
 
 READMES = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
+HOWTO = ROOT / "notebooks" / "docs" / "howto.md"
 
 #: Links to READMEs that are to be written.
 UNWRITTEN = {"runge_kutta/README.md"}
@@ -41,7 +42,7 @@ def blocks(path: Path, language: str) -> list[str]:
 
 
 def snippets() -> Iterator[object]:
-    for path in READMES:
+    for path in (*READMES, HOWTO):
         for k, text in enumerate(blocks(path, "python")):
             yield pytest.param(path, text, id=f"{path.parent.relative_to(ROOT)}-{k}")
 
