@@ -1,9 +1,9 @@
 """Positions in, motion out: the public names of `derive` and `solvers` in one place.
 
 Names are imported when they are first used. ``load`` is `solvers.load`, which returns a generated
-module; ``derive.load`` returns the `System` with its positions. `Derivation` derives a system of your
-own, `build` makes it a module, `integrate` moves it, and ``play()`` shows the motion; the how-to in
-``notebooks/docs/howto.md`` has tasks of a few lines each.
+module; ``derive.load`` returns the `System` with its positions. `Derivation` derives a system of
+your own, `build` makes it a module, `integrate` moves it, and ``play()`` shows the motion; the
+how-to in ``notebooks/docs/howto.md`` has tasks of a few lines each.
 """
 
 from importlib.util import find_spec
