@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from derive.reading.document import Document
-from derive.verification.documents.annotation import annotate, check_annotation
-from derive.verification.documents.hints import Hints
-from derive.verification.documents.judged import JudgedDocument
-from derive.verification.documents.table import document_lines, document_record
+from derive.verification.documents.letters.hints import Hints
+from derive.verification.documents.pages.annotation import annotate, check_annotation
+from derive.verification.documents.pages.table import document_lines, document_record
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.files import judge_file
 from derive.verification.hand import HandDerivation, judge
 from derive.verification.report.judgement import OrderOf

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.syntax import syntax_tree
-from derive.formulas.textbook_order import TextbookOrder
+from derive.formulas.typeset.textbook_order import TextbookOrder
 
 #: Width of the lines of formulas, in digits.
 WIDTH = 78

@@ -12,9 +12,9 @@ from typing import Literal, TypeAlias
 
 import sympy as sp
 
-from derive.formulas.lettering import lettering
-from derive.formulas.numeric import Evaluator, NoValueError
-from derive.formulas.sampling import STATES, sample
+from derive.formulas.evaluation.numeric import Evaluator, NoValueError
+from derive.formulas.evaluation.sampling import STATES, sample
+from derive.formulas.typeset.lettering import lettering
 from derive.handout.document import Equation
 
 Kind: TypeAlias = Literal["sign", "index", "power", "function", "factor"]

@@ -8,8 +8,8 @@ from itertools import chain, count
 
 import sympy as sp
 
-from derive.formulas.lettering import lettering
-from derive.formulas.textbook_order import Kind, TextbookOrder
+from derive.formulas.typeset.lettering import lettering
+from derive.formulas.typeset.textbook_order import Kind, TextbookOrder
 from derive.system.symbols import TIME
 from derive.system.system import System
 

@@ -7,8 +7,8 @@ from itertools import combinations_with_replacement, count, islice, product
 
 import sympy as sp
 
-from derive.formulas.line_breaks import latex_rows, width_of
 from derive.formulas.syntax import is_sum, summands
+from derive.formulas.typeset.line_breaks import latex_rows, width_of
 from derive.handout.document import WIDTH, Block, Equation, Paragraph, in_text
 from derive.handout.notation import Notation
 from derive.mechanics.energies.reduction import collected

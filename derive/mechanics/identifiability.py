@@ -15,8 +15,8 @@ from math import lcm
 import numpy as np
 import sympy as sp
 
-from derive.formulas.residue_values import Evaluation, Point, branches
-from derive.formulas.residues import (
+from derive.formulas.evaluation.residue_values import Evaluation, Point, branches
+from derive.formulas.evaluation.residues import (
     PRIME,
     NoRootError,
     Residues,

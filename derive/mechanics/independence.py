@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from derive.formulas.numeric import Evaluator, NoValueError
+from derive.formulas.evaluation.numeric import Evaluator, NoValueError
 from derive.system.parts import SystemDefinitionError
 from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME

@@ -6,7 +6,7 @@ from html import escape
 
 import sympy as sp
 
-from derive.formulas.typesetting import Formula
+from derive.formulas.typeset.typesetting import Formula
 from derive.mechanics.cyclic_coordinates import CyclicCoordinates
 
 WORDS = {

@@ -7,7 +7,7 @@ from itertools import chain
 
 import sympy as sp
 
-from derive.formulas.typesetting import Formula
+from derive.formulas.typeset.typesetting import Formula
 from derive.system.checks import check
 from derive.system.constraints import Eliminated, constraints
 from derive.system.declaration import Declaration

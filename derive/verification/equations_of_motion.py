@@ -7,8 +7,8 @@ from functools import partial
 
 import sympy as sp
 
-from derive.formulas.expansion import is_expandable
-from derive.formulas.numeric import independent, solved
+from derive.formulas.evaluation.numeric import independent, solved
+from derive.formulas.proofs.expansion import is_expandable
 from derive.formulas.syntax import ExpressionError
 from derive.verification.constrained_motions import equations
 from derive.verification.engine import joined

@@ -7,9 +7,9 @@ from derive.reading.document import Document
 from derive.reading.documents import KINDS, read_document
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.reader import LANGUAGES, read_program
-from derive.verification.documents.hints import Hints
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import Hints
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from derive.verification.documents.program_judgement import judge_program
 from derive.verification.report.document import judge_report
 from derive.verification.report.judgement import OrderOf

@@ -16,8 +16,13 @@ from derive.system.system import System
 from derive.verification.derived import QUANTITIES
 from derive.verification.equations_of_motion import judge_set
 from derive.verification.model import Model
-from derive.verification.multipliers import with_multipliers
-from derive.verification.notation import meanings, names_of_coordinates, normalised, parsed
+from derive.verification.notation import (
+    meanings,
+    names_of_coordinates,
+    normalised,
+    parsed,
+    with_multipliers,
+)
 from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict
 from solvers.io.toml_input import InputError

@@ -9,9 +9,9 @@ from typing import Self
 import sympy as sp
 
 from derive.formulas.derivative import derivative
+from derive.formulas.evaluation.numeric import Evaluator, NoValueError, solved
+from derive.formulas.evaluation.sampling import STATES, is_small, near_zeros, sample
 from derive.formulas.expression import FUNCTIONS, Scope, Value
-from derive.formulas.numeric import Evaluator, NoValueError, solved
-from derive.formulas.sampling import STATES, is_small, near_zeros, sample
 from derive.formulas.switching import turning_arguments
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation

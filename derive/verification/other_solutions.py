@@ -5,8 +5,8 @@ from itertools import islice
 
 import sympy as sp
 
-from derive.formulas.numeric import mp
-from derive.formulas.sampling import changes_of_sign
+from derive.formulas.evaluation.numeric import mp
+from derive.formulas.evaluation.sampling import changes_of_sign
 from derive.verification.engine import State
 from derive.verification.model import Model, depends_on
 

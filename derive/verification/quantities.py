@@ -7,7 +7,7 @@ from functools import partial
 
 from derive.formulas.expression import number
 from derive.formulas.syntax import ExpressionError
-from derive.verification.advice import advised
+from derive.verification.corrections.advice import advised
 from derive.verification.derived import QUANTITIES, foreign_symbols
 from derive.verification.engine import UNDECIDED, joined
 from derive.verification.equations_of_motion import judge_equation

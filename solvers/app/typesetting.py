@@ -1,6 +1,6 @@
 """Equations of motion as mathematics on pages."""
 
-from derive.formulas.typesetting import Formula
+from derive.formulas.typeset.typesetting import Formula
 from solvers.equations.module import GeneratedModule, equations_of_motion
 
 

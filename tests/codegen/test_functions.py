@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from derive.verification.documents.hints import hints
+from derive.verification.documents.letters.hints import hints
 from derive.verification.files import judge_file
 from derive.verification.hand import judge
 from solvers.app.modules import load

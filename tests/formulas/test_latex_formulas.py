@@ -3,11 +3,11 @@
 import pytest
 import sympy as sp
 
-from derive.formulas.latex import latex
-from derive.formulas.lettering import name_latex
-from derive.formulas.line_breaks import latex_rows, width_of
 from derive.formulas.syntax import syntax_tree
-from derive.formulas.textbook_order import TextbookOrder
+from derive.formulas.typeset.latex import latex
+from derive.formulas.typeset.lettering import name_latex
+from derive.formulas.typeset.line_breaks import latex_rows, width_of
+from derive.formulas.typeset.textbook_order import TextbookOrder
 
 m, g, length, x, y, v, a = sp.symbols("m g l x y v a", positive=True)
 ORDER = TextbookOrder(

@@ -11,8 +11,8 @@ import pytest
 import sympy as sp
 
 from derive import Derivation
-from derive.formulas import typesetting
-from derive.formulas.typesetting import Formula
+from derive.formulas.typeset import typesetting
+from derive.formulas.typeset.typesetting import Formula
 from derive.verification.report.judgement import EQUATIONS
 
 #: Names of the report, and their handwritten form: letter, dots, indices.

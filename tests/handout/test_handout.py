@@ -17,9 +17,9 @@ from folders import ROOT
 
 from derive import Derivation, Parameter, load, names
 from derive.commands.derive import main
+from derive.formulas.evaluation.numeric import Evaluator
+from derive.formulas.evaluation.sampling import STATES, sample
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.formulas.numeric import Evaluator
-from derive.formulas.sampling import STATES, sample
 from derive.handout.document import Code, Document, Equation, Paragraph
 from derive.handout.exercises import with_exercises
 from derive.handout.formats.characters import declarations

@@ -10,9 +10,9 @@ from derive.handout.document import Paragraph
 from derive.handout.sections import document
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
-from derive.verification.documents.hints import hints
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import hints
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 
 SWING = """
 title = "Pendulum in Cartesian coordinates"

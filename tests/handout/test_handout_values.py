@@ -11,7 +11,7 @@ import sympy as sp
 from latex_trees import show
 
 from derive import Derivation, load, names, reduced
-from derive.formulas.lettering import lettering
+from derive.formulas.typeset.lettering import lettering
 from derive.handout.formats.tex import equation_rows
 from derive.handout.notation import Notation
 from derive.handout.sections import document, with_letters

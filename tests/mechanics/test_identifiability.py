@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, load, velocity
-from derive.formulas.residue_values import Evaluation, Point
-from derive.formulas.residues import PRIME, NoRootError, Series, echelon, null_space
+from derive.formulas.evaluation.residue_values import Evaluation, Point
+from derive.formulas.evaluation.residues import PRIME, NoRootError, Series, echelon, null_space
 from derive.system.parts import SystemDefinitionError
 
 x = sp.Symbol("x", real=True)

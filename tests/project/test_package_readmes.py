@@ -14,8 +14,8 @@ from snippets import assert_is_printed, run_snippet
 
 import generated.double_pendulum as dp
 from derive.codegen.generated_folder import Tree
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
-from derive.verification.documents.table import document_record
+from derive.verification.documents.pages.table import document_record
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from derive.verification.hand import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main

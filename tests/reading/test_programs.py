@@ -11,11 +11,11 @@ import sympy as sp
 
 from derive import Derivation, load
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.reading.programs.degrees import starts_in_degrees
+from derive.reading.programs.findings.degrees import starts_in_degrees
 from derive.reading.programs.program import Finding, Program
 from derive.reading.programs.reader import read_program
-from derive.reading.programs.trees import Name, Number
-from derive.reading.programs.writing import cleaned
+from derive.reading.programs.syntax.trees import Name, Number
+from derive.reading.programs.syntax.writing import cleaned
 
 
 @cache

@@ -15,7 +15,7 @@ from formula_truth import formulas, is_right
 
 from derive import Derivation, load
 from derive.reading.documents import read_document
-from derive.verification.advice import MAX_LENGTH
+from derive.verification.corrections.advice import MAX_LENGTH
 from derive.verification.documents.judgement import judge_document
 from derive.verification.hand import judge
 from derive.verification.model import Model

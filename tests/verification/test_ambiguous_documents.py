@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.hints import hints
-from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.letters.hints import hints
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.files import judge_file
 from solvers.app.cli import main
 from solvers.runge_kutta.order_conditions import order

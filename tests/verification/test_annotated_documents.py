@@ -13,11 +13,11 @@ import pytest
 from derive.reading.document import Document
 from derive.reading.documents import read_document
 from derive.reading.latex.reader import macros_of
-from derive.verification.documents.annotation import annotate, check_annotation
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
-from derive.verification.documents.latex_notes import latex_notes
-from derive.verification.documents.latex_text import escaped, formula
-from derive.verification.documents.page import page
+from derive.verification.documents.pages.annotation import annotate, check_annotation
+from derive.verification.documents.pages.latex_notes import latex_notes
+from derive.verification.documents.pages.latex_text import escaped, formula
+from derive.verification.documents.pages.page import page
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from solvers.io.toml_input import InputError
 
 HOSTILE = r"\input{x} & 100% of {it_is} <script>alert(1)</script> # ~ ^ θ̇ ẋ é \end{document} 中"

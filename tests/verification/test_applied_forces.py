@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.formulas.expression import parse
-from derive.verification.documents.judged import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
 from derive.verification.files import judge_file
 from solvers.runge_kutta.order_conditions import order
 

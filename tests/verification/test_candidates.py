@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from derive.system.catalogue import load
-from derive.verification.documents.candidates import Candidate, candidates, loads
-from derive.verification.documents.letters import Letters
-from derive.verification.documents.matching import Match
-from derive.verification.documents.rates import order, stem
+from derive.verification.documents.letters.candidates import Candidate, candidates, loads
+from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.numbers.matching import Match
+from derive.verification.documents.text import order, stem
 
 USUAL = Candidate(load("single_pendulum"), ("phi",), ((1,),), (0,), {"m": "m", "l": "l", "g": "g"})
 UPRIGHT = replace(USUAL, offsets=(2,))

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from derive.reading.documents import read_document
-from derive.verification.documents.hints import hints
-from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import hints
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 
 # the shipped disc, with the lean phi, the heading psi and the turn chi
 MULTIPLIERS = r"""

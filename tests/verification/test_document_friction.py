@@ -5,8 +5,8 @@ from pathlib import Path
 from derive import Derivation, load
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
-from derive.verification.documents.hints import hints
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import hints
 
 SPHERICAL = """
 title = "Spherical pendulum with friction"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.judged import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
 from derive.verification.files import judge_file
 from solvers.runge_kutta.order_conditions import order
 

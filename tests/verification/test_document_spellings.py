@@ -9,9 +9,9 @@ from derive.reading.documents import read_document
 from derive.reading.latex.reader import formulas
 from derive.verification.documents import judgement
 from derive.verification.documents.interpretation import Work
-from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.judgement import judge_document
-from derive.verification.documents.letter_search import letters_of
+from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.documents.statements import Occurrence, Translated, translated
 
 PENDULUM = r"""

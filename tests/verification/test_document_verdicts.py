@@ -11,9 +11,9 @@ from document_mutants import Mutant, mutants
 from shared_documents import shared
 
 from derive.reading.documents import read_document
-from derive.verification.documents.hints import hints
-from derive.verification.documents.judged import JudgedDocument
-from derive.verification.documents.page import page
+from derive.verification.documents.letters.hints import hints
+from derive.verification.documents.pages.page import page
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.files import judge_file
 from solvers.io.toml_input import InputError
 from solvers.runge_kutta.order_conditions import order

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from derive.verification.documents.corrections import in_brackets, inserted, places
 from derive.verification.documents.jets import Jet, evaluated
-from derive.verification.documents.near import is_near
+from derive.verification.documents.numbers.single_mistakes import is_near
+from derive.verification.documents.rules.corrections import in_brackets, inserted, places
 from derive.verification.verdict import Correction
 
 SPEED = np.linspace(0.3, 1.7, 8)[None]

@@ -1,7 +1,7 @@
 """Programs as people write them: measurements of a state, limits, inputs, callbacks of frames."""
 
 from derive.reading.programs.reader import read_program
-from derive.verification.documents.judged import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.documents.program_judgement import judge_program
 
 ROD = """

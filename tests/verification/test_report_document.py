@@ -10,7 +10,7 @@ from shared_documents import shared
 from derive.reading.documents import read_document
 from derive.reading.latex.reader import formulas
 from derive.reading.latex.tree import Statement
-from derive.verification.documents.judged import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
 from derive.verification.documents.translation import Notation, Translator
 from derive.verification.report.document import OTHER, judge_report
 from derive.verification.report.judgement import EQUATIONS, verdict

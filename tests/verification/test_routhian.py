@@ -7,13 +7,13 @@ import pytest
 import sympy as sp
 
 from derive import Constraint, Coordinate, Derivation, Parameter, PointMass, System, load
-from derive.formulas.numeric import Evaluator
-from derive.formulas.sampling import is_small, sample
+from derive.formulas.evaluation.numeric import Evaluator
+from derive.formulas.evaluation.sampling import is_small, sample
 from derive.handout.writing import write_document
 from derive.mechanics.routhian import Routhian
 from derive.reading.documents import read_document
-from derive.verification.documents.hints import hints
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import hints
 from derive.verification.hand import judge
 from derive.verification.verdict import Verdict
 

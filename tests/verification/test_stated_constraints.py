@@ -7,9 +7,9 @@ import pytest
 from derive import Derivation, load
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
-from derive.verification.documents.hints import hints
-from derive.verification.documents.judged import JudgedDocument
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import hints
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 
 PENDULUM = r"""
 A bob at $(x, y)$ is subject to the constraint $x^2 + y^2 = l^2$.

@@ -7,9 +7,9 @@ from derivations import DERIVATIONS
 
 from derive.reading.documents import read_document
 from derive.system.catalogue import load
-from derive.verification.documents.hints import Hints, hints
-from derive.verification.documents.judged import JudgedFormula
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.hints import Hints, hints
+from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
 
 
 def judged(folder: Path, text: str, system: str, **names: str) -> tuple[JudgedFormula, ...]:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
-from derive.verification.documents.table import document_lines, document_record
+from derive.verification.documents.pages.table import document_lines, document_record
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from solvers.app.cli import main
 
 PENDULUM = r"""

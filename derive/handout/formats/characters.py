@@ -3,7 +3,7 @@
 import unicodedata
 from collections.abc import Iterable
 
-from derive.formulas.lettering import GREEK
+from derive.formulas.typeset.lettering import GREEK
 
 SPECIAL = {
     **{character: rf"\{character}" for character in "#$%&_{}"},

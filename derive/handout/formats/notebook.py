@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from derive.formulas.latex import latex
+from derive.formulas.typeset.latex import latex
 from derive.handout.document import Block, Code, Document, Equation, Paragraph, Table, pieces
 from derive.handout.formats.tex import aligned
 

@@ -3,7 +3,7 @@
 from html import escape
 from pathlib import Path
 
-from derive.formulas.typesetting import elements
+from derive.formulas.typeset.typesetting import elements
 from derive.handout.document import Block, Code, Document, Equation, Paragraph, Table, pieces
 from derive.handout.formats.tex import aligned
 

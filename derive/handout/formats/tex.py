@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from textwrap import TextWrapper
 
-from derive.formulas.latex import latex
-from derive.formulas.line_breaks import latex_rows
+from derive.formulas.typeset.latex import latex
+from derive.formulas.typeset.line_breaks import latex_rows
 from derive.handout.document import WIDTH, Block, Code, Document, Equation, Paragraph, Table, pieces
 from derive.handout.formats.characters import declarations, escaped
 

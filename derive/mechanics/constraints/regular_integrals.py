@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from derive.formulas.trigonometric_field import TrigonometricField
+from derive.formulas.proofs.trigonometric_field import TrigonometricField
 
 #: Most integrals of which combinations are tried.
 MOST = 12

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.sampling import is_small
+from derive.formulas.evaluation.sampling import is_small
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations
 from derive.mechanics.linearisation.free_changes import tidied

@@ -6,8 +6,8 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.evaluation.sampling import is_small
 from derive.formulas.expression import FUNCTIONS, number
-from derive.formulas.sampling import is_small
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced

@@ -27,16 +27,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from derive.reading.latex.build import Build
-from derive.reading.latex.expansion import expanded
-from derive.reading.latex.layout import Layout
-from derive.reading.latex.macros import Macro, macros_of
-from derive.reading.latex.pairs import pairs
-from derive.reading.latex.parts import Symbol
-from derive.reading.latex.rows import flattened, statements
-from derive.reading.latex.spellings import with_new_fonts, with_unicode_scripts
-from derive.reading.latex.terminals import Terminals
-from derive.reading.latex.tokens import Token, Unread, tokenize
+from derive.reading.latex.grammar.build import Build
+from derive.reading.latex.grammar.parts import Symbol
+from derive.reading.latex.grammar.terminals import Terminals
+from derive.reading.latex.layout.expansion import expanded
+from derive.reading.latex.layout.layout import Layout
+from derive.reading.latex.layout.macros import Macro, macros_of
+from derive.reading.latex.layout.pairs import pairs
+from derive.reading.latex.layout.rows import flattened, statements
+from derive.reading.latex.layout.spellings import with_new_fonts, with_unicode_scripts
+from derive.reading.latex.layout.tokens import Token, Unread, tokenize
 from derive.reading.latex.tree import Letter, Node, Span, Statement, Unreadable
 
 __all__ = ["Macro", "formulas", "macros_of"]

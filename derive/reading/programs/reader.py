@@ -3,13 +3,13 @@
 import re
 from pathlib import Path
 
-from derive.reading.programs.context import Context
-from derive.reading.programs.judged import Findings
+from derive.reading.programs.evaluation.context import Context
+from derive.reading.programs.findings.findings import Findings
+from derive.reading.programs.findings.regions import prepare, regions
 from derive.reading.programs.languages import cpp, fortran, javascript, julia, matlab, python
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import Program, ProgramError
-from derive.reading.programs.regions import prepare, regions
-from derive.reading.programs.statements import Translator
+from derive.reading.programs.syntax.statements import Translator
 from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import read_bytes
 

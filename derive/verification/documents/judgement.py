@@ -8,22 +8,30 @@ from derive.reading.document import Display, Document
 from derive.reading.latex.reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
 from derive.reading.latex.walking import nodes
-from derive.verification.documents.alternatives import alternatives
-from derive.verification.documents.constraints import WAY_OUT
-from derive.verification.documents.convention import convention
-from derive.verification.documents.corrections import corrected
-from derive.verification.documents.corrections import written as latex_of
-from derive.verification.documents.hints import Hints
-from derive.verification.documents.interpretation import Work, interpretation, judge_of
-from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
-from derive.verification.documents.letter_search import letters_of
-from derive.verification.documents.rates import RATES, stem
-from derive.verification.documents.side_verdict import SideVerdict
+from derive.verification.documents.interpretation import (
+    Work,
+    alternatives,
+    interpretation,
+    judge_of,
+)
+from derive.verification.documents.letters.constraints import WAY_OUT
+from derive.verification.documents.letters.convention import convention
+from derive.verification.documents.letters.hints import Hints
+from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.pages.verdicts_in_place import (
+    Alternative,
+    JudgedDocument,
+    JudgedFormula,
+)
+from derive.verification.documents.rules.corrections import corrected
+from derive.verification.documents.rules.corrections import written as latex_of
+from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
     translated,
 )
+from derive.verification.documents.text import RATES, stem
 from derive.verification.documents.translation import Translator
 from solvers.io.suggestion import did_you_mean
 

@@ -4,13 +4,16 @@ from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Equation, Finding, Program
-from derive.verification.documents.alternatives import alternatives
-from derive.verification.documents.convention import convention
-from derive.verification.documents.corrections import inserted, places
-from derive.verification.documents.hints import Hints
-from derive.verification.documents.interpretation import interpretation, judge_of
-from derive.verification.documents.judged import Alternative, JudgedDocument, JudgedFormula
-from derive.verification.documents.side_verdict import SideVerdict
+from derive.verification.documents.interpretation import alternatives, interpretation, judge_of
+from derive.verification.documents.letters.convention import convention
+from derive.verification.documents.letters.hints import Hints
+from derive.verification.documents.pages.verdicts_in_place import (
+    Alternative,
+    JudgedDocument,
+    JudgedFormula,
+)
+from derive.verification.documents.rules.corrections import inserted, places
+from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.documents.text import Text
 from derive.verification.verdict import VerdictName

@@ -17,8 +17,7 @@ from derive.reading.latex.tree import (
     Unreadable,
 )
 from derive.reading.latex.walking import has_index, indexed, letters, nodes
-from derive.verification.documents.rates import stem
-from derive.verification.documents.text import Text
+from derive.verification.documents.text import Text, stem
 from derive.verification.documents.translation import Notation, Translator, UntranslatableError
 
 WORD = re.compile(r"[A-Za-z_]\w*")

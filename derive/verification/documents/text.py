@@ -1,5 +1,6 @@
 """Formulas in our syntax that remember which LaTeX each of their parts comes from."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -45,3 +46,17 @@ def joined_text(binding: int, *pieces: Text | str) -> Text:
         else:
             text += piece
     return Text(text, binding, tuple(parts))
+
+
+#: Endings of the names of a quantity and of its rates.
+RATES = ("", "_dot", "_ddot", "_dddot")
+
+
+def stem(name: str) -> str:
+    """The name of a quantity without the ending of its rate."""
+    return re.sub(r"_d{1,3}ot\Z", "", name)
+
+
+def order(name: str) -> int:
+    """The order of a rate: 0 for a quantity, 1 for its rate."""
+    return RATES.index(name.removeprefix(stem(name)))

@@ -26,8 +26,17 @@ from derive.reading.latex.tree import (
     Tuple,
 )
 from derive.reading.latex.walking import indexed, letters, nodes
-from derive.verification.documents.rates import RATES, order, stem
-from derive.verification.documents.text import ATOM, POWER, PRODUCT, SUM, Text, joined_text
+from derive.verification.documents.text import (
+    ATOM,
+    POWER,
+    PRODUCT,
+    RATES,
+    SUM,
+    Text,
+    joined_text,
+    order,
+    stem,
+)
 
 #: Reciprocals of functions that formulas have.
 RECIPROCALS = {"sec": "cos", "csc": "sin"}

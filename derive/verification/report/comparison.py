@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from html import escape
 
-from derive.formulas.typesetting import Formula
+from derive.formulas.typeset.typesetting import Formula
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.steps import Step
 from derive.verification.verdict import Verdict

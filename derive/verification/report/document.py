@@ -10,7 +10,7 @@ from derive.reading.document import Display, Document
 from derive.reading.latex.reader import macros_of
 from derive.reading.latex.tree import Span, Statement, Unreadable
 from derive.system.catalogue import load
-from derive.verification.documents.judged import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from derive.verification.report.alignment import aligned
 from derive.verification.report.differences import first_difference
 from derive.verification.report.equation import Equation

@@ -1,0 +1,1 @@
+"""Proofs that expressions are zero or positive."""

@@ -1,0 +1,1 @@
+"""Tokens of LaTeX without macros and layout, and the rows of displays."""

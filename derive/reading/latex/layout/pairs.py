@@ -1,0 +1,76 @@
+"""Brackets, braces, bars and environments with their partners."""
+
+from derive.reading.latex.layout.symbols import SLASHES, TIMES
+from derive.reading.latex.layout.tokens import Token, Unread
+
+#: Brackets within brackets.
+MAX_DEPTH = 60
+OPENERS = {"{": "}", "open": "close", "begin": "end"}
+
+
+def pairs(tokens: list[Token]) -> dict[int, int]:
+    """The partner of each bracket, brace, bar and environment that has one.
+
+    Raises
+    ------
+    Unread
+        If more than `MAX_DEPTH` of them stand within one another.
+    """
+    partner: dict[int, int] = {}
+    stack: list[int] = []
+    for at, token in enumerate(tokens):
+        if token.kind in OPENERS:
+            stack.append(at)
+        elif token.kind == "bar":
+            is_open = bool(stack) and tokens[stack[-1]].kind == "bar"
+            if is_open and not _awaits(tokens, at, partner):
+                _join(partner, stack.pop(), at)
+            else:
+                stack.append(at)
+        elif token.kind in ("}", "close", "end"):
+            while stack and tokens[stack[-1]].kind == "bar":
+                stack.pop()
+            if token.kind == "end" and any(_fits(tokens[one], token) for one in stack):
+                while tokens[stack[-1]].kind == "open":  # never closed, in one of the rows
+                    stack.pop()
+            if stack and _fits(tokens[stack[-1]], token):
+                _join(partner, stack.pop(), at)
+        if len(stack) > MAX_DEPTH:
+            raise Unread(f"more than {MAX_DEPTH} brackets within one another")
+    return partner
+
+
+def _join(partner: dict[int, int], start: int, end: int) -> None:
+    partner[start], partner[end] = end, start
+
+
+def _fits(start: Token, end: Token) -> bool:
+    return OPENERS.get(start.kind) == end.kind and (start.kind == "{" or start.text == end.text)
+
+
+def _awaits(tokens: list[Token], at: int, partner: dict[int, int]) -> bool:
+    """Whether an expression must follow the tokens before a place."""
+    for before in range(at - 1, max(-1, at - 9), -1):
+        token = tokens[before]
+        if token.kind == "bar":
+            return partner.get(before, at) >= before
+        if token.kind not in ("space", "gap"):
+            return is_operator(token) or token.kind in ("relation", "open", "{")
+    return True
+
+
+def is_operator(token: Token) -> bool:
+    """Whether a token is a sign between two terms or factors."""
+    return token.kind in ("+", "-", "*", "/") or (
+        token.kind == "command" and (token.text in TIMES or token.text in SLASHES)
+    )
+
+
+def inside(start: int, end: int, partner: dict[int, int]) -> list[int]:
+    """Places between two brackets, but for those in further brackets between them."""
+    places = []
+    at = start + 1
+    while at < end:
+        places.append(at)
+        at = max(at, partner.get(at, at)) + 1
+    return places

@@ -1,0 +1,67 @@
+"""Other spellings of LaTeX: characters of Unicode, and fonts from before LaTeX."""
+
+import unicodedata
+from dataclasses import replace
+from itertools import groupby
+
+from derive.reading.latex.layout.symbols import COMBINING
+from derive.reading.latex.layout.tokens import Token, Unread, script_of, tokenize
+
+#: Fonts that hold to the end of their braces.
+OLD_FONTS = {
+    "rm": "mathrm", "bf": "mathbf", "cal": "mathcal", "it": "mathit", "sf": "mathsf",
+    "tt": "mathtt",
+}  # fmt: skip
+
+
+def with_new_fonts(tokens: list[Token]) -> list[Token]:
+    r"""Tokens in which ``{\bf r}`` is ``\mathbf{r}``."""
+    result: list[Token] = []
+    for token in tokens:
+        if token.kind == "command" and token.text in OLD_FONTS:
+            brace = max(0, len(result) - 1)
+            while brace and result[brace].kind == "space":
+                brace -= 1
+            if not result or result[brace].kind != "{":
+                raise Unread(rf"\{token.text} does not stand behind a brace")
+            font = replace(token, text=OLD_FONTS[token.text], span=result[brace].span)
+            result.insert(brace, font)
+        else:
+            result.append(token)
+    return result
+
+
+def with_unicode_scripts(tokens: list[Token]) -> list[Token]:
+    """The tokens with accents before their letters, and raised text as an exponent."""
+    result: list[Token] = []
+    for kind, group in groupby(tokens, _script):
+        marked = list(group)
+        if kind == "accent":
+            letter = [result.pop()] if result else []
+            if not letter or letter[0].kind not in ("letter", "command"):
+                raise Unread(f"the accent {marked[0].text!r} has no letter")
+            for token in marked:
+                start, end = letter[0].span[0], token.span[1]
+                accent = Token("command", COMBINING[token.text], (start, end))
+                letter = [accent, *_braced(letter)[:-1], Token("}", "}", (end, end))]
+            result += letter
+        elif kind:
+            span = marked[0].span[0], marked[-1].span[1]
+            simple = [unicodedata.normalize("NFKC", token.text) for token in marked]
+            inner = [replace(t, span=span) for text in simple for t in tokenize(text)]
+            result += [Token(kind, kind, span), *_braced(inner)]
+        else:
+            result += marked
+    return result
+
+
+def _script(token: Token) -> str:
+    """Whether a character is an accent, raised or lowered."""
+    if token.kind != token.text or token.kind.isascii():
+        return ""
+    return "accent" if token.text in COMBINING else script_of(token.text)
+
+
+def _braced(tokens: list[Token]) -> list[Token]:
+    start, end = tokens[0].span[0], tokens[-1].span[1]
+    return [Token("{", "{", (start, start)), *tokens, Token("}", "}", (end, end))]

@@ -1,0 +1,1 @@
+"""Programs followed statement by statement: the values of their variables."""

@@ -1,0 +1,58 @@
+"""Functions of arrays, as languages and libraries name them."""
+
+from collections.abc import Sequence
+
+from derive.reading.programs.evaluation.arrays import entries, flat, product
+from derive.reading.programs.evaluation.mathematics import IDENTITIES, applied, split
+from derive.reading.programs.languages.language import Language
+from derive.reading.programs.syntax.trees import Array, Call, Number, Opaque, Operation, Tree
+
+#: Functions that place arrays one behind the other.
+STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
+#: Methods that return the array, perhaps in another shape or type.
+RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose", "astype", "item"}
+
+
+def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> Tree | None:
+    """The value of a function of arrays, or of a method of `base`; None for others."""
+    library, name = split(path)
+    is_method = base is not None and library not in ("np", "numpy", "jnp")
+    match name, call.arguments:
+        case "dot", (right,) if base is not None:
+            return product(call.line, base, right, language)
+        case ("dot" | "matmul", (left, right)):
+            return product(call.line, left, right, language)
+        case ("solve" | "linsolve" | "mldivide", (matrix, column)):
+            return Operation(call.line, "solve", (matrix, flat(column)))
+        case ("inv" | "pinv" | "inverse", (matrix,)):
+            return Operation(call.line, "inverse", (matrix,))
+        case "reshape", shape if is_method and base is not None:
+            is_row = shape[-1:] in ((Number(0, "1"),), (Operation(0, "-", (Number(0, "1"),)),))
+            return flat(base) if is_row else Opaque(call.line, "another shape is not followed")
+        case _ if is_method and base is not None and name in RESHAPED:
+            return flat(base)
+        case _, (first, *rest) if name in STACKED and (stacked := _stacked(first, rest)):
+            return stacked
+        case _, (first, *rest) if name in IDENTITIES:
+            return (
+                first if not rest or isinstance(first, Array) else Array(call.line, call.arguments)
+            )
+    return None
+
+
+def of_entries(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
+    """The value of a function of mathematics, of each entry of an array."""
+    if len(arguments) == 1 and (items := entries(arguments[0])) is not None:
+        values = [applied(line, path, (one,)) for one in items]
+        return Array(line, tuple(v for v in values if v)) if all(values) else None
+    return applied(line, path, arguments)
+
+
+def _stacked(first: Tree, rest: Sequence[Tree]) -> Tree | None:
+    """Arrays one behind the other."""
+    arrays = [*first.items] if isinstance(first, Array) and not rest else [first, *rest]
+    parts = [entries(one) for one in arrays]
+    if not arrays or all(part is None for part in parts):
+        return first if isinstance(first, Array) and not rest else None
+    rows = [part if part is not None else (one,) for one, part in zip(arrays, parts, strict=True)]
+    return Array(first.line, tuple(one for row in rows for one in row))

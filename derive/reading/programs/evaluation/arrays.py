@@ -1,0 +1,124 @@
+"""Operations on arrays, entry by entry, as far as their entries are known."""
+
+from collections.abc import Sequence
+
+from derive.reading.programs.languages.language import Language
+from derive.reading.programs.syntax.trees import Array, Item, Name, Number, Operation, Result, Tree
+
+
+def combined(line: int, operator: str, operands: Sequence[Tree], language: Language) -> Tree:
+    """The value of an operation."""
+    if operator == "transpose" and not is_array(operands[0]):
+        return operands[0]  # a number, or an array in one direction
+    if not any(map(is_array, operands)):
+        return Operation(line, operator, tuple(operands))
+    values = [Array(one.line, entries(one) or ()) if is_array(one) else one for one in operands]
+    if operator == "transpose":
+        return transposed(values[0])
+    if len(values) == 1:
+        return _each(line, operator, values, language)
+    left, right = values
+    if operator == "@" or (operator == "*" and language.has_matrix_products and is_square(left)):
+        return product(line, left, right, language)
+    if operator in ("+", "-", "*", "/", "**"):
+        return _each(line, operator, values, language)
+    return Operation(line, operator, tuple(values))
+
+
+def is_array(tree: Tree) -> bool:
+    """Whether the entries of a value are known."""
+    return isinstance(tree.value if isinstance(tree, Result) else tree, Array)
+
+
+def is_square(tree: Tree) -> bool:
+    """Whether a value is a matrix of as many rows as columns."""
+    return isinstance(tree, Array) and all(
+        isinstance(row, Array) and len(row.items) == len(tree.items) for row in tree.items
+    )
+
+
+def entries(tree: Tree) -> tuple[Tree, ...] | None:
+    """The entries of an array, or of the solution of a linear system; None if not known."""
+    match tree:
+        case Array(items=items):
+            return items
+        case Result(call=call, value=value):
+            found = entries(value)
+            if found is None:
+                return None
+            numbers = (Number(tree.line, str(i)) for i in range(len(found)))
+            return tuple(
+                Result(one.line, Item(tree.line, call, (number,)), one)
+                for number, one in zip(numbers, found, strict=True)
+            )
+        case Operation(operator="solve", operands=(Array(items=rows), _)):
+            return tuple(
+                Item(tree.line, tree, (Number(tree.line, str(i)),)) for i in range(len(rows))
+            )
+    return None
+
+
+def flat(tree: Tree) -> Tree:
+    """A column of rows of one entry as a plain array."""
+    if isinstance(tree, Array) and tree.items:
+        rows = [one.items if isinstance(one, Array) else () for one in tree.items]
+        if all(len(row) == 1 for row in rows):
+            return Array(tree.line, tuple(row[0] for row in rows))
+        if len(tree.items) == 1 and rows[0]:
+            return tree.items[0]
+    return tree
+
+
+def transposed(tree: Tree) -> Tree:
+    """A matrix with rows and columns exchanged; a plain array stays as it is."""
+    if isinstance(tree, Array) and all(isinstance(row, Array) for row in tree.items):
+        rows = [row.items for row in tree.items if isinstance(row, Array)]
+        if len({len(row) for row in rows}) == 1:
+            return Array(tree.line, tuple(Array(tree.line, one) for one in zip(*rows, strict=True)))
+    return tree
+
+
+def product(line: int, left: Tree, right: Tree, language: Language) -> Tree:
+    """The product of a matrix and a column, or of two columns."""
+    if isinstance(left, Operation) and left.operator == "inverse":
+        return Operation(line, "solve", (left.operands[0], flat(right)))
+    right = flat(right)
+    if is_square(left) and isinstance(left, Array) and isinstance(right, Array):
+        return Array(line, tuple(_dot(line, row, right, language) for row in left.items))
+    if isinstance(left, Array) and isinstance(right, Array):
+        return _dot(line, left, right, language)
+    return Operation(line, "@", (left, right))
+
+
+def _dot(line: int, left: Tree, right: Array, language: Language) -> Tree:
+    if not isinstance(left, Array) or len(left.items) != len(right.items):
+        return Operation(line, "@", (left, right))
+    terms = [
+        combined(line, "*", pair, language) for pair in zip(left.items, right.items, strict=True)
+    ]
+    total = terms[0]
+    for term in terms[1:]:
+        total = Operation(line, "+", (total, term))
+    return total
+
+
+def _each(line: int, operator: str, values: Sequence[Tree], language: Language) -> Tree:
+    values = [flat(one) for one in values]
+    lengths = {len(one.items) for one in values if isinstance(one, Array)}
+    if len(lengths) > 1:
+        return Operation(line, operator, tuple(values))
+    (length,) = lengths
+    rows = [_repeated(one, length, operator in "+-", language.first_index) for one in values]
+    return Array(
+        line,
+        tuple(combined(line, operator, row, language) for row in zip(*rows, strict=True)),
+    )
+
+
+def _repeated(value: Tree, length: int, is_sum: bool, first: int) -> Sequence[Tree]:
+    """The operands for each entry; an array is multiplied by numbers, and added to arrays."""
+    if isinstance(value, Array):
+        return value.items
+    if is_sum and isinstance(value, Name):
+        return [Name(value.line, f"{value.path}[{i + first}]") for i in range(length)]
+    return (value,) * length

@@ -1,0 +1,179 @@
+"""Calls in programs: of functions of the program, of mathematics and of arrays."""
+
+from dataclasses import dataclass
+
+from derive.reading.programs.evaluation.array_functions import of_arrays, of_entries
+from derive.reading.programs.evaluation.context import APPENDING, Context, assigned
+from derive.reading.programs.evaluation.elementwise import mapped
+from derive.reading.programs.evaluation.mathematics import split
+from derive.reading.programs.evaluation.values import Values, root
+from derive.reading.programs.syntax.code import Definition, Lambda, Return, Statement
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Call,
+    Item,
+    Member,
+    Name,
+    Number,
+    Opaque,
+    Result,
+    Tree,
+)
+
+#: Calls within calls that are followed.
+MAX_CALLS = 8
+#: Nodes of the largest value of a function of values of functions.
+MAX_NESTED = 500
+CONDITION = "the value depends on a condition"
+
+
+@dataclass(frozen=True)
+class Step:
+    """A value that a variable takes."""
+
+    line: int
+    path: str
+    value: Tree
+
+
+class Calls(Values):
+    """The values of calls; those of functions of the program are followed."""
+
+    def __init__(self, context: Context, owner: str = "") -> None:
+        super().__init__(context, owner)
+        self.steps: list[Step] = []
+        #: The value that is returned, and values that are returned under conditions.
+        self.returned: Tree | None = None
+        self.other_returns: list[Return] = []
+        self.calls: list[Call] = []
+        self.declared: set[str] = set()
+        #: Names with one numeric value, which stay letters.
+        self.fixed: set[str] = set()
+        self.depth = 0
+
+    def run(self, body: tuple[Statement, ...]) -> None:
+        """Follow statements in order."""
+        raise NotImplementedError
+
+    def assign(self, line: int, target: Tree, value: Tree) -> None:
+        """Give a target, or several, a value."""
+        raise NotImplementedError
+
+    def called(self, call: Call) -> Tree:
+        """The value of a call: of mathematics, of arrays, or of a function of the program."""
+        path = self.place(call.function) or ""
+        if isinstance(other := self.variables.get(path), Name):
+            path = other.path  # another name of a function
+        arguments = tuple(map(self.value, call.arguments))
+        name = split(path)[1]
+        made = Call(call.line, call.function, arguments, call.keywords)
+        self.calls.append(made)
+        if (function := self._function(call.function, path)) is not None:
+            return self._inlined(made, function, call.arguments)
+        if self._is_entry(call, path):
+            return self.value(Item(call.line, call.function, call.arguments))
+        if (value := of_entries(call.line, path, arguments)) is not None:
+            return value
+        if name == "map" and isinstance(call.function, Member):
+            match arguments:
+                case (Lambda(function=of_entry),):
+                    array = mapped(of_entry, call.function.base)
+                    return made if array is None else self.value(array)
+        if name in APPENDING and isinstance(call.function, Member) and len(arguments) == 1:
+            last = Item(call.line, call.function.base, (Number(call.line, "-1"),))
+            self.assign(call.line, last, arguments[0])
+            return made
+        if not path and isinstance(call.function, Member):
+            path = call.function.name  # the method of a value without a name
+        value = of_arrays(made, path, self._base(call), self.context.language)
+        return made if value is None else value
+
+    def _base(self, call: Call) -> Tree | None:
+        """The object of a method."""
+        function = call.function
+        return self.value(function.base) if isinstance(function, Member) else None
+
+    def _is_entry(self, call: Call, path: str) -> bool:
+        """Whether round brackets contain an index."""
+        if not self.context.language.has_round_indices or not isinstance(call.function, Name):
+            return False
+        return path in self.context.variables or path in self.parameters
+
+    def _function(self, tree: Tree, path: str) -> Definition | None:
+        value = self.variables.get(path)
+        if isinstance(value, Lambda):
+            return value.function
+        return None if path in self.parameters else self.context.function(path, self.owner)
+
+    def _inlined(self, call: Call, function: Definition, given: tuple[Tree, ...]) -> Tree:
+        if self.depth >= MAX_CALLS:
+            return Opaque(call.line, f"calls of {function.name} within calls are not followed")
+        parameters = [one.name for one in function.parameters]
+        if parameters[:1] in (["self"], ["obj"]) and isinstance(call.function, Member):
+            parameters = parameters[1:]
+        own = {*parameters, *function.results}
+        if self.context.language.assigns_locals:
+            own |= {path for path in assigned(function.body) if "." not in path}
+        callee = type(self)(self.context, function.owner or self.owner)
+        callee.depth, callee.parameters = self.depth + 1, {*parameters}
+        changed = assigned(function.body)
+        variables = {k: v for k, v in self.variables.items() if root(k) not in own}
+        named = dict(call.keywords)
+        for index, name in enumerate(parameters):
+            if index < len(call.arguments):
+                variables[name] = call.arguments[index]
+                place = self.place(given[index])
+                if place and changed[name]:
+                    callee.references[name] = place
+                    variables |= {k: v for k, v in self.variables.items() if root(k) == place}
+            elif name in named:
+                variables[name] = self.value(named[name])
+        callee.fixed = self.context.fixed.get(id(function.body), set())
+        callee.variables = variables
+        callee.run(function.body)
+        self.calls += callee.calls
+        self._take_back(callee, own, call)
+        value = callee.result(function)
+        return Result(call.line, call, self._trimmed(call, value))
+
+    def _take_back(self, callee: "Calls", own: set[str], call: Call) -> None:
+        """Take the values of variables that a function changes outside itself."""
+        references = set(callee.references.values())
+        own = (own | callee.declared) - references
+        for key, value in callee.variables.items():
+            if root(key) not in own and self.variables.get(key) is not value:
+                self.variables[key] = value
+        for place in references:
+            array = self._collected(call.line, place)
+            if array is not None:
+                self.assign(
+                    call.line,
+                    Name(call.line, place),
+                    Result(call.line, call, self._trimmed(call, array)),
+                )
+        self.steps += [one for one in callee.steps if root(one.path) not in own]
+
+    def _trimmed(self, call: Call, value: Tree) -> Tree:
+        """A value with large entries left out, in the later stages of a method."""
+        if isinstance(value, Array):
+            items = tuple(self._trimmed(call, one) for one in value.items)
+            return Array(value.line, items)
+        if value.size > MAX_NESTED and _has_results(call):
+            return Opaque(value.line, "the formula is too large")
+        return value
+
+    def result(self, function: Definition) -> Tree:
+        """The value that the function returns."""
+        if self.other_returns:
+            return Opaque(self.other_returns[0].line, CONDITION)
+        if self.returned is not None:
+            return self.returned
+        values = tuple(self.variable(function.line, name) for name in function.results)
+        if len(values) == 1:
+            return values[0]
+        return Array(function.line, values) if values else Opaque(function.line, "no value")
+
+
+def _has_results(tree: Tree) -> bool:
+    """Whether values of functions of the program occur, as in the stages of a method."""
+    return isinstance(tree, Result) or any(map(_has_results, tree.parts))

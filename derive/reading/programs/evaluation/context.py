@@ -1,0 +1,104 @@
+"""What is known about a program before a function of it is followed."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from derive.reading.programs.languages.language import Language
+from derive.reading.programs.program import ProgramError
+from derive.reading.programs.syntax.code import (
+    Assignment,
+    Branch,
+    Definition,
+    Evaluation,
+    Loop,
+    Statement,
+)
+from derive.reading.programs.syntax.trees import Array, Call, Item, Member, Name, Tree
+
+#: Expressions that are followed in one program.
+MAX_STEPS = 60_000
+#: Methods that add an entry to an array.
+APPENDING = ("append", "push", "push_back", "emplace_back")
+
+
+@dataclass
+class Context:
+    """The functions of a program, and its variables that have one value."""
+
+    language: Language
+    functions: dict[str, list[Definition]] = field(default_factory=dict)
+    #: The names that have one numeric value in a function, by the identity of its statements.
+    fixed: dict[int, set[str]] = field(default_factory=dict)
+    #: The values of those with one value in the whole program.
+    constants: dict[str, Tree] = field(default_factory=dict)
+    #: Names that are assigned anywhere.
+    variables: set[str] = field(default_factory=set)
+    #: Names that are assigned once, and their values.
+    shared: dict[str, Tree] = field(default_factory=dict)
+    steps: int = 0
+
+    def spend(self) -> None:
+        """Count a step; `ProgramError` if there are too many."""
+        self.steps += 1
+        if self.steps > MAX_STEPS:
+            raise ProgramError(f"the program takes more than {MAX_STEPS} steps to follow")
+
+    def function(self, path: str, owner: str) -> Definition | None:
+        """The function that a name stands for in a class; None if there is none, or several."""
+        base, _, name = path.rpartition(".")
+        if base not in ("", "self", "this", "obj", owner):
+            return None
+        found = self.functions.get(name, [])
+        own = [one for one in found if one.owner == owner]
+        if len(own or found) != 1:
+            return None
+        return (own or found)[0]
+
+
+def static_path(tree: Tree) -> str:
+    """The name of a target as written, without entries; empty for others."""
+    match tree:
+        case Name(path=path):
+            return path
+        case Member(base=base, name=name):
+            return f"{outer}.{name}" if (outer := static_path(base)) else ""
+        case Item(base=base):
+            return static_path(base)
+    return ""
+
+
+def targets(tree: Tree) -> Iterator[Tree]:
+    """The single targets of an assignment."""
+    if isinstance(tree, Array):
+        for one in tree.items:
+            yield from targets(one)
+    else:
+        yield tree
+
+
+def statements(body: tuple[Statement, ...], *, inner: bool) -> Iterator[Statement]:
+    """All statements in order, with those of blocks; of functions within if `inner`."""
+    for one in body:
+        yield one
+        match one:
+            case Branch():
+                yield from statements(one.body, inner=inner)
+                yield from statements(one.otherwise, inner=inner)
+            case Loop():
+                yield from statements(one.body, inner=inner)
+            case Definition() if inner:
+                yield from statements(one.body, inner=inner)
+
+
+def assigned(body: tuple[Statement, ...], *, inner: bool = False) -> Counter[str]:
+    """How often each name is assigned, as a whole or in part."""
+    found: Counter[str] = Counter()
+    for one in statements(body, inner=inner):
+        match one:
+            case Assignment():
+                found.update(map(static_path, targets(one.target)))
+            case Evaluation(value=Call(function=Member(base=base, name=name))):
+                if name in APPENDING:
+                    found[static_path(base)] += 1
+    return found

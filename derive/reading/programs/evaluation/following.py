@@ -1,0 +1,199 @@
+"""Functions followed statement by statement: the values of their variables in the end."""
+
+from collections.abc import Iterable, Sequence
+from copy import copy
+from typing import Self
+
+from derive.reading.programs.evaluation.arithmetic import number
+from derive.reading.programs.evaluation.arrays import entries, flat
+from derive.reading.programs.evaluation.calls import CONDITION, Calls, Step
+from derive.reading.programs.evaluation.context import Context, assigned, static_path
+from derive.reading.programs.evaluation.elementwise import elementwise
+from derive.reading.programs.evaluation.values import whole
+from derive.reading.programs.syntax.code import (
+    Assignment,
+    Branch,
+    Declaration,
+    Definition,
+    Evaluation,
+    Fault,
+    Loop,
+    Return,
+    Statement,
+)
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Call,
+    Choice,
+    Item,
+    Member,
+    Name,
+    Number,
+    Opaque,
+    Operation,
+    Slice,
+    Tree,
+)
+
+LOOP = "a loop is not followed"
+
+
+class Follower(Calls):
+    """Follows statements; names that are not assigned before stand for themselves."""
+
+    def __init__(self, context: Context, owner: str = "") -> None:
+        super().__init__(context, owner)
+        #: Loops that are followed by themselves, and the values of variables before them.
+        self.loops: list[tuple[Loop, dict[str, Tree]]] = []
+        #: Statements that are not understood: line and reason.
+        self.faults: list[tuple[int, str]] = []
+        self.has_ended = False
+
+    def run(self, body: tuple[Statement, ...]) -> None:
+        """Follow statements in order."""
+        for one in body:
+            if self.has_ended:
+                return
+            match one:
+                case Assignment():
+                    self._assign(one)
+                case Return(value=value):
+                    self.returned = None if value is None else self.value(value)
+                    self.has_ended = True
+                case Evaluation(value=value):
+                    self.value(value)
+                case Branch():
+                    self._branch(one)
+                case Loop():
+                    self._loop(one)
+                case Fault(line=line, reason=reason):
+                    self.faults.append((line, reason))
+                    self._close(one.names, line, reason)
+                case Declaration(name=name):
+                    self.declared.add(name)
+                case Definition():
+                    pass  # followed by itself
+
+    def _assign(self, one: Assignment) -> None:
+        value = self.value(one.value)
+        if one.operator:
+            operands = (one.target, one.value)
+            value = self.value(Operation(one.line, one.operator, operands))
+        self.assign(one.line, one.target, value, is_declaration=one.is_declaration)
+
+    def assign(self, line: int, target: Tree, value: Tree, *, is_declaration: bool = False) -> None:
+        """Give a target, or several, a value."""
+        if isinstance(target, Array):
+            for one, part in zip(target.items, self._parts(target, value), strict=True):
+                self.assign(line, one, part)
+        elif isinstance(target, Item) and any(isinstance(i, Slice) for i in target.indices):
+            self._assign_range(line, target, value)
+        elif self._is_constant(target, value):
+            return  # it stays a letter
+        elif path := self.place(target):
+            if self._is_input(value):
+                value = Name(line, path)
+            if isinstance(target, Item) and whole(path[:-1].rpartition("[")[2]) is not None:
+                self._open_array(target)
+            for key in [key for key in self.variables if key.startswith((f"{path}[", f"{path}."))]:
+                del self.variables[key]
+            self.variables[path] = value
+            if is_declaration:
+                self.declared.add(path)
+            self.steps.append(Step(line, path, value))
+
+    def _is_constant(self, target: Tree, value: Tree) -> bool:
+        is_known = static_path(target) in self.fixed
+        return is_known and isinstance(target, Name | Member) and number(value) is not None
+
+    def _open_array(self, target: Item) -> None:
+        """Keep the entries of an array one by one, so that one of them can change."""
+        place = self.place(target.base)
+        items = entries(self.variables[place]) if place in self.variables else None
+        if place and items is not None:
+            del self.variables[place]
+            first = self.context.language.first_index
+            self.variables |= {f"{place}[{i + first}]": item for i, item in enumerate(items)}
+
+    def _assign_range(self, line: int, target: Item, value: Tree) -> None:
+        whole_range = all(
+            isinstance(i, Slice) and i.lower is None and i.upper is None for i in target.indices
+        )
+        if whole_range:
+            self.assign(line, target.base, value)
+        elif isinstance(array := self.value(target), Array):
+            for one, part in zip(array.items, self._parts(array, value), strict=True):
+                self.assign(line, one, part)
+
+    def _parts(self, target: Array, value: Tree) -> Sequence[Tree]:
+        count = len(target.items)
+        items = entries(flat(value))
+        if items is not None and len(items) == count:
+            return items
+        if isinstance(value, Name):
+            return self.named_entries(value.line, value.path, 0, count)
+        if isinstance(value, Call):
+            numbers = [Number(value.line, str(i)) for i in range(count)]
+            return [Item(value.line, value, (number,)) for number in numbers]
+        return [Opaque(value.line, "the values of several names are not followed")] * count
+
+    def _branch(self, one: Branch) -> None:
+        branches = [self._copy(), self._copy()]
+        count = len(self.steps)
+        for branch, body in zip(branches, (one.body, one.otherwise), strict=True):
+            branch.run(body)
+            self.steps += branch.steps[count:]
+            self.calls += branch.calls
+            self.faults += branch.faults
+        open_ones = [branch for branch in branches if not branch.has_ended]
+        for branch in branches:
+            if branch.has_ended and branch.returned is not None:
+                self.other_returns.append(Return(one.line, branch.returned))
+            self.other_returns += branch.other_returns
+        if not open_ones:
+            self.has_ended = True
+            self.returned = Opaque(one.line, CONDITION)
+        elif len(open_ones) == 1:
+            self.variables = open_ones[0].variables
+        else:
+            self._merge(one.line, branches[1].variables, branches[0].variables)
+
+    def _copy(self) -> Self:
+        other = copy(self)
+        other.variables, other.steps, other.calls = {**self.variables}, [*self.steps], []
+        other.other_returns, other.returned, other.faults = [], None, []
+        return other
+
+    def _merge(self, line: int, before: dict[str, Tree], after: dict[str, Tree]) -> None:
+        merged = {}
+        for path in before | after:
+            values = [one.get(path, Name(line, path)) for one in (before, after)]
+            value = values[0] if values[0] == values[1] else Choice(line, *values)
+            merged[path] = Name(line, path) if self._is_input(value) else value
+        self.variables = merged
+
+    def _loop(self, one: Loop) -> None:
+        if (body := elementwise(one)) is not None:
+            self.run(body)
+            return
+        self.loops.append((one, {**self.variables}))
+        self._close(assigned(one.body), one.line, LOOP)
+
+    def _close(self, paths: Iterable[str], line: int, reason: str) -> None:
+        """Give variables values that cannot be followed."""
+        for path in paths:
+            for key in [k for k in self.variables if k.startswith((f"{path}[", f"{path}."))]:
+                del self.variables[key]
+            self.variables[path] = Opaque(line, reason)
+
+    def _is_input(self, tree: Tree) -> bool:
+        """Whether a value is one of two constants, such as a force to the left or to the right."""
+        return isinstance(tree, Choice) and all(map(self._is_number, tree.parts))
+
+    def _is_number(self, tree: Tree) -> bool:
+        match tree:
+            case Operation(operator="-", operands=(operand,)):
+                return self._is_number(operand)
+            case Name(path=path):
+                return path in self.context.constants
+        return number(tree) is not None

@@ -1,0 +1,80 @@
+"""Functions and constants of mathematics, as languages and libraries name them."""
+
+from derive.reading.programs.syntax.trees import Call, Name, Number, Opaque, Operation, Tree
+
+#: Names before a function, such as math.sin and std::sin.
+LIBRARIES = {
+    "", "np", "numpy", "math", "Math", "std", "jnp", "cmath", "mp", "sp", "sympy", "torch", "tf",
+    "cp", "onp", "npx", "Base", "jnp.numpy", "p5", "p", "this", "self", "sketch", "onp.numpy",
+}  # fmt: skip
+#: Functions of one argument, and their names in formulas.
+FUNCTIONS = {name: name for name in ("sin", "cos", "tan", "exp", "log", "sqrt")}
+FUNCTIONS |= {f"{name}{suffix}": name for name in FUNCTIONS for suffix in ("f", "l")}
+FUNCTIONS |= {f"d{name}": name for name in ("sin", "cos", "tan", "exp", "log", "sqrt")}
+#: Functions whose argument is in degrees.
+DEGREES = {"sind": "sin", "cosd": "cos", "tand": "tan"}
+#: Functions that return their argument, or change nothing but its type.
+IDENTITIES = {
+    "float", "double", "Number", "parseFloat", "real", "float64", "Float64", "real64", "dble",
+    "Real", "static_cast", "copy", "deepcopy", "squeeze", "ravel", "flatten", "asarray", "array",
+    "matrix", "Vector", "collect", "vec", "tolist", "SVector", "MVector", "SA", "list", "tuple",
+    "Matrix", "atleast_1d", "Vector2d", "Vector4d", "VectorXd", "state_type",
+}  # fmt: skip
+PI = {"pi", "PI", "M_PI", "π", "Pi", "M_PIl"}
+MULTIPLES = {"TWO_PI": "2", "TAU": "2", "HALF_PI": "0.5", "M_PI_2": "0.5"}
+MULTIPLES |= {"QUARTER_PI": "0.25", "M_PI_4": "0.25"}
+#: Without a library before it, tau is a torque.
+MULTIPLES |= {"math.tau": "2", "cmath.tau": "2"}
+
+
+def split(path: str) -> tuple[str, str]:
+    """The library and the name of a path such as ``np.sin``."""
+    library, _, name = path.rpartition(".")
+    return library, name
+
+
+def constant(line: int, path: str) -> Tree | None:
+    """The value of the name of a constant; None for other names."""
+    library, name = split(path)
+    if library not in LIBRARIES:
+        return None
+    if name in PI:
+        return Name(line, "pi")
+    if multiple := MULTIPLES.get(path) or MULTIPLES.get(name):
+        return Operation(line, "*", (Number(line, multiple), Name(line, "pi")))
+    return None
+
+
+def applied(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
+    """The value of a function of mathematics; None for other functions."""
+    library, name = split(path)
+    if library not in LIBRARIES:
+        return None
+    match name, arguments:
+        case _, (x,) if name in FUNCTIONS:
+            return Call(line, Name(line, FUNCTIONS[name]), (x,))
+        case _, (x,) if name in DEGREES:
+            return Call(line, Name(line, DEGREES[name]), (radians(line, x),))
+        case "radians" | "deg2rad" | "toRadians", (x,):
+            return radians(line, x)
+        case "degrees" | "rad2deg" | "toDegrees", (x,):
+            return Operation(line, "*", (x, _ratio(line, "180", "pi")))
+        case "pow" | "power" | "powf" | "float_power", (x, exponent):
+            return Operation(line, "**", (x, exponent))
+        case "clip" | "constrain" | "clamp", (x, _, _):
+            return x  # equations hold within the limits
+        case "square" | "sq" | "abs2", (x,):
+            return Operation(line, "**", (x, Number(line, "2")))
+        case "sign" | "abs" | "fabs" | "atan2" | "asin" | "acos" | "atan", _:
+            return Opaque(line, f"the function {name} is not among those of formulas")
+    return None
+
+
+def radians(line: int, x: Tree) -> Tree:
+    """An angle in degrees, in radians."""
+    return Operation(line, "*", (x, _ratio(line, "pi", "180")))
+
+
+def _ratio(line: int, above: str, below: str) -> Tree:
+    parts = [Name(line, one) if one == "pi" else Number(line, one) for one in (above, below)]
+    return Operation(line, "/", tuple(parts))

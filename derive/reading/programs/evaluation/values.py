@@ -1,0 +1,218 @@
+"""Values of expressions in the names that a function starts with."""
+
+from derive.reading.programs.evaluation.arrays import combined, entries, flat
+from derive.reading.programs.evaluation.context import Context
+from derive.reading.programs.evaluation.mathematics import constant
+from derive.reading.programs.syntax.code import Lambda
+from derive.reading.programs.syntax.trees import (
+    MAX_DEPTH,
+    MAX_SIZE,
+    Array,
+    Call,
+    Choice,
+    Item,
+    Member,
+    Name,
+    Number,
+    Opaque,
+    Operation,
+    Record,
+    Result,
+    Slice,
+    Text,
+    Tree,
+    replaced,
+)
+from derive.reading.programs.syntax.writing import UnwrittenError, plain
+
+
+class Values:
+    """The values of variables at a statement, and of expressions in them."""
+
+    def __init__(self, context: Context, owner: str = "") -> None:
+        self.context, self.owner = context, owner
+        self.variables: dict[str, Tree] = {}
+        self.parameters: set[str] = set()
+        #: Arrays that a caller passes, which the function changes.
+        self.references: dict[str, str] = {}
+        self._open: set[str] = set()
+
+    def value(self, tree: Tree) -> Tree:
+        """The value of an expression."""
+        self.context.spend()
+        value = self._value(tree)
+        if value.size > MAX_SIZE or value.depth > MAX_DEPTH:
+            return Opaque(tree.line, "the formula is too large")
+        return value
+
+    def _value(self, tree: Tree) -> Tree:
+        match tree:
+            case Name():
+                return self.variable(tree.line, self.references.get(tree.path, tree.path))
+            case Member(base=base, name=name):
+                return self._member(tree, base, name)
+            case Item():
+                return self._item(tree)
+            case Operation(operator=operator, operands=operands):
+                values = tuple(map(self.value, operands))
+                return combined(tree.line, operator, values, self.context.language)
+            case Call():
+                return self.called(tree)
+            case Array():
+                return Array(tree.line, tuple(map(self.value, tree.items)))
+            case Number() | Text() | Lambda() | Slice() | Opaque() | Result():
+                return tree
+            case Record() | Choice():
+                return replaced(tree, tuple(map(self.value, tree.parts)))
+        raise AssertionError(tree)
+
+    def called(self, call: Call) -> Tree:
+        """The value of a call."""
+        raise NotImplementedError
+
+    def variable(self, line: int, path: str) -> Tree:
+        """The value of a variable, or of an entry or member of one."""
+        if path in self.variables:
+            return self.variables[path]
+        if (array := self._collected(line, path)) is not None:
+            return array
+        if (value := constant(line, path)) is not None:
+            return value
+        shared = self.context.shared.get(path)
+        if shared is None or path in self._open or self._is_parameter(path):
+            return Name(line, path)
+        self._open.add(path)
+        value = self.value(shared)
+        self._open.remove(path)
+        return value
+
+    def _is_parameter(self, path: str) -> bool:
+        name = path.partition(".")[0]
+        return name in self.parameters and name not in ("self", "this")
+
+    def _collected(self, line: int, path: str) -> Tree | None:
+        """The array of which the entries were assigned one by one."""
+        found = {}
+        first = self.context.language.first_index
+        for key in self.variables:
+            if key.startswith(f"{path}[") and key[len(path) + 1 : -1].isdigit():
+                found[int(key[len(path) + 1 : -1]) - first] = self.variables[key]
+        if found and sorted(found) == list(range(len(found))):
+            return Array(line, tuple(found[i] for i in range(len(found))))
+        return None
+
+    def place(self, tree: Tree) -> str | None:
+        """The name of a variable, an entry or a member; None for values without a name."""
+        match tree:
+            case Name(path=path):
+                return self.references.get(path, path)
+            case Member(base=base, name=name):
+                return f"{outer}.{name}" if (outer := self._object(base)) else None
+            case Item(base=base, indices=indices):
+                outer, index = self._object(base), self._index(indices)
+                return f"{outer}[{index}]" if outer and index else None
+        return None
+
+    def _object(self, tree: Tree) -> str | None:
+        """The name of an array or object, which can be another name for one."""
+        place = self.place(tree)
+        value = self.variables.get(place) if place else None
+        return value.path if isinstance(value, Name) else place
+
+    def _index(self, indices: tuple[Tree, ...]) -> str:
+        """An index of one entry, as a text; empty for ranges."""
+        values = list(map(self.value, indices))
+        is_column = len(values) == 2 and not isinstance(values[1], Slice)
+        if is_column and Number(0, str(self.context.language.first_index)) == values[1]:
+            values.pop()  # of a column as a matrix
+        try:
+            return plain(values[0]) if len(values) == 1 else ",".join(map(plain, values))
+        except UnwrittenError:
+            return ""
+
+    def _member(self, tree: Tree, base: Tree, name: str) -> Tree:
+        if name in ("T", "transpose", "ravel", "flatten"):
+            return flat(self.value(base))
+        if path := self.place(tree):
+            if path in self.variables or not isinstance(base, Name):
+                return self.variable(tree.line, path)
+            record = self.variables.get(base.path)
+            field = _field(record, name) if record else None
+            return field or self.variable(tree.line, path)
+        return Opaque(tree.line, f"the member {name} of a value is not followed")
+
+    def _item(self, tree: Item) -> Tree:
+        if len(tree.indices) == 1 and isinstance(tree.indices[0], Slice):
+            return self._part(tree, tree.indices[0])
+        if isinstance(tree.base, Name) and tree.base.path == "SA":  # a static array of Julia
+            return Array(tree.line, tuple(map(self.value, tree.indices)))
+        path, index = self.place(tree), self._index(tree.indices)
+        if path and path in self.variables:
+            return self.variables[path]
+        base = self.value(tree.base)
+        if (items := entries(base)) is not None and (number := whole(index)) is not None:
+            place = number - (self.context.language.first_index if number >= 0 else 0)
+            if -len(items) <= place < len(items):
+                return items[place]
+        if path and isinstance(base, Name):
+            return self.variable(tree.line, path)
+        if isinstance(base, Name) and index:
+            return self.variable(tree.line, f"{base.path}[{index}]")
+        if isinstance(base, Opaque):
+            return base
+        if is_zeros(base):
+            return Number(tree.line, "0")
+        return Item(tree.line, base, tuple(map(self.value, tree.indices)))
+
+    def _part(self, tree: Item, bounds: Slice) -> Tree:
+        """A range of entries; without an end, as many as stand before it: y = (q, q̇)."""
+        base = self.value(tree.base)
+        language = self.context.language
+        lower, upper = (
+            one if one is None else whole(self._index((one,)))
+            for one in (bounds.lower, bounds.upper)
+        )
+        start = (lower or language.first_index) - language.first_index
+        if (bounds.lower and lower is None) or (bounds.upper and upper is None):
+            return Opaque(tree.line, "a range of indices is not followed")
+        end = 2 * start if upper is None else upper - language.first_index
+        end += upper is not None and not language.is_half_open
+        if (items := entries(base)) is not None:
+            return Array(tree.line, items[start : None if upper is None else end])
+        if not isinstance(base, Name) or not end:
+            return Opaque(tree.line, "a range of entries is not followed")
+        return Array(tree.line, self.named_entries(tree.line, base.path, start, end))
+
+    def named_entries(self, line: int, path: str, start: int, end: int) -> tuple[Tree, ...]:
+        """The entries of an array that has a name, from one up to another, counted from 0."""
+        first = self.context.language.first_index
+        return tuple(self.variable(line, f"{path}[{i + first}]") for i in range(start, end))
+
+
+def _field(tree: Tree, name: str) -> Tree | None:
+    """A value with a name in a record."""
+    match tree:
+        case Result(value=value):
+            return _field(value, name)
+        case Record(fields=fields):
+            return dict(fields).get(name)
+    return None
+
+
+def root(path: str) -> str:
+    """The variable of an entry or member."""
+    return path.partition("[")[0].partition(".")[0]
+
+
+def whole(text: str) -> int | None:
+    """An index that is a number."""
+    return int(text) if text.lstrip("-").isdigit() else None
+
+
+def is_zeros(tree: Tree) -> bool:
+    """Whether a value is an array of zeros, or one to be filled."""
+    names = ("zeros", "zeros_like", "empty", "empty_like", "similar", "zero", "fill", "Array")
+    match tree:
+        case Call(function=Name(path=path)) | Call(function=Member(name=path)):
+            return path.rpartition(".")[2] in names
+    return False

@@ -1,0 +1,1 @@
+"""What programs compute: equations, methods of integration and their faults."""

@@ -1,0 +1,63 @@
+"""Angles in degrees that are passed to functions of radians."""
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+
+from derive.reading.programs.evaluation.arithmetic import number
+from derive.reading.programs.program import Finding
+from derive.reading.programs.syntax.trees import Call, Name, Tree
+
+IN_DEGREES = re.compile(r"(_|\b)deg(ree)?s?$|[a-z\d](Deg|Degrees)$|_deg_", re.IGNORECASE)
+CIRCULAR = ("sin", "cos", "tan")
+
+
+def named_in_degrees(value: Tree, function: str) -> Iterator[Finding]:
+    """Names such as angle_deg in the arguments of sines, without a conversion."""
+    for line, argument in arguments(value):
+        found = [*_names(argument)]
+        for path in found:
+            if IN_DEGREES.search(path) and "pi" not in found:
+                text = f"{path} is passed to a function of radians, without a conversion"
+                yield Finding(line, "degrees", function, text, True)
+
+
+def starts_in_degrees(
+    path: str, start: Tree, values: Mapping[str, Tree], function: str
+) -> Iterator[Finding]:
+    """An initial angle of more than a turn, such as 120, that is written without pi."""
+    while isinstance(start, Name) and start.path in values:
+        start = values[start.path]
+    value = number(start)
+    if value is not None and abs(value) > 2 * math.pi and "pi" not in _names(start):
+        text = f"{path} starts at {value:g}, and its sine is taken: degrees instead of radians"
+        yield Finding(start.line, "degrees", function, text, True)
+
+
+def takes_degrees(call: Call) -> bool:
+    """Whether a call makes sines those of degrees."""
+    match call:
+        case Call(function=Name(path="angleMode"), arguments=(Name(path="DEGREES"),)):
+            return True
+    return False
+
+
+def angles(values: list[Tree]) -> set[str]:
+    """The variables in the arguments of sines and cosines."""
+    return {path for one in values for _, argument in arguments(one) for path in _names(argument)}
+
+
+def arguments(tree: Tree) -> Iterator[tuple[int, Tree]]:
+    """The arguments of sines and cosines, with their lines."""
+    match tree:
+        case Call(function=Name(path=path), arguments=(argument,)) if path in CIRCULAR:
+            yield tree.line, argument
+    for part in tree.parts:
+        yield from arguments(part)
+
+
+def _names(tree: Tree) -> Iterator[str]:
+    if isinstance(tree, Name):
+        yield tree.path
+    for part in tree.parts:
+        yield from _names(part)

@@ -1,0 +1,218 @@
+"""The functions of a program, the loops in them, and the statements outside all functions."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from derive.reading.programs.evaluation.arithmetic import number
+from derive.reading.programs.evaluation.context import (
+    Context,
+    assigned,
+    statements,
+    static_path,
+    targets,
+)
+from derive.reading.programs.evaluation.following import Follower
+from derive.reading.programs.evaluation.values import root
+from derive.reading.programs.findings.runge_kutta import called
+from derive.reading.programs.syntax.code import (
+    Assignment,
+    Definition,
+    Evaluation,
+    Lambda,
+    Loop,
+    Statement,
+)
+from derive.reading.programs.syntax.trees import Array, Call, Member, Name, Opaque, Tree, replaced
+
+
+@dataclass(frozen=True)
+class Region:
+    """Statements that are followed from the first to the last."""
+
+    name: str
+    line: int
+    definition: Definition  # of a loop, its body as a function without parameters
+    follower: Follower
+    is_loop: bool = False
+
+
+def prepare(context: Context, body: tuple[Statement, ...]) -> None:
+    """Collect the functions and constants of a program."""
+    everything = [*statements(body, inner=True)]
+    context.variables = {*assigned(body, inner=True)}
+    for one in everything:
+        if isinstance(one, Definition):
+            context.functions.setdefault(one.name, []).append(one)
+            context.variables.discard(one.name)
+    values: dict[str, list[Tree]] = {}
+    counts: Counter[str] = Counter()
+    for scope in (body, *(one.body for one in everything if isinstance(one, Definition))):
+        fixed = _fixed(context, scope)
+        context.fixed[id(scope)] = {*fixed}
+        counts.update({*assigned(scope)})
+        for path, value in fixed.items():
+            values.setdefault(path, []).append(value)
+    for path, found in values.items():
+        if len(found) == counts[path] and len({number(value) for value in found}) == 1:
+            context.constants[path] = found[0]
+
+
+def _fixed(context: Context, body: tuple[Statement, ...]) -> dict[str, Tree]:
+    """The names that have one numeric value in a function, and the values."""
+    values: dict[str, list[Tree | None]] = {}
+    reader = Follower(context)
+    for one in statements(body, inner=False):
+        if isinstance(one, Assignment):
+            given = None if one.operator else reader.value(one.value)
+            single = [*targets(one.target)]
+            parts: Sequence[Tree | None] = [given]
+            if len(single) != 1:
+                known = isinstance(given, Array) and len(given.items) == len(single)
+                parts = given.items if known and isinstance(given, Array) else [None] * len(single)
+            for target, value in zip(single, parts, strict=True):
+                is_whole = isinstance(target, Name | Member)
+                values.setdefault(static_path(target), []).append(value if is_whole else None)
+    fixed = {}
+    for path, found in values.items():
+        numbers = {number(value) if value is not None else None for value in found}
+        if path and found[0] is not None and len(numbers) == 1 and None not in numbers:
+            fixed[path] = found[0]
+    return fixed
+
+
+def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
+    """All regions, followed twice: then each knows the values that others assign once."""
+    found = [*_regions(context, body)]
+    once = _assigned_once(body)
+    for region in found:
+        own = {one.name for one in region.definition.parameters}
+        for path, value in region.follower.variables.items():
+            if path in once - own and _is_formula(value) and not _contains(value, path):
+                context.shared[path] = _elsewhere(value, own, region.definition.name)
+    return [*_regions(context, body)]
+
+
+def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
+    """Names with one formula, even repeated; numbers that they have at the beginning aside."""
+    counts: Counter[str] = Counter()
+    formulas: dict[str, Tree] = {}
+    for one in _everything(body):
+        if isinstance(one, Assignment):
+            for target in targets(one.target):
+                path = static_path(target)
+                is_whole = isinstance(target, Name | Member) and not one.operator
+                is_known = number(one.value) is not None or formulas.get(path) == one.value
+                formulas.setdefault(path, one.value)
+                counts[path] += (not is_known) if is_whole else 2
+        elif isinstance(one, Evaluation) and isinstance(one.value, Call):
+            # a function can change its arguments, and a method its object
+            changed = [*one.value.parts]
+            if isinstance(one.value.function, Member):
+                changed.append(one.value.function.base)
+            counts.update({static_path(part): 2 for part in changed})
+    return {path for path, count in counts.items() if count == 1}
+
+
+def _everything(body: tuple[Statement, ...]) -> Iterator[Statement]:
+    """All statements, also those of functions without a name."""
+    for one in statements(body, inner=True):
+        yield one
+        if isinstance(one, Evaluation | Assignment):
+            for callback in _callbacks(one.value):
+                yield from _everything(callback.body)
+
+
+def _elsewhere(tree: Tree, parameters: set[str], function: str) -> Tree:
+    """A value with the parameters of a function as names that others do not have."""
+    if isinstance(tree, Name):
+        is_parameter = root(tree.path) in parameters - {"self", "this", "obj"}
+        return Name(tree.line, f"{function}.{tree.path}") if is_parameter else tree
+    parts = tuple(_elsewhere(part, parameters, function) for part in tree.parts)
+    is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
+    return tree if is_same else replaced(tree, parts)
+
+
+def _is_formula(value: Tree) -> bool:
+    """Whether a value is a formula: no number, and no value of a function that is not known."""
+    return number(value) is None and not isinstance(value, Opaque) and not _has_call(value)
+
+
+def _has_call(tree: Tree) -> bool:
+    return called(tree) is not None or any(map(_has_call, tree.parts))
+
+
+def _contains(tree: Tree, path: str) -> bool:
+    if isinstance(tree, Name):
+        return tree.path == path or tree.path.startswith((f"{path}[", f"{path}."))
+    return any(_contains(part, path) for part in tree.parts)
+
+
+def _regions(context: Context, body: tuple[Statement, ...]) -> Iterator[Region]:
+    yield from _followed(context, Definition(1, "", (), body), {}, body)
+    for one in statements(body, inner=True):
+        if isinstance(one, Definition):
+            yield from _followed(context, one, {}, one.body)
+        elif isinstance(one, Evaluation | Assignment):
+            for callback in _callbacks(one.value):
+                yield from _followed(context, callback, {}, callback.body)
+
+
+def _callbacks(tree: Tree) -> Iterator[Definition]:
+    """Functions without a name that a call takes and that assign something, such as a frame's."""
+    if isinstance(tree, Call):
+        for one in tree.arguments:
+            if isinstance(one, Lambda) and assigned(one.function.body):
+                yield one.function
+    for part in tree.parts:
+        yield from _callbacks(part)
+
+
+def _followed(
+    context: Context,
+    definition: Definition,
+    variables: dict[str, Tree],
+    scope: tuple[Statement, ...],
+    *,
+    is_loop: bool = False,
+) -> Iterator[Region]:
+    follower = Follower(context, definition.owner)
+    follower.parameters = {one.name for one in definition.parameters}
+    follower.fixed = context.fixed.get(id(scope), set())
+    follower.variables = variables
+    follower.run(definition.body)
+    name = definition.name
+    if definition.owner and name:
+        name = f"{definition.owner}.{name}"
+    yield Region(name, definition.line, definition, follower, is_loop)
+    for loop, before in follower.loops:
+        yield from _followed(
+            context,
+            _as_function(loop, definition),
+            _kept(context, loop, before),
+            scope,
+            is_loop=True,
+        )
+
+
+def _as_function(loop: Loop, outer: Definition) -> Definition:
+    return Definition(loop.line, outer.name, outer.parameters, loop.body, outer.owner)
+
+
+def _kept(context: Context, loop: Loop, before: dict[str, Tree]) -> dict[str, Tree]:
+    """The values before a loop of the variables that it does not change."""
+    whole = {*assigned(loop.body)}
+    changed = {root(path) for path in whole} | {loop.variable}
+    for one in statements(loop.body, inner=False):
+        if isinstance(one, Evaluation) and isinstance(one.value, Call):
+            # a function can change arrays that are passed
+            is_own = context.function(static_path(one.value.function), "") is not None
+            for part in one.value.arguments:
+                path = static_path(part)
+                if is_own or isinstance(before.get(path), Array):
+                    whole.add(path)
+    return {
+        path: value
+        for path, value in before.items()
+        if path not in whole and (root(path) not in changed or "." in path)
+    }

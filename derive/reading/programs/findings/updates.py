@@ -1,0 +1,234 @@
+"""Variables that a function or a loop changes step by step: coordinates and velocities.
+
+A coordinate grows by the product of a velocity and the step size, a velocity by that of an
+acceleration. Whether old or new values are used follows from the values themselves.
+"""
+
+import re
+from collections.abc import Iterator, Set
+from dataclasses import dataclass
+from functools import cached_property
+
+from derive.reading.programs.evaluation.calls import Step
+from derive.reading.programs.evaluation.following import Follower
+from derive.reading.programs.evaluation.sums import Term, factors, inner, product, terms, total
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Choice,
+    Name,
+    Number,
+    Operation,
+    Tree,
+    replaced,
+)
+
+#: An entry at a time, such as theta[i+1] and y[i][0].
+TIMED = re.compile(r"(.*?)\[([^\W\d]\w*)([+-]\d+)?\](.*)")
+
+
+NO_STEP = Number(0, "1")
+LAST = re.compile(r"(.*?)\[(-1|end)()\](.*)")
+
+
+@dataclass(frozen=True)
+class Update:
+    """A variable and what is added to it."""
+
+    variable: str  # before the step, such as theta[i]
+    line: int
+    increment: tuple[Term, ...]
+    damping: Tree | None = None  # the factor by which the velocity is multiplied
+    damping_line: int = 0
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A coordinate and its velocity, which grow together."""
+
+    coordinate: Update
+    velocity: Update
+    step: Tree | None  # the step size; None if no factor is written
+    uses_new_velocity: bool
+    #: Whether the coordinate grows by more than its velocity before or after the step.
+    has_other_terms: bool
+
+
+class Updates:
+    """The updates of a function or a loop; under conditions, without or with `is_met`."""
+
+    def __init__(self, follower: Follower, *, is_met: bool) -> None:
+        self._is_met = is_met
+        #: Lines and reasons of updates that are not followed.
+        self.unread: list[tuple[int, str]] = []
+        self._steps = [part for step in follower.steps for part in _parts(step, follower)]
+        final = {}
+        for path, value in follower.variables.items():
+            for part in _parts(Step(0, path, value), follower):
+                final[part.path] = part.value
+        is_timed = any(TIMED.fullmatch(step.path) for step in self._steps)
+        values = [step.value for step in self._steps] if is_timed else []
+        used = {path for value in values for path in names(value)}
+        self._old = {step.path: previous(step.path, used) for step in self._steps}
+        #: Values that variables take, by identity.
+        self._owners = {
+            id(value): self._old[step.path]
+            for step in self._steps
+            if not isinstance(value := self._chosen(step.value, step.path), Name | Number)
+        }
+        found = (self._update(path, value) for path, value in final.items())
+        self.updates: dict[str, Update] = {one.variable: one for one in found if one}
+
+    def _is_whole(self, tree: Tree) -> bool:
+        return id(tree) in self._owners
+
+    def _chosen(self, value: Tree, old: str) -> Tree:
+        """A value without conditions: that which changes a variable, or one of two that do."""
+        value = inner(value)
+        while isinstance(value, Choice):
+            unchanged = Name(0, old)
+            takes_after = value.before == unchanged or (self._is_met and value.after != unchanged)
+            value = inner(value.after if takes_after else value.before)
+        return value
+
+    def _update(self, path: str, value: Tree) -> Update | None:
+        old = self._old.get(path, path)
+        value = self._chosen(value, old)
+        damping, damping_line = None, 0
+        match value:
+            case Operation(operator="*", operands=(earlier, factor)) if self._owners.get(
+                id(earlier)
+            ) == old or earlier == Name(0, old):
+                damping, damping_line, value = factor, value.line, earlier
+        line = value.line
+        first = [*terms(value, lambda tree: tree is not value and self._is_whole(tree))]
+        own = [one for one in first if one[1] == Name(0, old)]
+        if len(own) != 1 or own[0][0] != 1:
+            return self._damped(old, line, first)
+        rest = tuple(one for one in first if one is not own[0])
+        return Update(old, line, rest, damping, damping_line) if rest or damping else None
+
+    def _damped(self, old: str, line: int, found: list[Term]) -> Update | None:
+        """The update of a variable that is first multiplied by a factor."""
+        for term in found:
+            parts = factors(term[1], self._is_whole)
+            others = [one for one in parts if one != Name(0, old)]
+            if term[0] == 1 and len(others) == len(parts) - 1 and others:
+                rest = tuple(one for one in found if one is not term)
+                return Update(old, line, rest, product(line, others), term[1].line)
+        return None
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """Coordinates with their velocities, in the order of the program."""
+        found = [pair for one in self.updates.values() if (pair := self._pair(one))]
+        velocities = {pair.velocity.variable for pair in found}
+        return tuple(pair for pair in found if pair.coordinate.variable not in velocities)
+
+    def _pair(self, coordinate: Update) -> Pair | None:
+        for sign, term in coordinate.increment:
+            parts = factors(term, self._is_whole)
+            for part in parts:
+                velocity, is_new, is_part = self._velocity(inner(part))
+                if velocity is None or velocity is coordinate or sign < 0:
+                    continue
+                others = [one for one in parts if one is not part]
+                if any(self._moves(one) for one in others):
+                    continue
+                step = product(term.line, others) if others else None
+                rest = [one for one in coordinate.increment if one[1] is not term]
+                more = is_part or bool(rest)
+                for earlier in (name for _, one in rest for name in self._others(one, step)):
+                    change = f"the update of {coordinate.variable} has the acceleration {earlier}"
+                    self.unread.append((coordinate.line, f"{change} of another step"))
+                    return None
+                return Pair(coordinate, velocity, step, is_new, more)
+        return None
+
+    def _others(self, term: Tree, step: Tree | None) -> list[str]:
+        """The variables in a term that are no step size: accelerations from before."""
+        steps = {*names(step)} if step else set()
+        parts = factors(term, self._is_whole)
+        found = [one.path for one in parts if isinstance(one, Name)]
+        return [path for path in found if path not in {*steps, "pi"}]
+
+    def _velocity(self, tree: Tree) -> tuple[Update | None, bool, bool]:
+        """The variable that a factor is, whether after its update, and whether in between."""
+        if isinstance(tree, Name):
+            return self.updates.get(tree.path), False, False
+        if id(tree) in self._owners:
+            return self.updates.get(self._owners[id(tree)]), True, False
+        for sign, term in terms(tree, self._is_whole):
+            if sign == 1 and isinstance(term, Name) and term.path in self.updates:
+                return self.updates[term.path], False, True
+        return None, False, False
+
+    def _moves(self, tree: Tree) -> bool:
+        """Whether a value depends on variables that are updated."""
+        if isinstance(tree, Name):
+            return tree.path in self.updates
+        return any(map(self._moves, tree.parts))
+
+    def acceleration(self, pair: Pair) -> tuple[Tree, frozenset[str]]:
+        """The acceleration in values before the step, and the variables used after it."""
+        used: set[str] = set()
+        velocity, step = pair.velocity, pair.step
+        found = [(sign, self._divided(term, step)) for sign, term in velocity.increment]
+        if any(term is None for _, term in found):  # no common factor
+            whole = [(sign, self._restored(term, used)) for sign, term in velocity.increment]
+            value = Operation(velocity.line, "/", (total(velocity.line, whole), step or NO_STEP))
+            return value, frozenset(used)
+        divided = [(sign, self._restored(term, used)) for sign, term in found if term]
+        return total(velocity.line, divided), frozenset(used)
+
+    def _divided(self, term: Tree, step: Tree | None) -> Tree | None:
+        """A term without the step size; None if that is not a factor."""
+        if step is None:
+            return term
+        parts = factors(term, self._is_whole)
+        for one in factors(step, self._is_whole):
+            if one not in parts:
+                return None
+            parts.remove(one)
+        return product(term.line, parts)
+
+    def _restored(self, tree: Tree, used: set[str]) -> Tree:
+        """A value with variables after their update replaced by the variables."""
+        owner = self._owners.get(id(tree))
+        if owner is not None and owner in self.updates:
+            used.add(owner)
+            return Name(tree.line, owner)
+        parts = tuple(self._restored(part, used) for part in tree.parts)
+        is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
+        return tree if is_same else replaced(tree, parts)
+
+
+def _parts(step: Step, follower: Follower) -> list[Step]:
+    """The entries of an array that is assigned as a whole."""
+    value = inner(step.value)
+    if not isinstance(value, Array):
+        return [step]
+    first = follower.context.language.first_index
+    return [Step(step.line, f"{step.path}[{i + first}]", one) for i, one in enumerate(value.items)]
+
+
+def previous(path: str, used: Set[str]) -> str:
+    """The variable that an entry follows: theta[i] for theta[i+1]; others for themselves."""
+    if match := TIMED.fullmatch(path):
+        offset = int(match[3] or 0) - 1
+        before = f"{match[1]}[{match[2]}{f'{offset:+d}' if offset else ''}]{match[4]}"
+        return before if before in used else path
+    return path
+
+
+def without_time(path: str) -> str:
+    """The variable of which an entry is the value at a time."""
+    match = TIMED.fullmatch(path) or LAST.fullmatch(path)
+    return match[1] + match[4] if match else path
+
+
+def names(tree: Tree) -> Iterator[str]:
+    """The variables in a value."""
+    if isinstance(tree, Name):
+        yield tree.path
+    for part in tree.parts:
+        yield from names(part)

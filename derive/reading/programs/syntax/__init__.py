@@ -1,0 +1,1 @@
+"""Expressions and statements of programs, whatever their language."""

@@ -1,0 +1,254 @@
+"""From the syntax tree of a grammar to expressions.
+
+Each method translates the nodes of one role; the tables in `languages` give the role of each type
+of node. Types without a role are values that cannot be followed.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from derive.reading.programs.languages.language import Language
+from derive.reading.programs.syntax.trees import (
+    MAX_DEPTH,
+    Array,
+    Call,
+    Choice,
+    Item,
+    Member,
+    Name,
+    Number,
+    Opaque,
+    Operation,
+    Record,
+    Slice,
+    Text,
+    Tree,
+)
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+#: Digits with the suffixes of all languages, such as 9.81f, 1d0 and 2.0_dp.
+DIGITS = re.compile(r"(\d[\d_]*\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?(?:_\w+|[fFlLuU]*)")
+#: Powers of powers in a row.
+MAX_POWERS = 20
+OPERATORS = {"^": "**", "\\": "solve", "×": "*", "÷": "/", "//": "//", "dot": "@"}
+
+
+class ExpressionTranslator:
+    """Translates expressions."""
+
+    def __init__(self, language: Language) -> None:
+        self.language = language
+        self._depth = 0
+
+    def tree(self, node: "Node") -> Tree:
+        """The expression at a node."""
+        if self._depth > MAX_DEPTH:
+            return Opaque(line(node), "the expression is nested too deeply")
+        method = getattr(self, f"_{self.role(node)}_tree", None)
+        if method is None or (node.has_error and not node.child_count):
+            return Opaque(line(node), f"{shown(node)!r} is not followed")
+        self._depth += 1
+        try:
+            return method(node)
+        finally:
+            self._depth -= 1
+
+    def role(self, node: "Node") -> str:
+        """The role of a node; empty if it has none."""
+        return self.language.roles.get(node.type, "")
+
+    def children(self, node: "Node") -> list["Node"]:
+        """The named children that are no comments."""
+        return [one for one in node.named_children if not one.is_extra and one.type != "comment"]
+
+    def _trees(self, nodes: Sequence["Node"]) -> tuple[Tree, ...]:
+        return tuple(map(self.tree, nodes))
+
+    def _name_tree(self, node: "Node") -> Tree:
+        return Name(line(node), self.word(node))
+
+    def word(self, node: "Node") -> str:
+        """The text of a name."""
+        word = text(node)
+        return word if self.language.is_case_sensitive else word.lower()
+
+    def _number_tree(self, node: "Node") -> Tree:
+        if text(node).startswith("-"):
+            return Operation(line(node), "-", (self._digits(node, text(node)[1:]),))
+        return self._digits(node, text(node))
+
+    def _digits(self, node: "Node", given: str) -> Tree:
+        if not (match := DIGITS.fullmatch(given)):
+            return Opaque(line(node), f"{shown(node)!r} is not followed")
+        digits, exponent = match[1].replace("_", ""), match[2]
+        return Number(line(node), digits + (f"e{exponent}" if exponent else ""))
+
+    def _text_tree(self, node: "Node") -> Tree:
+        return Text(line(node), text(node).strip("\"'`"))
+
+    def _wrapper_tree(self, node: "Node") -> Tree:
+        # a bracket, or a cast, whose value stands last
+        inner = [one for one in self.children(node) if self.role(one) != "skip"]
+        return self.tree(inner[-1]) if inner else Opaque(line(node), "an empty bracket")
+
+    def _first_tree(self, node: "Node") -> Tree:
+        return self.tree(self.children(node)[0])
+
+    def _qualified_tree(self, node: "Node") -> Tree:
+        return self.tree(self.children(node)[-1])
+
+    def _member_tree(self, node: "Node") -> Tree:
+        base, *_, name = self.children(node)
+        if self.language.has_bare_members and text(base) == "this":
+            return self.tree(name)
+        return Member(line(node), self.tree(base), self.word(name))
+
+    def _item_tree(self, node: "Node") -> Tree:
+        base, *indices = self.children(node)
+        if len(indices) == 1 and self.role(indices[0]) in ("arguments", "indices", "array"):
+            indices = self.children(indices[0])
+        found = self._trees(indices)
+        if len(found) == 1 and isinstance(found[0], Text):
+            return Member(line(node), self.tree(base), found[0].value)
+        return Item(line(node), self.tree(base), found)
+
+    def _slice_tree(self, node: "Node") -> Tree:
+        bounds: list[Tree | None] = [None]
+        for child in node.children:
+            if child.type == ":":
+                bounds.append(None)
+            elif child.is_named and child.type not in ("end_keyword", "spread_operator"):
+                bounds[-1] = self.tree(child)
+        if len(bounds) > 2:
+            return Opaque(line(node), "a range with a step is not followed")
+        return Slice(line(node), bounds[0], bounds[-1])
+
+    def _all_tree(self, node: "Node") -> Tree:
+        return Slice(line(node), None, None)
+
+    def _call_tree(self, node: "Node") -> Tree:
+        function, *rest = [one for one in self.children(node) if self.role(one) != "skip"]
+        nodes = [one for part in rest for one in self._arguments(part)]
+        keywords = [one for one in nodes if self.role(one) == "keyword"]
+        arguments = [one for one in nodes if self.role(one) != "keyword"]
+        named = tuple((self.word(k), self.tree(v)) for k, v in map(self._pair, keywords))
+        return Call(line(node), self.tree(function), self._trees(arguments), named)
+
+    def _arguments(self, node: "Node") -> list["Node"]:
+        return self.children(node) if self.role(node) == "arguments" else [node]
+
+    def _pair(self, node: "Node") -> tuple["Node", "Node"]:
+        children = self.children(node)
+        return children[0], children[-1]
+
+    def _binary_tree(self, node: "Node") -> Tree:
+        left, sign, right = [one for one in node.children if not one.is_extra][:3]
+        operator = text(sign).lstrip(".")
+        operator = OPERATORS.get(operator, operator)
+        if operator not in ("+", "-", "*", "/", "**", "@", "solve"):
+            return Opaque(line(node), f"the operator {text(sign)} is not followed")
+        if operator == "**" and text(sign) == "^" and not self.language.has_caret_powers:
+            return Opaque(line(node), f"^ is no power in {self.language.name}")
+        if operator == "**":
+            return self._power(node)
+        operands = (self.tree(left), self.tree(right))
+        if operator == "/" and self.language.has_whole_quotients:
+            match operands:
+                case Number(digits=a), Number(digits=b) if f"{a}{b}".isdigit() and int(b):
+                    return Number(line(node), str(int(a) // int(b)))
+        return Operation(line(node), operator, operands)
+
+    def _power(self, node: "Node") -> Tree:
+        """A power; grammars differ from their languages in -x^2, in 2x^2 and in x^y^z."""
+        base, *exponents = self._powers(node)
+        if self.role(base) == "unary" and text(base).startswith("-"):
+            operand = self.children(base)[-1]
+            return Operation(line(node), "-", (self._raised(operand, exponents),))
+        if self.role(base) == "product":
+            left, right = self.children(base)
+            power = self._raised(right, exponents)
+            return Operation(line(node), "*", (self.tree(left), power))
+        return self._raised(base, exponents)
+
+    def _powers(self, node: "Node", level: int = 0) -> list["Node"]:
+        """The base and the exponents of powers of powers that are written without brackets."""
+        parts = [one for one in node.children if not one.is_extra]
+        is_power = self.role(node) == "binary" and text(parts[1]).lstrip(".") in ("^", "**")
+        if not is_power or level > MAX_POWERS:
+            return [node]
+        return [*self._powers(parts[0], level + 1), *self._powers(parts[2], level + 1)]
+
+    def _raised(self, base: "Node", exponents: Sequence["Node"]) -> Tree:
+        trees = self._trees([base, *exponents])
+        if self.language.has_left_powers:
+            return reduce(lambda a, b: Operation(a.line, "**", (a, b)), trees)
+        return reduce(lambda b, a: Operation(a.line, "**", (a, b)), reversed(trees))
+
+    def _conditional_tree(self, node: "Node") -> Tree:
+        first, second, third = self.children(node)
+        after = first if self.language.name == "Python" else second  # a if condition else b
+        return Choice(line(node), self.tree(third), self.tree(after))
+
+    def _product_tree(self, node: "Node") -> Tree:
+        left, right = self.children(node)
+        if left.end_byte != right.start_byte:
+            return Opaque(line(node), f"{shown(node)!r} is not understood")
+        return Operation(line(node), "*", (self.tree(left), self.tree(right)))
+
+    def _unary_tree(self, node: "Node") -> Tree:
+        sign, operand = [one for one in node.children if not one.is_extra][:2]
+        match text(sign):
+            case "+":
+                return self.tree(operand)
+            case "-":
+                return Operation(line(node), "-", (self.tree(operand),))
+            case "*" | "&":  # of a pointer
+                return self.tree(operand)
+        return Opaque(line(node), f"{shown(node)!r} is not followed")
+
+    def _transpose_tree(self, node: "Node") -> Tree:
+        return Operation(line(node), "transpose", (self.tree(self.children(node)[0]),))
+
+    def _array_tree(self, node: "Node") -> Tree:
+        return Array(line(node), self._trees(self.children(node)))
+
+    def _matrix_tree(self, node: "Node") -> Tree:
+        rows = [self._trees(self.children(row)) for row in self.children(node)]
+        if len(rows) == 1 or all(len(row) == 1 for row in rows):
+            items = Array(line(node), tuple(one for row in rows for one in row))
+            return Call(line(node), Name(line(node), "vcat"), (items,))
+        return Array(line(node), tuple(Array(one.line, row) for row in rows for one in row[:1]))
+
+    def _record_tree(self, node: "Node") -> Tree:
+        return Record(line(node), tuple(self._fields(node)))
+
+    def _fields(self, node: "Node") -> Iterator[tuple[str, Tree]]:
+        for child in self.children(node):
+            if self.role(child) == "pair":
+                key, value = self._pair(child)
+                yield text(key).strip("\"'`"), self.tree(value)
+            elif self.role(child) == "name":
+                yield self.word(child), self.tree(child)
+
+    def _names_tree(self, node: "Node") -> Tree:
+        """Names of members, as in ``const {m1, l1} = p``."""
+        return Record(line(node), tuple(self._fields(node)))
+
+
+def line(node: "Node") -> int:
+    """The line of a node, counted from 1."""
+    return node.start_point[0] + 1
+
+
+def text(node: "Node") -> str:
+    """The text of a node."""
+    return (node.text or b"").decode("utf-8", "replace")
+
+
+def shown(node: "Node") -> str:
+    """The beginning of the text of a node, for messages."""
+    return " ".join(text(node)[:60].split())[:40]

@@ -1,0 +1,1 @@
+"""Corrections of wrong formulas: the search for the one mistake."""

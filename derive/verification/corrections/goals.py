@@ -1,0 +1,56 @@
+"""The values that a formula should have, where several are correct."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.formulas.proofs.expansion import is_expandable
+from derive.system.symbols import TIME
+from derive.verification.derived import QUANTITIES, foreign_symbols
+from derive.verification.model import Model, depends_on, variables
+
+#: Quantities with an arbitrary constant.
+UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
+
+
+@dataclass(frozen=True)
+class Goal:
+    """The quantity of a formula: its values, and the symbols that it cannot contain."""
+
+    value: sp.Expr
+    along_motions: bool  # accelerations are those of the motion
+    foreign: frozenset[sp.Symbol]
+    is_equation: bool = False  # then the value is 0 along motions only
+
+
+def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
+    """Yield the derived values, and those with the constant or the factor of the formula."""
+    system = model.derivation.system
+    if kind == "euler_lagrange":
+        yield Goal(sp.S.Zero, True, frozenset(system.p), is_equation=True)
+        return
+    foreign = foreign_symbols(model, kind, name)
+    derived = QUANTITIES[kind](model, name)
+    if kind == "value":
+        state = {*system.qdot, *system.qddot, *system.p}
+        foreign = frozenset(state - derived.free_symbols)
+    yield Goal(derived, kind == "accelerations", foreign)
+    if not is_expandable(value):
+        return
+    if kind in UP_TO_A_CONSTANT:
+        shift = _constant(value, model) - _constant(derived, model)
+        if shift:
+            yield Goal(derived + shift, False, foreign)
+    if kind == "lagrangian":
+        factor = sp.cancel(value.diff(system.qdot[0], 2) / model.derivation.mass_matrix[0, 0])
+        # a wrong number is more likely than a factor of all terms
+        if not factor.is_Rational and not depends_on(factor, (*system.q, *system.qdot, TIME)):
+            yield Goal(factor * derived, False, foreign)
+
+
+def _constant(value: sp.Expr, model: Model) -> sp.Expr:
+    """The terms of a sum that depend on parameters alone."""
+    state = variables(model.derivation.system)
+    terms = sp.Add.make_args(sp.expand(value))
+    return sp.Add(*(term for term in terms if not depends_on(term, state)))

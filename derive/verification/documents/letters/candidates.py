@@ -1,0 +1,273 @@
+"""What the letters of a document can mean: a system, an order of coordinates, a convention."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import islice, permutations, product
+from math import pi
+from typing import Any, Literal, TypeAlias
+
+import sympy as sp
+
+from derive.system.parts import Parameter
+from derive.system.system import System
+from derive.verification.documents.letters.constraints import StatedConstraint
+from derive.verification.documents.letters.letters import Letters
+from derive.verification.notation import FACTORS
+
+#: Largest number of candidates of one system.
+MAX_CANDIDATES = 3000
+#: The same of one with constraints, before those of the signs of multipliers.
+MAX_CONSTRAINED = 400
+#: Largest number of choices of parameters of one kind, and of all.
+MAX_CHOICES = 200
+#: Letters of forces and of friction that are tried.
+MAX_FORCES = 2
+
+#: Most multipliers whose signs are tried one by one.
+MAX_SIGNS = 3
+
+#: What a letter of friction damps: the rate of one coordinate or of all, the velocity of each mass
+#: (with Rayleigh's function b (v_1**2 + v_2**2)/2), or the motion as a whole (Q = -b M q_dot).
+Damped: TypeAlias = int | Literal["coordinates", "masses", "motion"]
+
+#: An angle of the system: sign times the document's angle, plus a number of right angles. From
+#: hanging, from upright, mirrored, and from the horizontal.
+ANGLES = ((1, 0), (-1, 2), (1, 2), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
+
+#: Units of parameters, and the kinds of letters.
+UNITS = {
+    "kg": "mass",
+    "m": "length",
+    "m/s^2": "gravity",
+    "N/m": "stiffness",
+    "kg m^2": "inertia",
+    "rad/s": "frequency",
+    "N m s": "damping",
+    "N s/m": "damping",
+    "N": "force",
+    "N m": "force",
+}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A system in the letters of a document.
+
+    A coordinate of the system is a sum of those of the document with signs, plus an offset in
+    right angles or, for lengths, a parameter.
+    """
+
+    system: System
+    coordinates: tuple[str, ...]
+    signs: tuple[tuple[int, ...], ...]  # one row for each coordinate of the system
+    offsets: tuple[int | str, ...]
+    parameters: Mapping[str, str]  # of the system, and the document's letters
+    forces: tuple[tuple[str, int], ...] = ()  # letters of forces on coordinates of the document
+    friction: tuple[tuple[str, Damped], ...] = ()
+    #: Numbers in place of parameters that have no letter.
+    numbers: Mapping[str, str] = field(default_factory=dict)
+    #: Constraints that the document states, after those of the system.
+    constraints: tuple[StatedConstraint, ...] = ()
+    #: Letters of multipliers, the number of the constraint, and the factor of its multiplier.
+    multipliers: tuple[tuple[str, int, sp.Rational], ...] = ()
+    #: Numbers of formulas that state the system, beside constraints.
+    stating: frozenset[int] = frozenset()
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether the coordinates are those of the system, but for the elongation of a spring."""
+        n = range(len(self.coordinates))
+        is_same = all(self.signs[i][j] == (i == j) for i in n for j in n)
+        return is_same and not any(isinstance(one, int) and one for one in self.offsets)
+
+    @property
+    def lacking(self) -> int:
+        """How many parameters of the system have neither a letter nor a number."""
+        return len(self.system.parameters) - len({*self.parameters, *self.numbers})
+
+    @property
+    def given(self) -> frozenset[int]:
+        """Numbers of formulas that state the system, and hold for it whatever they are."""
+        return self.stating | {one.number for one in self.constraints}
+
+    @property
+    def title(self) -> str:
+        """The title of the system."""
+        stated = " with the constraints that the document states" if self.constraints else ""
+        return f"{self.system.title}{stated}"
+
+    @property
+    def condition_count(self) -> int:
+        """The number of constraints."""
+        return len(self.system.conditions) + len(self.constraints)
+
+    def offset(self, index: int, values: Mapping[str, float]) -> float:
+        """The offset of a coordinate in numbers."""
+        offset = self.offsets[index]
+        return values[offset] if isinstance(offset, str) else offset * pi / 2
+
+
+def kind_of(parameter: Parameter) -> str:
+    """The kind of a parameter by its unit, or "" for others."""
+    return UNITS.get(parameter.unit, "")
+
+
+def candidates(
+    system: System, letters: Letters, numbers: Mapping[str, str] | None = None
+) -> Iterator[Candidate]:
+    """Yield the candidates of a system, the likeliest first.
+
+    With `numbers`, by kinds of parameters, these have the numbers instead of letters.
+    """
+    n = len(system.coordinates)
+    if system.conditions or letters.constraints:
+        own = {*letters.multipliers}
+        others = (one for one in letters.parameters if one not in own)
+        letters = replace(letters, parameters=tuple(others))
+    choices = _likeliest(
+        [*_conventions(system, letters)],
+        [*letters.orders([one.unit == "rad" for one in system.coordinates])],
+        [*islice(_parameters(system, letters), MAX_CHOICES)],
+        loads(letters, "force", n),
+        frictions(letters, n),
+    )
+    most = MAX_CONSTRAINED if system.conditions or letters.constraints else MAX_CANDIDATES
+    for (signs, offsets), order, mapping, forces, friction in islice(choices, most):
+        if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
+            continue  # the letter of a force of the system
+        stated = _numbers(system, mapping, numbers or {})
+        if numbers is None or stated:
+            one = Candidate(system, order, signs, offsets, mapping, forces, friction, stated)
+            yield from constrained(one, letters)
+
+
+def constrained(candidate: Candidate, letters: Letters) -> Iterator[Candidate]:
+    """The candidate with the constraints of its coordinates, and meanings of multipliers.
+
+    A system with constraints has no others. There is none if a constraint of the document contains
+    other coordinates as well.
+    """
+    own = set() if candidate.system.conditions else {*candidate.coordinates}
+    stated = tuple(one for one in letters.constraints if one.coordinates & own)
+    if not all(one.coordinates <= own for one in stated):
+        return
+    candidate = replace(candidate, constraints=stated)
+    for factors in _factors(min(candidate.condition_count, len(letters.multipliers))):
+        numbered = zip(letters.multipliers, range(len(factors)), factors, strict=False)
+        yield replace(candidate, multipliers=tuple(numbered))
+
+
+def _factors(count: int) -> Iterator[tuple[sp.Rational, ...]]:
+    """Factors of multipliers: the same for all, or signs of each."""
+    if not count:
+        yield ()
+        return
+    common = [(one,) * count for one in FACTORS]
+    signs = product(*(FACTORS[:2],) * count) if count <= MAX_SIGNS else iter(())
+    yield from dict.fromkeys([*common, *signs])
+
+
+def _numbers(
+    system: System, mapping: Mapping[str, str], numbers: Mapping[str, str]
+) -> dict[str, str]:
+    """Numbers for the parameters without a letter."""
+    kinds = {p.symbol.name: kind_of(p) for p in system.parameters}
+    return {
+        name: numbers.get(kind, "1")
+        for name, kind in kinds.items()
+        if numbers and name not in mapping
+    }
+
+
+def _likeliest(*choices: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
+    """Combinations of choices, each sorted: those with the smallest sum of indices first."""
+    sizes = [len(one) for one in choices]
+    for total in range(sum(sizes) - len(sizes) + 1):
+        for indices in _with_sum(total, sizes):
+            yield tuple(one[i] for one, i in zip(choices, indices, strict=True))
+
+
+def _with_sum(total: int, sizes: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Indices with a given sum."""
+    if not sizes:
+        if not total:
+            yield ()
+        return
+    first, *rest = sizes
+    for index in range(max(0, total - sum(rest) + len(rest)), min(total + 1, first)):
+        for others in _with_sum(total - index, rest):
+            yield (index, *others)
+
+
+def _conventions(
+    system: System, letters: Letters
+) -> Iterator[tuple[tuple[tuple[int, ...], ...], tuple[int | str, ...]]]:
+    """Yield the signs and offsets of coordinates, the usual ones first."""
+    angles = [c.unit == "rad" for c in system.coordinates]
+    n = len(angles)
+    natural: list[int | str] = [0, *letters.of_kind("length")]
+    positions = [c.symbol for c in system.coordinates if c.unit != "rad"]
+    directions = [(1,) if symbol.is_positive else (1, -1) for symbol in positions]
+    for (sign, turn), relative, *shifts in _likeliest(
+        ANGLES if any(angles) else ANGLES[:1],
+        (False, True) if angles.count(True) > 1 else (False,),
+        *([(s, o) for o in natural for s in signs] for signs in directions),
+    ):
+        rows, offsets, rest = list[tuple[int, ...]](), list[int | str](), iter(shifts)
+        for i, is_angle in enumerate(angles):
+            own_sign, offset = (sign, turn) if is_angle else next(rest)
+            before = range(i) if relative and is_angle else ()
+            rows.append(tuple(own_sign * (j == i or (j in before and angles[j])) for j in range(n)))
+            offsets.append(offset)
+        yield tuple(rows), tuple(offsets)
+
+
+def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]:
+    """Yield letters for the parameters of a system, one kind after another."""
+    groups: dict[str, list[str]] = {}
+    for parameter in system.parameters:
+        groups.setdefault(kind_of(parameter), []).append(parameter.symbol.name)
+    for choice in _likeliest(*(_choices(kind, names, letters) for kind, names in groups.items())):
+        used = [letter for one in choice for letter in {*one.values()}]
+        if len({*used}) == len(used):  # no letter has two units
+            yield {name: letter for one in choice for name, letter in one.items()}
+
+
+def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str, str]]:
+    """The letters of parameters of one kind: their own, the same indices, one for all."""
+    own = {name: name for name in names if name in letters.parameters}
+    usual = letters.of_kind(kind) if kind else list(letters.parameters)
+    if len(usual) >= len(names):
+        orders: Iterator[Sequence[str]] = permutations(usual, len(names))
+    else:
+        orders = product(usual, repeat=len(names))
+    chosen = [dict(zip(names, order, strict=True)) for order in islice(orders, MAX_CHOICES)]
+    same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
+    chosen.sort(key=lambda one: sum(_index(name) != _index(one[name]) for name in one))
+    others = [*chosen, *(one for one in same if one not in chosen)]
+    if len(own) == len(names):
+        return [own, *(one for one in others if one != own)]
+    return others or [{}]
+
+
+def _index(name: str) -> str:
+    """The number in a name, and whether its letter is r, which stands for a centre of mass."""
+    return name[:1] * (name[:1] == "r") + "".join(filter(str.isdigit, name))
+
+
+def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ...]]:
+    """The coordinates on which each letter of a force acts: none, or one of them."""
+    usual = letters.of_kind(kind)[:MAX_FORCES]
+    choices = product(*([None, *range(n)] for _ in usual))
+    return [
+        tuple((name, index) for name, index in zip(usual, choice, strict=True) if index is not None)
+        for choice in choices
+    ]
+
+
+def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
+    """What letters of friction damp: one coordinate each, or one of them everything."""
+    one_each: list[tuple[tuple[str, Damped], ...]] = [*loads(letters, "damping", n)]
+    names = letters.of_kind("damping")[:MAX_FORCES]
+    everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
+    return [*one_each, *(((name, damped),) for name in names for damped in everything)]

@@ -1,0 +1,231 @@
+"""The roles of letters in a document: which of them move, are defined, or are parameters."""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice, permutations
+
+from derive.verification.documents.letters.constraints import multipliers_of, stated_constraints
+from derive.verification.documents.letters.entries import matrices_by_entries
+from derive.verification.documents.letters.letters import (
+    ABBREVIATION,
+    COLUMN,
+    COLUMNS,
+    ENERGIES,
+    GENERIC,
+    MATRICES,
+    OPERATORS,
+    QUANTITIES,
+    SQUARES,
+    TOTAL,
+    Letters,
+)
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.text import order, stem
+
+#: Orders of the rows of a matrix that are tried.
+MAX_ORDERS = 6
+
+
+def letters_of(
+    formulas: Sequence[DocumentFormula], derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+) -> Letters:
+    """The letters of all formulas, and of names such as ``dL_dtheta``."""
+    words: Counter[str] = Counter()
+    for formula in formulas:
+        for name in formula.words:
+            if name not in OPERATORS:
+                operand, variables = derivatives.get(name, (name, ()))
+                words.update((operand, *variables))
+    stems = list(dict.fromkeys(map(stem, words)))
+    orders = {one: max(order(name) for name in words if stem(name) == one) for one in stems}
+    combined = _combinations(formulas)
+    operands = {operand for operand, _ in derivatives.values()}
+    subjects = {formula.subject for formula in formulas}
+    quantities = {
+        one: kind
+        for one in stems
+        if (kind := combined.get(one) or _quantity(one))
+        and (one in subjects or one in operands or one in combined)
+    }
+    written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
+    quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
+    quantities |= _matrices(formulas)
+    defined = _defined(formulas, orders)
+    varied = {stem(v) for _, variables in derivatives.values() for v in variables}
+    moving = [
+        one
+        for one in stems
+        if (orders[one] or one in varied)
+        and one not in {*quantities, *defined, "t"}
+        and not GENERIC.match(one)
+        and not one.endswith("_column")
+    ]
+    generic = _generic(formulas, derivatives)
+    moving = [one for one in moving if one not in generic] or moving
+    momenta = {}
+    for one in stems:
+        coordinate = _coordinate(one, moving) if orders[one] < 2 else None
+        if one not in quantities and coordinate is not None:
+            momenta[one] = coordinate
+    quantities |= _routhians(formulas, momenta)
+    defined -= {*quantities}
+    coordinates = [one for one in moving if one not in momenta]
+    coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
+    if all(re.fullmatch(r"q_\d", one) for one in coordinates):
+        # with abbreviations such as s_1, angles need not be written
+        indices = {i for one in stems if ABBREVIATION.match(one) for i in re.findall(r"\d", one)}
+        coordinates += [q for i in sorted(indices) if (q := f"q_{i}") not in coordinates]
+    # a document can define r by other coordinates, and go on with r alone
+    accelerated = tuple(one for one in coordinates if orders.get(one) == 2)
+    coordinates += [one for one in stems if orders[one] == 2 and one in defined]
+    known = {*quantities, *defined, *moving, *momenta, "t"}
+    parameters = [
+        one
+        for one in stems
+        if one not in known and not GENERIC.match(one) and not one.endswith("_column")
+    ]
+    abbreviations = _abbreviations(stems, coordinates)
+    used = {*abbreviations, *matrices_by_entries(stems)}
+    parameters = [one for one in parameters if one not in used]
+    ordered, *others = _orders(formulas, coordinates, stems)
+    multipliers = multipliers_of(stems)
+    constraints = stated_constraints(formulas, coordinates, parameters, multipliers, derivatives)
+    if not constraints:  # lambda = k/m defines another quantity
+        multipliers = multipliers_of(parameters)
+    return Letters(
+        tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
+        ordered, tuple(others), multipliers=multipliers, constraints=constraints,
+    )  # fmt: skip
+
+
+def _orders(
+    formulas: Iterable[DocumentFormula], coordinates: Sequence[str], stems: Sequence[str]
+) -> Iterator[tuple[str, ...]]:
+    """Orders of coordinates: of a column of them, of their indices, or any, from the first use."""
+    for formula in formulas:
+        for column in COLUMN.findall(formula.text):
+            names = [stem(name) for name in column.split(", ")]
+            if set(names) <= set(coordinates) and len(set(names)) == len(names):
+                yield (*names, *(q for q in coordinates if q not in names))
+                return
+    if len({q.partition("_")[0] for q in coordinates}) == 1:
+        yield tuple(sorted(coordinates))
+        return
+    used = sorted(coordinates, key=lambda q: stems.index(q) if q in stems else 0)
+    yield from islice(permutations(used), MAX_ORDERS)
+
+
+def _generic(
+    formulas: Iterable[DocumentFormula], derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+) -> set[str]:
+    """Names such as q_1 that only statements with an index have, such as that about all q_i."""
+    found: dict[bool, set[str]] = {True: set(), False: set()}
+    for formula in formulas:
+        for name in formula.words:
+            operand, variables = derivatives.get(name, (name, ()))
+            found[bool(formula.index)].update(map(stem, (operand, *variables)))
+    return found[True] - found[False]
+
+
+def _abbreviations(
+    names: Iterable[str], coordinates: Sequence[str]
+) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Names such as s_1 and c_12, if there are sines and cosines."""
+    found: dict[str, tuple[str, tuple[str, ...]]] = {}
+    for name in names:
+        if match := ABBREVIATION.match(name):
+            indices = re.findall(r"\d", match[2])
+            angles = [q for i in indices for q in coordinates if q.partition("_")[2] == i]
+            if len(angles) == len(indices):
+                found[name] = {"s": "sin", "c": "cos"}[match[1]], tuple(angles)
+    return found if len({function for function, _ in found.values()}) == 2 else {}
+
+
+def _quantity(name: str) -> str | None:
+    letter, _, index = name.partition("_")
+    if letter == "E" and index in ENERGIES:
+        return ENERGIES[index]
+    return QUANTITIES.get(letter) if index in TOTAL else None
+
+
+def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:
+    """Names R of functions of momenta; other quantities of this name, as radii, contain none."""
+    subjects = {one.subject for one in formulas if {*momenta} & {*one.words}}
+    return {name: "routhian" for name in subjects if name.partition("_")[0] == "R"}
+
+
+def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
+    """Names of the matrices of M q̈ + C q̇ = G that a document writes out."""
+    found: dict[str, str] = {}
+    for formula in formulas:
+        letter, _, index = formula.subject.removesuffix("_column").partition("_")
+        count = max(len(side.entries) for side in formula.sides)
+        if index == "0":
+            continue  # the value at an equilibrium
+        if letter in MATRICES and count in (COLUMNS if letter in "Gg" else SQUARES):
+            found[formula.subject] = MATRICES[letter]
+    return found
+
+
+def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
+    """Energies by statements such as L = K - P and H = T + U."""
+    found: dict[str, str] = {}
+    pattern = re.compile(r"(\w+) ([+-]) (\w+)\Z")
+    for formula in formulas:
+        kind = _quantity(formula.subject)
+        for side in formula.sides[1:]:
+            match = pattern.match(side.text)
+            signs = {"lagrangian": "-", "energy": "+", "hamiltonian": "+"}
+            if match and signs.get(kind or "") == match[2]:
+                found |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
+    return found
+
+
+def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
+    """Names that a formula in others defines, but for solutions such as theta = a*cos(omega*t)."""
+    defined = set()
+    mechanical = _mechanical(formulas, orders)
+    for formula in formulas:
+        name = formula.subject
+        others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
+        moves = any(orders.get(one) for one in others)
+        is_solution = orders.get(name) and not moves
+        last = formula.sides[-1]
+        if last.text.replace(".", "").isdigit():  # a value, such as m = l = 1
+            continue
+        if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
+            continue
+        # m_2 = h*f(t, w) is about another quantity with the name of a mass
+        is_foreign = name in mechanical and not moves and not others <= mechanical
+        if name and not order(name) and name not in others and not is_solution and not is_foreign:
+            defined.add(name)
+        # theta_dot = omega defines omega
+        is_name = last.text.isidentifier() and not order(last.text) and len(formula.sides) == 2
+        if name and order(name) and is_name and orders.get(last.text, 0) < 2:
+            defined.add(last.text)
+    return defined
+
+
+def _mechanical(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
+    """Names in formulas with letters that move."""
+    words = [{stem(word) for word in formula.words} - OPERATORS for formula in formulas]
+    return {name for one in words if any(orders.get(word) for word in one) for name in one}
+
+
+def _words(text: str) -> list[str]:
+    return re.findall(r"[A-Za-z_]\w*", text)
+
+
+def _coordinate(name: str, moving: Sequence[str]) -> str | None:
+    """The coordinate of a momentum, such as p_theta_1, p_1 or p."""
+    letter, _, index = name.partition("_")
+    if letter not in ("p", "P", "Pi"):
+        return None
+    others = [one for one in moving if one.partition("_")[0] not in ("p", "P", "Pi")]
+    if index in others:
+        return index
+    if not index and len(others) == 1:
+        return others[0]
+    numbered = [one for one in others if index and one.endswith(index)]
+    return numbered[0] if numbered else None

@@ -1,0 +1,120 @@
+"""The letters of a document: which of them move, and what the others are by their names.
+
+Names of letters only order the possibilities, except for energies and momenta, which are named
+alike everywhere.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+from typing import Self
+
+from derive.verification.documents.jets import FUNCTIONS
+from derive.verification.documents.letters.constraints import StatedConstraint
+
+#: Names of energies and of the Lagrangian, without their index.
+QUANTITIES: dict[str, str] = {
+    "L": "lagrangian",
+    **dict.fromkeys(("T", "K", "KE", "EK", "Ek"), "kinetic_energy"),
+    **dict.fromkeys(("V", "U", "PE", "EP", "Ep"), "potential_energy"),
+    "H": "hamiltonian",
+    "E": "energy",
+}
+#: Indices that make an energy of E.
+ENERGIES = {
+    **dict.fromkeys(("k", "kin", "K", "c"), "kinetic_energy"),
+    **dict.fromkeys(("p", "pot", "P"), "potential_energy"),
+    **dict.fromkeys(("tot", "total", "t", "mech"), "energy"),
+}
+#: Kinds of partial energies by the first letter of their index, such as that of E_k1.
+KINDS_OF_ENERGIES = {"k": "kinetic_energy", "p": "potential_energy"}
+#: Most letters that can be a coordinate of one kind.
+MAX_COORDINATES = 6
+#: Names of the mass matrix M of M q̈ + C q̇ = G, of the matrix C and of the column G.
+MATRICES = {"M": "mass_matrix", "C": "coriolis_matrix", "G": "gravity", "g": "gravity"}
+#: Numbers of entries of matrices and columns.
+SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
+#: Indices that change nothing.
+TOTAL = ("", "tot", "total", "sys")
+
+#: Kinds of parameters by the first letters of their names, the usual ones first.
+KINDS: dict[str, tuple[str, ...]] = {
+    "mass": ("m", "M", "mu", "mass"),
+    "length": ("l", "L", "ell", "r", "R", "a", "b", "d", "h", "s", "rho", "length", "A"),
+    "gravity": ("g", "G"),
+    "stiffness": ("k", "K", "kappa", "c"),
+    "inertia": ("I", "J", "Theta"),
+    "frequency": ("omega", "Omega", "w", "nu"),
+    "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta"),
+    "force": ("F", "u", "f", "tau", "Q"),
+}
+
+#: Parts of longer names, as programs have them.
+PARTS: dict[str, tuple[str, ...]] = {
+    "mass": ("mass",),
+    "length": ("length",),
+    "gravity": ("grav",),
+    "damping": ("damp", "fric"),
+    "force": ("force", "torque", "action"),
+}
+
+OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
+OPERATORS |= {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}
+#: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
+ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
+#: A column of names.
+COLUMN = re.compile(r"\((\w+(?:, \w+)+)\)")
+GENERIC = re.compile(r"\w+_[ij]\Z")
+
+
+#: Names of angles and of other coordinates by their first letters.
+ANGLES = ("theta", "phi", "varphi", "alpha", "beta", "psi", "vartheta", "gamma", "q")
+
+
+@dataclass(frozen=True)
+class Letters:
+    """The names of a document without dots."""
+
+    coordinates: tuple[str, ...]  # the likeliest first
+    momenta: Mapping[str, str]  # and their coordinates
+    quantities: Mapping[str, str]  # and their kinds
+    parameters: tuple[str, ...]  # all others that no formula defines
+    accelerated: tuple[str, ...]  # coordinates whose accelerations occur, and no definition
+    abbreviations: Mapping[str, tuple[str, tuple[str, ...]]]  # such as s_12: sine of q_1 and q_2
+    ordered: tuple[str, ...]  # coordinates in the order of columns and matrices
+    other_orders: tuple[tuple[str, ...], ...] = ()  # if the document does not state it
+    kinds: Mapping[str, str] = field(default_factory=dict)  # of parameters, if they are given
+    multipliers: tuple[str, ...] = ()  # parameters that can be multipliers of constraints
+    constraints: tuple[StatedConstraint, ...] = ()
+
+    def hinted(self, kinds: Mapping[str, str]) -> Self:
+        """The letters with given kinds of parameters."""
+        return replace(self, kinds=kinds)
+
+    def orders(self, are_angles: Sequence[bool]) -> Iterator[tuple[str, ...]]:
+        """Yield coordinates for those of a system, of which some are angles.
+
+        Greek letters are angles and others are not, unless there are too few of these.
+        """
+        angles = [q for q in self.coordinates if q.partition("_")[0] in ANGLES]
+        lengths = [q for q in self.coordinates if q not in angles or q.partition("_")[0] == "q"]
+        pools = {
+            True: angles if len(angles) >= are_angles.count(True) else self.coordinates,
+            False: lengths if len(lengths) >= are_angles.count(False) else self.coordinates,
+        }
+        pools = {is_angle: pool[:MAX_COORDINATES] for is_angle, pool in pools.items()}
+        for choice in product(*(pools[is_angle] for is_angle in are_angles)):
+            if len(set(choice)) == len(choice):
+                yield choice
+
+    def of_kind(self, kind: str) -> list[str]:
+        """Parameters that can be of a kind, the usual ones first."""
+        usual = KINDS[kind]
+        given = [name for name, own in self.kinds.items() if own == kind]
+        stems = {p: p.partition("_")[0].rstrip("0123456789") for p in self.parameters}
+        named = [p for p in self.parameters if stems[p] in usual and p not in self.kinds]
+        parts = PARTS.get(kind, ())
+        worded = [p for p in self.parameters if any(one in p.lower() for one in parts)]
+        worded = [p for p in worded if p not in (*named, *self.kinds)]
+        return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p)), *worded]

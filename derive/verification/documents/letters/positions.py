@@ -1,0 +1,169 @@
+"""The system that a document states: positions of its masses, gravity, and its potential energy."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+import sympy as sp
+
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
+from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
+from derive.system.symbols import TIME
+from derive.system.system import System
+from derive.verification.documents.letters.candidates import (
+    UNITS,
+    Candidate,
+    constrained,
+    frictions,
+    loads,
+)
+from derive.verification.documents.letters.document_system import derivation, valid_name
+from derive.verification.documents.letters.letters import KINDS, Letters
+from derive.verification.documents.statements import DocumentFormula, definitions
+
+#: Names of Cartesian components.
+AXES = ("x", "y", "z")
+POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
+COLUMN = re.compile(r"(?:vec)?[rRxXpq](?:_(\w+?))?(?:_column)?\Z")
+
+
+def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[System]:
+    """Yield systems with the positions of a document, with its axis upwards or downwards."""
+    symbols = {q: sp.Symbol(valid_name(q), real=True) for q in letters.coordinates}
+    for name in letters.parameters:
+        is_positive = any(name in letters.of_kind(kind) for kind in ("mass", "length"))
+        assumptions = {"positive": True} if is_positive else {"real": True}
+        symbols[name] = sp.Symbol(valid_name(name), **assumptions)
+    points = _points(letters, formulas, symbols)
+    masses = [*_masses(points, letters, symbols)]
+    gravity = next((symbols[name] for name in letters.of_kind("gravity")), None)
+    if not masses:
+        return
+    positions = sp.Tuple(*(r for mass in masses for r in mass.position)).free_symbols
+    q = [symbols[name] for name in letters.coordinates if symbols[name] in positions]
+    if not q or any(symbols[name] not in q for name in letters.accelerated):
+        return  # the positions are those of a part of the system
+    coordinates = [Coordinate(one, "m", "a coordinate") for one in q]
+    for sign in (1, -1) if gravity is not None else (0,):
+        weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[-1] for m in masses))
+        for potential in _potentials(weight, gravity, letters, formulas, symbols):
+            used = sp.Tuple(potential, *(m.mass for m in masses)).free_symbols | positions
+            parameters = [
+                Parameter(symbols[name], _unit(name, letters), 1.0, "a parameter")
+                for name in letters.parameters
+                if symbols[name] in used
+            ]
+            try:
+                system = System(
+                    "stated", "The system that the document states", coordinates, parameters,
+                    masses, potential=potential, gravity=(sp.S.Zero,) * len(masses[0].position),
+                )  # fmt: skip
+                derivation(system)
+            except SystemDefinitionError:  # such as of coordinates that are not independent
+                continue
+            yield system
+
+
+def stated_candidates(system: System, letters: Letters) -> Iterator[Candidate]:
+    """Yield the candidates of a system in the document's own letters: its forces alone vary."""
+    names = {symbol.name: name for name in letters.coordinates for symbol in system.q
+             if symbol.name == valid_name(name)}  # fmt: skip
+    order = tuple(names[symbol.name] for symbol in system.q)
+    n = len(order)
+    signs = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+    parameters = {p.name: name for name in letters.parameters for p in system.params
+                  if p.name == valid_name(name)}  # fmt: skip
+    for forces in loads(letters, "force", n):
+        for friction in frictions(letters, n):
+            one = Candidate(system, order, signs, (0,) * n, parameters, forces, friction)
+            yield from constrained(one, letters)
+
+
+def _points(
+    letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
+) -> dict[str, tuple[sp.Expr, ...]]:
+    """The positions that formulas define, by the index of their names."""
+    known: dict[str, sp.Expr] = {}
+    columns: dict[str, tuple[sp.Expr, ...]] = {}
+    scope = {**FUNCTIONS, **symbols, "t": TIME}
+    moving = {symbols[q] for q in letters.coordinates}
+    for formula in formulas:
+        for name, text in definitions(formula):
+            if name in known or name in columns:
+                continue
+            try:
+                value = parse(text, {**scope, **known})
+            except ExpressionError:
+                continue
+            if not value.free_symbols & moving and value != 0:  # a cart has y_0 = 0
+                continue
+            if isinstance(value, sp.MatrixBase) and value.cols == 1 and 1 < value.rows < 4:
+                if match := COLUMN.match(name):
+                    columns[match[1] or ""] = tuple(value)
+            elif POINT.match(name) and name not in letters.coordinates:
+                known[name] = value
+    points: dict[str, dict[int, sp.Expr]] = {}
+    for name, value in known.items():
+        match = POINT.match(name)
+        assert match
+        axis = AXES.index(match[1].lower())
+        points.setdefault(match[2] or "", {})[axis] = value
+    found = {
+        index: tuple(axes.get(k, sp.S.Zero) for k in range(3 if 2 in axes else 2))
+        for index, axes in points.items()
+        if len(axes) > 1 and any(value.free_symbols & moving for value in axes.values())
+    }
+    return found or columns
+
+
+def _masses(
+    points: Mapping[str, tuple[sp.Expr, ...]], letters: Letters, symbols: Mapping[str, sp.Symbol]
+) -> Iterator[PointMass]:
+    """A mass at each point: that of the same index, or the only one; a cart has the other."""
+    names = letters.of_kind("mass")
+    if not points or not names:
+        return
+    left = [*names]
+    dimension = max(map(len, points.values()))
+    for index, position in points.items():
+        same = [n for n in names if n.partition("_")[2] == index or (index and n.endswith(index))]
+        chosen = (same or left or names)[0]
+        if chosen in left:
+            left.remove(chosen)
+        position = (*position[:-1], *[sp.S.Zero] * (dimension - len(position)), position[-1])
+        yield PointMass(symbols[chosen], position)
+    lines = [q for q in letters.coordinates if q.partition("_")[0] in ("x", "s", "X")]
+    is_missing = not any(position[-1] == 0 for position in points.values())
+    if len(left) == 1 and lines and dimension == 2 and is_missing:
+        yield PointMass(symbols[left[0]], (symbols[lines[0]], sp.S.Zero))
+
+
+def _potentials(
+    weight: sp.Expr,
+    gravity: sp.Symbol | None,
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    symbols: Mapping[str, sp.Symbol],
+) -> Iterator[sp.Expr]:
+    """The weight, and the stated potential energies that contain it and springs."""
+    yield weight
+    scope = {**FUNCTIONS, **symbols, "t": TIME}
+    for formula in formulas:
+        if letters.quantities.get(formula.subject) != "potential_energy":
+            continue
+        for side in formula.sides[1:]:
+            try:
+                value = parse(side.text, scope)
+            except ExpressionError:
+                continue
+            if isinstance(value, sp.MatrixBase):
+                continue
+            rest = sp.expand(value - weight)
+            if gravity is None or gravity not in rest.free_symbols:
+                yield value
+                return
+
+
+def _unit(name: str, letters: Letters) -> str:
+    kinds = {kind: unit for unit, kind in reversed(UNITS.items())}
+    return next((kinds[k] for k in KINDS if k in kinds and name in letters.of_kind(k)), "1")

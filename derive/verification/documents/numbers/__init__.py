@@ -1,0 +1,1 @@
+"""Formulas of documents in numbers: states and motions, for many meanings of letters at once."""

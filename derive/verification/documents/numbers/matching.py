@@ -1,0 +1,117 @@
+"""How many formulas of a document hold for each meaning of its letters, in numbers.
+
+All candidates of a system are evaluated at once: only accelerations, momenta and energies differ
+between them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from derive.verification.documents.letters.candidates import Candidate
+from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.numbers.motions import ArbitraryMotion, Motions
+from derive.verification.documents.numbers.numbers import Derivatives, Numbers
+from derive.verification.documents.statements import DocumentFormula
+
+#: The worth of a formula that holds but for one term.
+NEARLY = 0.5
+#: How much it speaks against a meaning that angles are not those from hanging.
+UNUSUAL = 0.25
+#: How much a formula that does not hold speaks against a meaning.
+FAILING = 0.5
+#: Comparisons of a document in which such formulas are considered.
+FEW = 12
+#: Most candidates of a system that are considered beside the best.
+MAX_RIVALS = 6
+
+#: A comparison: its formula's number, and the text of a side.
+Comparison = tuple[int, str]
+
+
+@dataclass(frozen=True)
+class Match:
+    """A candidate, how many comparisons hold with it, and how many were possible."""
+
+    candidate: Candidate
+    holding: float
+    compared: int
+    #: Numbers of formulas that do not hold, and whether each holds but for one term.
+    failed: frozenset[int] = frozenset()
+    is_nearly: bool = True
+    #: Alike for candidates of the same motions and energies.
+    signature: bytes = b""
+
+    @property
+    def support(self) -> float:
+        """Formulas that hold, less some of those that do not."""
+        return self.holding - FAILING * (self.compared - self.holding)
+
+    @property
+    def score(self) -> float:
+        """The support, less for a convention that is not the usual one."""
+        return self.support - UNUSUAL * (not self.candidate.is_usual)
+
+
+def trivial_comparisons(
+    letters: Letters, formulas: Sequence[DocumentFormula], derivatives: Derivatives
+) -> frozenset[Comparison]:
+    """Comparisons that hold whatever the motion is, such as those of a definition."""
+    numbers = Numbers(ArbitraryMotion(letters), letters, derivatives)
+    numbers.define(formulas)
+    return frozenset(
+        (index, side)
+        for index, formula in enumerate(formulas)
+        for side, vote in numbers.comparisons(formula)
+        if vote.all()
+    )
+
+
+def best_matches(
+    tried: Sequence[Candidate],
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    derivatives: Derivatives,
+    trivial: frozenset[Comparison],
+) -> list[Match]:
+    """The candidates of one system that can be meant, the best first.
+
+    These are the one for which most formulas hold, others with the same support, and usual ones
+    for which a few formulas fail by one term each; of those of the same motions the first.
+    """
+    if not tried:
+        return []
+    numbers = Numbers(Motions(tried, letters), letters, derivatives)
+    numbers.define(formulas)
+    votes = [
+        (index, side, vote)
+        for index, formula in enumerate(formulas)
+        for side, vote in numbers.comparisons(formula)
+        if (index, side) not in trivial and index not in tried[0].given
+    ]
+    if not votes:
+        return []
+    agreeing = np.array([vote for *_, vote in votes])
+    near = np.zeros_like(agreeing)
+    if len(votes) <= FEW:
+        for row, (index, side, vote) in enumerate(votes):
+            hits = numbers.is_near(formulas[index].sides[0].text, side)
+            if hits is not None:
+                near[row] = hits & ~vote
+    holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
+    usual = np.array([one.is_usual for one in tried])
+    score = holding - UNUSUAL * ~usual
+    best = int(np.argmax(score))  # the first of several: the likeliest
+    is_nearly = np.all(agreeing | near, axis=0)
+    is_rival = (holding >= holding[best]) | (usual & is_nearly)
+    signatures = numbers.signatures()
+    chosen: dict[bytes, int] = {signatures[best]: best}
+    for k in sorted(map(int, np.flatnonzero(is_rival)), key=lambda k: -score[k]):
+        chosen.setdefault(signatures[k], k)
+    rows = np.array([index for index, *_ in votes])
+    return [
+        Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
+              bool(is_nearly[k]), signature)
+        for signature, k in [*chosen.items()][:MAX_RIVALS]
+    ]  # fmt: skip

@@ -1,0 +1,168 @@
+"""Letters without a definition: what they must be for the formulas that contain them to hold."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+from derive.verification.documents.jets import UnknownNameError, evaluated
+from derive.verification.documents.letters.candidates import Candidate
+from derive.verification.documents.letters.letters import OPERATORS, Letters
+from derive.verification.documents.numbers.motions import Motions
+from derive.verification.documents.numbers.numbers import Numbers
+from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.text import RATES
+from derive.verification.notation import FACTORS
+
+#: Unknown letters of a formula that are sought at once, and comparisons that must hold.
+MAX_UNKNOWN, SUPPORT = 2, 2
+
+
+def resolved(
+    candidate: Candidate,
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+) -> dict[str, str]:
+    """Formulas in known letters for letters without a meaning.
+
+    A meaning is accepted if at least two comparisons and more than half of them hold with it, so
+    that a mistake in a single letter is not taken for another letter.
+    """
+    numbers = Numbers(Motions([candidate], letters), letters, derivatives)
+    meanings: dict[str, str] = {}
+    used = {
+        *candidate.parameters.values(),
+        *(name for name, _ in (*candidate.forces, *candidate.friction)),
+        *(name for name, *_ in candidate.multipliers),
+        *(word for one in candidate.constraints for word in WORD.findall(one.text)),
+    }
+    for name in letters.parameters:
+        if name not in used:  # a random number until now
+            numbers.values.pop(name, None)
+    others = [q for q in letters.coordinates if q not in candidate.coordinates]
+    for name in (q + ending for q in others for ending in RATES[:3]):
+        numbers.values.pop(name, None)
+    numbers.define(formulas)
+    for names in _aliases(others, candidate):
+        meanings |= _accepted(names, formulas, numbers)
+    numbers.define(formulas)
+    while True:
+        unknown = {
+            f: u
+            for f in formulas
+            if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN
+            and not {*u} & {*letters.multipliers}
+        }  # which would hold with any reaction
+        found = next((m for u in dict.fromkeys(unknown.values())
+                      if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],
+                                        candidate, numbers))), None)  # fmt: skip
+        if not found:
+            return meanings
+        for name, text in [*found.items(), *_rates(found, letters)]:
+            meanings[name] = text
+            numbers.set_rates(name, evaluated(text, numbers.values))
+        numbers.define(formulas)
+
+
+def _aliases(names: Sequence[str], candidate: Candidate) -> Iterator[dict[str, str]]:
+    """Other letters with the same indices as the coordinates, such as phi_1 for theta_1."""
+    indexed = {q.partition("_")[2]: q for q in candidate.coordinates}
+    for letter in dict.fromkeys(name.partition("_")[0] for name in names):
+        pairs = {n: indexed.get(n.partition("_")[2]) for n in names if n.startswith(letter)}
+        found = {name: q for name, q in pairs.items() if q}
+        if len(found) == len(candidate.coordinates):
+            yield found
+
+
+def _accepted(
+    found: Mapping[str, str], formulas: Sequence[DocumentFormula], numbers: Numbers
+) -> Mapping[str, str]:
+    """The meanings if several formulas hold with them, which no other meaning would achieve."""
+    for name, q in found.items():
+        numbers.set_rates(name, numbers.values[q])
+    words = {name + ending for name in found for ending in RATES}
+    votes = [
+        bool(vote.all())
+        for one in formulas
+        if words & {*one.words}
+        for _, vote in numbers.comparisons(one)
+    ]
+    if votes.count(True) >= max(SUPPORT, len(votes) // 4):
+        return found
+    for name in (n + ending for n in found for ending in RATES[:3]):
+        numbers.values.pop(name, None)
+    return {}
+
+
+def _rates(found: Mapping[str, str], letters: Letters) -> Iterator[tuple[str, str]]:
+    """Names such as td_1 and tdd_1, if t_1 is a coordinate."""
+    for name, text in found.items():
+        letter, _, index = name.partition("_")
+        for mark, ending in (("d", "_dot"), ("dd", "_ddot")):
+            rate = f"{letter}{mark}_{index}"
+            if rate in letters.parameters and text in letters.coordinates:
+                yield rate, text + ending
+
+
+def _unknown(formula: DocumentFormula, numbers: Numbers) -> tuple[str, ...]:
+    return tuple(
+        name
+        for name in formula.words
+        if name not in numbers.values and name not in OPERATORS and name != formula.subject
+    )
+
+
+def _meaning(
+    names: tuple[str, ...],
+    formulas: Sequence[DocumentFormula],
+    candidate: Candidate,
+    numbers: Numbers,
+) -> dict[str, str] | None:
+    pool = [*_pool(candidate)]
+    if len(names) == 1:
+        pool += _reactions(candidate, numbers)
+    for texts in product(pool, repeat=len(names)):
+        try:
+            jets = {
+                name: evaluated(text, numbers.values)
+                for name, text in zip(names, texts, strict=True)
+            }
+        except UnknownNameError:
+            continue
+        numbers.values.update(jets)
+        votes = [
+            bool(vote.all())
+            for one in formulas
+            for side, vote in numbers.comparisons(one)
+            if set(names) & {*WORD.findall(f"{side} {one.sides[0].text}")}
+        ]
+        for name in names:
+            del numbers.values[name]
+        # no mistake in a letter makes a sum of it
+        is_sum = all("+" in text for text in texts)
+        least = max(1, len(votes) // 2) if is_sum else max(SUPPORT, len(votes) // 2 + 1)
+        if votes.count(True) >= least:
+            return dict(zip(names, texts, strict=True))
+    return None
+
+
+def _pool(candidate: Candidate) -> Iterator[str]:
+    """Quantities that a letter can stand for."""
+    for signs, offset in zip(candidate.signs, candidate.offsets, strict=True):
+        terms = [q for q, sign in zip(candidate.coordinates, signs, strict=True) if sign]
+        if isinstance(offset, str):
+            yield " + ".join([offset, *terms])
+        elif len(terms) > 1:
+            yield " + ".join(terms)
+    for ending in RATES[:3]:
+        for q in candidate.coordinates:
+            yield q + ending
+    yield from dict.fromkeys(candidate.parameters.values())
+
+
+def _reactions(candidate: Candidate, numbers: Numbers) -> Iterator[str]:
+    """Forces that a letter can stand for: multipliers, times or over a letter."""
+    letters = {word for one in candidate.constraints for word in WORD.findall(one.text)}
+    letters &= {*numbers.parameters}
+    for name, factor in product(numbers.reactions, FACTORS):
+        yield f"{factor}*{name}"
+        yield from (f"{factor}*{name}{sign}{letter}" for letter in sorted(letters) for sign in "*/")

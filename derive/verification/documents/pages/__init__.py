@@ -1,0 +1,1 @@
+"""Verdicts where formulas stand: pages, LaTeX and tables."""

@@ -1,0 +1,107 @@
+"""Wrong formulas that follow correctly from a wrong one before them."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.formulas.syntax import ExpressionError
+from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.side_verdict import SideVerdict
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.engine import joined
+from derive.verification.model import time_derivative
+
+#: Energies from which others follow.
+ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
+
+Judged = tuple[DocumentFormula, SideVerdict]
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A wrong energy: the line of its formula, and the Lagrangian that it gives."""
+
+    line: int
+    lagrangian: sp.Expr
+
+
+class Consequences:
+    """The formulas of a document that follow from its own wrong energies."""
+
+    def __init__(self, scope: DocumentScope) -> None:
+        self._scope, self._context = scope, scope.model.context
+
+    def marked(self, judged: Sequence[Judged]) -> list[Judged]:
+        """The verdicts, with a note on wrong formulas that follow from a wrong one before them."""
+        values = {kind: getattr(self._scope.derivation, kind) for kind in ENERGIES}
+        source: _Source | None = None
+        result: list[Judged] = []
+        for formula, verdict in judged:
+            if verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
+                note = joined(verdict.verdict.note, f"it follows from line {source.line}")
+                verdict = replace(verdict, verdict=replace(verdict.verdict, note=note))
+            elif verdict.verdict.verdict == "wrong" and verdict.kind in ENERGIES:
+                value = self._written(formula)
+                if value is not None:
+                    values[verdict.kind] = value
+                    L = values["kinetic_energy"] - values["potential_energy"]
+                    own = value if verdict.kind == "lagrangian" else L
+                    source = _Source(formula.occurrence.line, own)
+            result.append((formula, verdict))
+        return result
+
+    def _written(self, formula: DocumentFormula) -> sp.Expr | None:
+        """The value of the last side of a formula."""
+        with suppress(ExpressionError):
+            value = self._scope.value(formula.sides[-1].text)
+            return None if isinstance(value, sp.MatrixBase) else value
+        return None
+
+    def _follows(self, formula: DocumentFormula, source: _Source) -> bool:
+        value, subject = self._written(formula), formula.subject
+        if value is None:
+            return False
+        try:
+            if subject in self._scope.letters.quantities or subject.isidentifier():
+                required = self._required(subject, source.lagrangian)
+                if required is not None and self._context.is_zero(value - required):
+                    return True
+            return self._is_equation(formula, source.lagrangian)
+        except (ExpressionError, NotImplementedError):
+            return False
+
+    def _required(self, name: str, lagrangian: sp.Expr) -> sp.Expr | None:
+        """The value of a name that follows from a Lagrangian."""
+        system, letters = self._scope.derivation.system, self._scope.letters
+        if letters.quantities.get(name) == "lagrangian":
+            return lagrangian
+        operand, variables = self._scope.derivatives.get(name, ("", ()))
+        if letters.quantities.get(operand) == "lagrangian" and len(variables) == 1:
+            variable = self._scope.all_names.get(variables[0])
+            return lagrangian.diff(variable) if isinstance(variable, sp.Symbol) else None
+        coordinate = self._scope.all_names.get(letters.momenta.get(name, ""))
+        if coordinate in system.q:
+            return lagrangian.diff(system.qdot[system.q.index(coordinate)])
+        if letters.quantities.get(name) in ("energy", "hamiltonian"):
+            pairs = ((v, lagrangian.diff(v)) for v in system.qdot)
+            return sp.Add(*(v * p for v, p in pairs)) - lagrangian
+        return None
+
+    def _is_equation(self, formula: DocumentFormula, lagrangian: sp.Expr) -> bool:
+        """Whether a formula is an equation of motion of a Lagrangian, times any factor."""
+        system = self._scope.derivation.system
+        left, right = (self._scope.value(one.text) for one in (formula.sides[0], formula.sides[-1]))
+        difference = left - right
+        for q, v, force in zip(system.q, system.qdot, system.applied, strict=True):
+            rate = time_derivative(system, lagrangian.diff(v))
+            equation = rate - lagrangian.diff(q) - force
+            for a in system.qddot:
+                factors = equation.diff(a), difference.diff(a)
+                if all(factors):
+                    cross = difference * factors[0] - equation * factors[1]
+                    if self._context.is_zero(cross):
+                        return True
+                    break
+        return False

@@ -1,0 +1,120 @@
+"""Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from derive.formulas.syntax import is_sum, syntax_tree
+from derive.formulas.typeset.latex import latex as latex_of
+from derive.reading.latex.tree import Span
+from derive.verification.documents.rules.side_verdict import SideVerdict
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.verdict import Correction
+
+
+@dataclass(frozen=True)
+class Corrected:
+    """LaTeX of the wrong terms and of the corrected formula, and the spans of the terms.
+
+    A span is empty where a term is missing.
+    """
+
+    wrong_term: str = ""
+    correction: str = ""
+    spans: tuple[Span, ...] = ()
+
+
+def corrected(
+    formula: DocumentFormula, result: SideVerdict, letters: Mapping[str, str]
+) -> Corrected:
+    """The corrections of a verdict in LaTeX; empty if none are known."""
+    latex, tree = formula.occurrence.latex, formula.occurrence.tree
+    verdict = result.verdict
+    if not verdict.corrections and verdict.correction == formula.subject:
+        return Corrected()  # nothing but the quantity itself
+    if not verdict.corrections or formula.index:
+        whole = written(verdict.correction, letters) if verdict.correction else ""
+        if whole and result.kind != "euler_lagrange" and "=" not in whole:
+            whole = f"{latex[slice(*formula.occurrence.sides[0].span)]} = {whole}"
+        return Corrected(correction=whole)
+    changes: list[tuple[Span, str]] = []
+    for one in verdict.corrections:
+        span = _place(formula, result, one)
+        if span is None:
+            return Corrected(correction=written(verdict.correction, letters))
+        new = written(one.correct, letters)
+        new = in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
+        changes.append((span, new))
+    changes.sort(reverse=True)
+    text, start = latex, tree.span[0]
+    for (a, b), new in changes:
+        text = inserted(text[:a], text[a:b], new, text[b:])
+    end = tree.span[1] + len(text) - len(latex)
+    spans = tuple(span for span, _ in reversed(changes))
+    terms = [latex[slice(*span)] for span in spans if span[0] < span[1]]
+    return Corrected("; ".join(terms), text[start:end].strip(), spans)
+
+
+def _place(formula: DocumentFormula, result: SideVerdict, one: Correction) -> Span | None:
+    """The span of a wrong term in the LaTeX; empty where a term is missing."""
+    if not one.wrong:
+        side = result.parts[0][1]
+        whole = side.source(0, len(side.text))
+        return whole and (whole[1], whole[1])
+    for _, side in result.parts:
+        for start, end in places(side.text, one.wrong):
+            if found := side.source(start, end):
+                return _with_sign(formula.occurrence.latex, found) if one.wrong[0] == "-" else found
+    return None
+
+
+def places(text: str, term: str) -> list[tuple[int, int]]:
+    """Where a term stands in a formula of our syntax, whatever its spaces: as a factor last."""
+    tokens = re.findall(r"\w+|\*\*|\S", term)
+    terms, factors = list[tuple[int, int]](), list[tuple[int, int]]()
+    for match in re.finditer(r"\s*".join(map(re.escape, tokens)), text):
+        before, after = text[: match.start()].rstrip(), text[match.end() :].lstrip()
+        if before.endswith("**") or after.startswith("**"):
+            continue
+        begins = before[-1:] in "(+-=,*/[" or text[match.start()] == "-"
+        if begins and after[:1] in ")+-=,*/]":
+            is_factor = before[-1:] in ("*", "/") or after[:1] in ("*", "/")
+            (factors if is_factor else terms).append(match.span())
+    return terms + factors
+
+
+def _with_sign(latex: str, span: Span) -> Span:
+    """The span with the minus sign before it."""
+    start = len(latex[: span[0]].rstrip())
+    if latex[start - 1 : start] == "-" and latex[span[0]] != "-":
+        return start - 1, span[1]
+    return span
+
+
+def inserted(before: str, old: str, new: str, after: str) -> str:
+    """Put a term in place of another, and join its sign with the one before it."""
+    head = before.rstrip()
+    if not old:
+        sign = " - " if new.startswith("-") else " + "
+        return head + sign + new.lstrip("- ") + after
+    if new.startswith("-") and head[-1:] in ("+", "-"):
+        return f"{head[:-1]}{'-' if head[-1] == '+' else '+'} {new[1:].lstrip()}{after}"
+    is_term = head[-1:] not in ("", *"=&({[+-,")
+    if old.startswith("-") and new.startswith("-") and is_term:
+        return f"{head} - {new[1:].lstrip()}{after}"
+    if old.startswith("-") and not new.startswith("-") and is_term:
+        return f"{before}+ {new}{after}"
+    return before + new + after
+
+
+def in_brackets(one: Correction, new: str, before: str, after: str) -> str:
+    """A sum in brackets where it replaces a factor."""
+    is_factor = before.rstrip()[-1:] not in ("", *"(+=&[{,") or after.lstrip()[:1] not in (
+        "", *")+-=&]},\\",
+    )  # fmt: skip
+    return rf"\left({new}\right)" if is_factor and is_sum(syntax_tree(one.correct)) else new
+
+
+def written(text: str, letters: Mapping[str, str]) -> str:
+    """A formula or an equation as LaTeX, with the letters as a document writes them."""
+    return " = ".join(latex_of(syntax_tree(side), letters) for side in text.split("="))

@@ -1,0 +1,338 @@
+"""The names of a document as values of its system: letters, energies, definitions, derivatives."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+import sympy as sp
+
+from derive.formulas.evaluation.sampling import is_small
+from derive.formulas.expression import Value, parse
+from derive.formulas.proofs.zero import vanishes
+from derive.formulas.syntax import ExpressionError
+from derive.mechanics.derivation import Derivation
+from derive.mechanics.routhian import Routhian
+from derive.system.symbols import TIME, acceleration, velocity
+from derive.verification.documents.letters.document_system import Meaning
+from derive.verification.documents.letters.entries import composed
+from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.statements import WORD, DocumentFormula, definitions
+from derive.verification.documents.text import RATES, stem
+from derive.verification.model import Model, depends_on, own_names, time_derivative
+from derive.verification.notation import usual_names, with_multipliers
+
+#: Generalized forces, such as Q_theta.
+FORCE = re.compile(r"[QF]_(\w+)\Z")
+#: Rounds in which definitions are sought: a name can be defined after its use.
+ROUNDS = 4
+
+
+class DocumentScope:
+    """The model of a document, and which formulas define its names."""
+
+    def __init__(
+        self,
+        meaning: Meaning,
+        letters: Letters,
+        formulas: Sequence[DocumentFormula],
+        derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+        meanings: Mapping[str, str],
+    ) -> None:
+        self.derivation = Derivation(meaning.system)
+        self.letters, self.derivatives = letters, derivatives
+        self._system = meaning.system
+        #: Names with their values.
+        self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))
+        #: Formulas that define a name, with the text that does.
+        self.defining: dict[str, tuple[DocumentFormula, str]] = {}
+        self._add_letters(meaning)
+        own = meaning.multipliers or next(usual_names(self._system))
+        self.names |= own
+        self._add_energies()
+        self._add_routhians(formulas)
+        self._add_derivatives()
+        self._add_usual_names()
+        self._add_total_energies(formulas)
+        defined = {formula.subject for formula in formulas}
+        for name, text in meanings.items():
+            operand, _ = derivatives.get(name, ("", ()))
+            if name not in own and operand not in defined - {""}:
+                self._add(name, self.value(text))
+        #: Names of matrices and columns whose entries are defined one by one, and of columns of
+        #: small displacements.
+        self.composed, self.displacements = set[str](), set[str]()
+        for _ in range(ROUNDS):
+            known = len(self.names)
+            for formula in formulas:
+                self._define(formula)
+            self._add_columns(formulas)
+            self._add_derivatives()
+            if len(self.names) == known:
+                break
+        #: Parameters with the numbers that the document sets them to.
+        self.special_values = self._special_values(formulas)
+        equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
+        if meaning.multipliers:
+            self.model = Model(self.derivation, self.names)
+            return
+        others = {name: value for name, value in self.names.items() if name not in own}
+        self.model = with_multipliers(Model(self.derivation, others), equations)
+        self.names = dict(self.model.names)
+
+    @property
+    def all_names(self) -> dict[str, Any]:
+        """All names that formulas can use."""
+        return {**own_names(self._system), **self.names}
+
+    def value(self, text: str) -> Value:
+        """The value of a formula; an `ExpressionError` if it has none."""
+        return parse(text, self.all_names)
+
+    def correct(self, values: Mapping[str, Value]) -> None:
+        """Give names the values that they must have, whatever the document defines them to be."""
+        for name, value in values.items():
+            self._set(name, value)
+        self.model = Model(self.derivation, self.names)
+
+    def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
+        """Parameters in statements such as m = l = 1."""
+        found: dict[sp.Symbol, sp.Expr] = {}
+        for formula in formulas:
+            last = formula.sides[-1].text
+            names = [self.names.get(side.text) for side in formula.sides[:-1]]
+            is_value = {*formula.relations} == {"="} and last.isdigit() and int(last)
+            if is_value and all(name in self._system.params for name in names):
+                found |= dict.fromkeys(names, sp.Integer(last))
+        return found
+
+    def _add_letters(self, meaning: Meaning) -> None:
+        system = self._system
+        for name, symbol in meaning.symbols.items():
+            self.names[name] = symbol
+            if symbol in system.q:
+                self.names[f"{name}_dot"] = velocity(symbol)
+                self.names[f"{name}_ddot"] = acceleration(symbol)
+        for name, coordinate in self.letters.momenta.items():
+            if coordinate in meaning.symbols and meaning.symbols[coordinate] in system.q:
+                index = system.q.index(meaning.symbols[coordinate])
+                self.names[name] = system.p[index]
+                rate = time_derivative(system, self.derivation.momenta[index])
+                self.names[f"{name}_dot"] = rate
+
+    def _add_usual_names(self) -> None:
+        """Names that documents use without a definition: sines such as s_12, and forces."""
+        system = self._system
+        for name, (function, coordinates) in self.letters.abbreviations.items():
+            angles = [self.names.get(q) for q in coordinates]
+            if None not in angles:
+                self.names[name] = getattr(sp, function)(sp.Add(*angles))
+        letters = [name for name in self.letters.parameters if name not in self.names]
+        for name in letters:
+            if match := FORCE.match(name):
+                coordinate = self.names.get(match[1])
+                if coordinate in system.q:
+                    self.names[name] = system.applied[system.q.index(coordinate)]
+
+    def _add_columns(self, formulas: Sequence[DocumentFormula]) -> None:
+        """Matrices and columns by their entries, and columns of small displacements."""
+        words = dict.fromkeys(word for formula in formulas for word in formula.words)
+        order = [one for q in self.letters.ordered if (one := self.names.get(q)) in self._system.q]
+        for name, value in composed(words, self.all_names, len(order)):
+            self.composed.add(name)
+            self._add(name, value)
+        for name in words:
+            one = stem(name)
+            if one.endswith("_column") and name == f"{one}_ddot" and one not in self.names:
+                self.displacements.add(one)
+                self._add(one, sp.ImmutableDenseMatrix(order))
+
+    def _add_energies(self) -> None:
+        d = self.derivation
+        values = {
+            "lagrangian": d.lagrangian,
+            "kinetic_energy": d.kinetic_energy,
+            "potential_energy": d.potential_energy,
+            "hamiltonian": d.energy,
+            "energy": d.energy,
+        }
+        values |= self._matrices
+        for name, kind in self.letters.quantities.items():
+            if kind in values:
+                self.names[name] = values[kind]
+
+    def _add_routhians(self, formulas: Sequence[DocumentFormula]) -> None:
+        """Routhians of the coordinates whose momenta their formulas contain, with their sign."""
+        p = self._system.p
+        for name, kind in self.letters.quantities.items():
+            if kind == "routhian":
+                own = [one for one in formulas if one.subject == name]
+                momenta = {self.names.get(word) for one in own for word in one.words}
+                indices = tuple(k for k, symbol in enumerate(p) if symbol in momenta)
+                function = Routhian(self.derivation, indices).function
+                self.names[name] = -function if self._has_value(own, -function) else function
+
+    def _add_total_energies(self, formulas: Sequence[DocumentFormula]) -> None:
+        """T + V for energies with which more formulas hold than with Jacobi's integral."""
+        d = self.derivation
+        total = d.kinetic_energy + d.potential_energy
+        momenta = dict(zip(self._system.p, d.momenta, strict=True))
+        energies = [n for n, kind in self.letters.quantities.items() if kind == "energy"]
+        for name in energies if not is_small(total - d.energy) else ():
+            own = [one for one in formulas if name in one.words]
+            counts = [self._holding(own, {name: x}, momenta) for x in (d.energy, total)]
+            if counts[1] > counts[0]:
+                self.names[name] = total
+
+    def _holding(
+        self,
+        formulas: Sequence[DocumentFormula],
+        names: Mapping[str, Any],
+        momenta: Mapping[sp.Symbol, sp.Expr],
+    ) -> int:
+        """The number of formulas whose first two sides are equal with other values of names."""
+        scope, count = {**self.all_names, **names}, 0
+        for one in formulas:
+            with suppress(ExpressionError, TypeError, ValueError):
+                left, right = (parse(side.text, scope) for side in one.sides[:2])
+                count += is_small((left - right).xreplace(dict(momenta)))
+        return count
+
+    def _has_value(self, formulas: Sequence[DocumentFormula], value: sp.Expr) -> bool:
+        """Whether a side of formulas has this value, with the momenta of any motion."""
+        momenta = dict(zip(self._system.p, self.derivation.momenta, strict=True))
+        for side in (side for one in formulas for side in one.sides[1:]):
+            with suppress(ExpressionError):
+                if is_small((self.value(side.text) - value).xreplace(momenta)):
+                    return True
+        return False
+
+    @property
+    def _matrices(self) -> dict[str, Value]:
+        """The mass matrix with its rows in the order of the names."""
+        order = [self.names[q] for q in self.letters.ordered if self.names.get(q) in self._system.q]
+        rows = [self._system.q.index(q) for q in order]
+        return {"mass_matrix": self.derivation.mass_matrix.extract(rows, rows)}
+
+    def _add_derivatives(self) -> None:
+        for name, (operand, variables) in self.derivatives.items():
+            if name not in self.names:
+                value = self._derivative(operand, variables)
+                if value is not None:
+                    self.names[name] = value
+
+    def _derivative(self, operand: str, variables: Sequence[str]) -> Value | None:
+        scope = self.all_names
+        if operand not in scope or any(one not in scope for one in variables):
+            return None
+        value, constants = self._operand(operand)
+        kind = self.letters.quantities.get(operand)
+        for one in variables:
+            variable = scope[one]
+            if isinstance(variable, sp.MatrixBase) and not isinstance(value, sp.MatrixBase):
+                if not all(entry.is_Symbol for entry in variable):
+                    return None
+                value = sp.ImmutableDenseMatrix([value.diff(entry) for entry in variable])
+            elif kind in ("hamiltonian", "energy") and variable in self._system.p:
+                value = self._system.qdot[self._system.p.index(variable)]
+            elif kind == "hamiltonian" and variable in self._system.q:
+                value = -self.derivation.lagrangian.diff(variable)
+            elif isinstance(variable, sp.Symbol):
+                value = value.diff(variable)
+            else:
+                return None
+        return value.xreplace(constants)
+
+    def _operand(self, name: str) -> tuple[Value, dict[sp.Dummy, sp.Expr]]:
+        """The value of a name with dummies for conserved momenta in its definition, and these.
+
+        In an effective potential they are constants: its derivative is not that of T + V.
+        """
+        _, text = self.defining.get(name, (None, ""))
+        words = {word for word in WORD.findall(text) if word in self.defining}
+        words = {word for word in words if self._is_conserved(word)}
+        if not words:
+            return self.all_names[name], {}
+        dummies = {word: sp.Dummy(word) for word in words}
+        value = parse(text, {**self.all_names, **dummies})
+        return value, {dummy: self.names[word] for word, dummy in dummies.items()}
+
+    def _is_conserved(self, name: str) -> bool:
+        """Whether a name stands for the momentum of a coordinate that L does not depend on."""
+        value, d = self.names.get(name), self.derivation
+        if not isinstance(value, sp.Expr) or not depends_on(value, self._system.qdot):
+            return False
+        return any(
+            not d.lagrangian.diff(q) and not force and vanishes(value - momentum)
+            for q, momentum, force in zip(
+                self._system.q, d.momenta, self._system.applied, strict=True
+            )
+        )
+
+    def _define(self, formula: DocumentFormula) -> None:
+        for name, text in definitions(formula):
+            if name in self.all_names or not name.isidentifier() or name == "t":
+                continue
+            try:
+                value = self.value(text)
+            except ExpressionError:
+                continue
+            self.defining[name] = formula, text
+            self._add(name, value)
+
+    def _add(self, name: str, value: Value) -> None:
+        """Add a name, and its rates unless they are known."""
+        self.names[name] = value
+        for rate, derivative in self._rates(name, value):
+            self.names.setdefault(rate, derivative)
+
+    def _set(self, name: str, value: Value) -> None:
+        """Give a name another value, and its rates, too."""
+        self.names |= {**dict(self._rates(name, value)), name: value}
+
+    def _rates(self, name: str, value: Value) -> Iterator[tuple[str, Value]]:
+        for ending in RATES[1:3]:
+            rate = _rate(self._system, value)
+            if rate is None:
+                break
+            value = rate
+            yield name + ending, value
+
+
+def _rate(system: Any, value: Value) -> Value | None:
+    """The time derivative; None if it depends on accelerations or momenta."""
+    if depends_on(value, (*system.qddot, *system.p)):
+        return None
+    if isinstance(value, sp.MatrixBase):
+        return value.applyfunc(lambda entry: time_derivative(system, entry))
+    return time_derivative(system, value)
+
+
+def _functions(system: Any, derivation: Derivation) -> Iterator[tuple[str, Any]]:
+    """Operators of formulas."""
+    momenta = dict(zip(system.p, derivation.momenta, strict=True))
+
+    def ddt(value: Value) -> Value:
+        value = value.xreplace(momenta)
+        if depends_on(value, system.qddot):
+            raise ValueError("a third derivative")
+        rate = _rate(system, value)
+        assert rate is not None
+        return rate
+
+    def norm(value: Value) -> Value:
+        if isinstance(value, sp.MatrixBase):
+            return sp.sqrt(sp.Add(*(entry**2 for entry in value)))
+        return sp.Abs(value)
+
+    yield "ddt", ddt
+    yield "diff", lambda value, symbol: value.diff(symbol)
+    yield "inverse", lambda matrix: matrix.inv()
+    yield "transpose", lambda matrix: matrix.T
+    yield "square", lambda column: (column.T * column)[0, 0]
+    yield "norm", norm
+    yield "det", lambda matrix: matrix.det()
+    yield "asin", sp.asin
+    yield "acos", sp.acos
+    yield "atan", sp.atan
+    yield "t", TIME

@@ -1,0 +1,117 @@
+"""Energies of single bodies or forces, such as T_1 and V_spring, which have a sum."""
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import replace
+from functools import cached_property
+
+import sympy as sp
+
+from derive.formulas.syntax import ExpressionError
+from derive.mechanics.energies.kinetics import Kinetics
+from derive.verification.documents.letters.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
+from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.statements import DocumentFormula
+
+#: Energies whose parts are considered.
+SUMMED = ("kinetic_energy", "potential_energy")
+
+
+class PartialEnergies:
+    """The values that definitions of partial energies must have for their sum to be correct.
+
+    In other formulas, these energies have their correct values.
+    """
+
+    def __init__(self, scope: DocumentScope) -> None:
+        self._scope, self._model = scope, scope.model
+        self._wrong = {
+            name: value
+            for name, (formula, _) in scope.defining.items()
+            if formula.subject == name and (value := self._correct(formula)) is not None
+        }
+        if self._wrong:
+            scope.correct(self._wrong)
+
+    def required(self, name: str) -> sp.Expr | None:
+        """The value that a name must have; None if it is not known to have another."""
+        return self._wrong.get(name)
+
+    def _correct(self, formula: DocumentFormula) -> sp.Expr | None:
+        """The value of another side that is a part of the energy, or what the sum requires."""
+        name = formula.subject
+        kind = _kind(name)
+        own = self._scope.names[name]
+        if kind is None or isinstance(own, sp.MatrixBase) or self._is_part(kind, own):
+            return None
+        for side in formula.sides[1:]:
+            with suppress(ExpressionError):
+                value = self._scope.value(side.text)
+                if not isinstance(value, sp.MatrixBase) and self._is_part(kind, value):
+                    return value
+        return self._required.get(name)
+
+    @cached_property
+    def _required(self) -> Mapping[str, sp.Expr]:
+        found: dict[str, sp.Expr] = {}
+        totals = {
+            "kinetic_energy": self._scope.derivation.kinetic_energy,
+            "potential_energy": self._scope.derivation.potential_energy,
+        }
+        for kind, names in self._groups().items():
+            values = {name: self._scope.names[name] for name in names}
+            if self._is_constant(sp.Add(*values.values()) - totals[kind]):
+                continue
+            wrong = [name for name, value in values.items() if not self._is_part(kind, value)]
+            if len(wrong) == 1:
+                others = sp.Add(*(value for name, value in values.items() if name != wrong[0]))
+                found[wrong[0]] = totals[kind] - others
+        return found
+
+    def _groups(self) -> Mapping[str, list[str]]:
+        """The names of partial energies that the document defines, one for each body or force."""
+        groups: dict[str, list[str]] = {}
+        for name in self._scope.defining:
+            kind = _kind(name)
+            if kind and not isinstance(self._scope.names[name], sp.MatrixBase):
+                groups.setdefault(kind, []).append(name)
+        masses = len(self._scope.derivation.system.masses)
+        return {
+            kind: names
+            for kind, names in groups.items()
+            if len(names) > 1 and (len(names) == masses or kind == "potential_energy")
+        }
+
+    def _is_part(self, kind: str, value: sp.Expr) -> bool:
+        return any(self._is_constant(value - part) for part in self._parts[kind])
+
+    @cached_property
+    def _parts(self) -> Mapping[str, list[sp.Expr]]:
+        """Energies of the masses, and the rest."""
+        d = self._scope.derivation
+        kinetic = [
+            Kinetics(replace(d.system, masses=[mass])).kinetic_energy for mass in d.system.masses
+        ]
+        terms = sp.Add.make_args(sp.expand(d.potential_energy))
+        of_one = [
+            sp.Add(*(term for term in terms if p in term.free_symbols)) for p in d.system.params
+        ]
+        potential = [*terms, *of_one, d.potential_energy]
+        return {"kinetic_energy": kinetic, "potential_energy": potential}
+
+    def _is_constant(self, difference: sp.Expr) -> bool:
+        """Whether a difference does not depend on the state."""
+        system = self._scope.derivation.system
+        try:
+            return all(
+                self._model.context.is_zero(difference.diff(s)) for s in (*system.q, *system.qdot)
+            )
+        except (ExpressionError, NotImplementedError):
+            return False
+
+
+def _kind(name: str) -> str | None:
+    """The energy of which a name denotes a part."""
+    letter, _, index = name.partition("_")
+    kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
+    return kind if kind in SUMMED and index not in TOTAL else None

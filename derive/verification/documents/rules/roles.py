@@ -1,0 +1,155 @@
+"""Verdicts on a side of a formula by what its first side is: an energy, a momentum, an equation."""
+
+import ast
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.formulas.expression import Value, parse
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.system.symbols import TIME
+from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.side_verdict import SideVerdict
+from derive.verification.documents.rules.small_motions import Linear
+from derive.verification.documents.statements import WORD
+from derive.verification.documents.text import Text, order, stem
+from derive.verification.engine import joined
+from derive.verification.model import Model, depends_on
+from derive.verification.quantities import judge_formula
+from derive.verification.verdict import Correction, Verdict
+
+
+class Roles:
+    """Verdicts of the judging engine, with corrections in the names of a side."""
+
+    def __init__(self, scope: DocumentScope, linear: Linear) -> None:
+        self._scope, self._model, self._linear = scope, scope.model, linear
+
+    def judged(self, first: Text, side: Text, left: Value, right: Value) -> SideVerdict:
+        """The verdict on a side that is not equal to the first one."""
+        system, subject = self._scope.derivation.system, first.text
+        letters = self._scope.letters
+        kind, name = "", ""
+        if subject in letters.quantities:
+            kind = letters.quantities[subject]
+        elif subject in letters.momenta:
+            kind, name = "momenta", letters.momenta[subject]
+        elif (
+            subject.isidentifier() and order(subject) == 2 and stem(subject) in letters.coordinates
+        ):
+            kind, name = "accelerations", stem(subject)
+        if kind == "accelerations" and depends_on(right, system.qddot):
+            kind = ""
+        if kind in ("hamiltonian", "energy"):
+            kind = "hamiltonian" if depends_on(right, system.p) else "energy"
+        if kind == "accelerations":
+            small = self._linear.acceleration(self._scope.all_names[subject], right)
+            if small is not None:
+                return self.value(side, "linearised", small)
+        if kind == "energy" and self._relates_energies(subject, side):
+            return self._energy(side, subject, left, right)
+        if kind:
+            with suppress(ExpressionError):
+                verdict = judge_formula(self._model_of(side, name), "", side.text, kind, name)
+                if verdict.verdict != "unreadable":
+                    return SideVerdict(verdict, ((0, side),), kind)
+        inside = self._inside_rate(first, side)
+        if inside is not None:
+            return inside
+        if system.conditions and self._is_relation(first):
+            return self.equation(first, side)
+        if not depends_on((left - right).xreplace(self._model.momenta), system.qddot):
+            return self.value(side, subject, left)
+        if subject.isidentifier():
+            result = self.value(side, subject, left)
+            if result.verdict.corrections:
+                return result
+        return self.equation(first, side)
+
+    def _relates_energies(self, subject: str, side: Text) -> bool:
+        """Whether a side states H, or another energy by H, where this is not T + V."""
+        quantities, d = self._scope.letters.quantities, self._scope.derivation
+        words = (subject, *WORD.findall(side.text))
+        total = d.kinetic_energy + d.potential_energy
+        has_hamiltonian = any(quantities.get(word) == "hamiltonian" for word in words)
+        return has_hamiltonian and not self._model.context.is_small(total - d.energy)
+
+    def _energy(self, side: Text, subject: str, left: sp.Expr, right: sp.Expr) -> SideVerdict:
+        """The verdict on an energy that must be that of the document up to a constant."""
+        system = self._scope.derivation.system
+        rates = [(right - left).diff(s) for s in (*system.q, *system.qdot, TIME)]
+        if (note := self._model.context.agreement(*rates)) is None:
+            return self.value(side, subject, left)
+        note = joined("it differs by a constant", note)
+        return SideVerdict(Verdict("", "equivalent", side.text, note=note), ((0, side),), "energy")
+
+    def _inside_rate(self, first: Text, side: Text) -> SideVerdict | None:
+        """The verdict on a wrong momentum whose rate is taken, if there is one."""
+        system, names = self._scope.derivation.system, self._scope.all_names
+        for one, other in ((first, side), (side, first)):
+            for start, end in _rates(one.text):
+                inner = one.part(start, end)
+                for q, p in zip(system.q, self._model.momenta.values(), strict=True):
+                    name = next(n for n, v in names.items() if v == q)
+                    scope = {**names, "momentum": p}
+                    text = f"{one.text[:start]}momentum{one.text[end:]}"
+                    with suppress(ExpressionError):
+                        difference = parse(text, scope) - self._scope.value(other.text)
+                        if self._model.agreement(difference) is not None:
+                            model = self._model_of(inner, name)
+                            verdict = judge_formula(model, "", inner.text, "momenta", name)
+                            return SideVerdict(verdict, ((0, inner),), "momenta")
+        return None
+
+    def _is_relation(self, first: Text) -> bool:
+        """Whether a side contains coordinates, velocities and parameters alone."""
+        values = [self._scope.all_names[word] for word in WORD.findall(first.text)]
+        return all(one.is_Symbol for one in values if isinstance(one, Value))
+
+    def equation(self, first: Text, side: Text) -> SideVerdict:
+        """The verdict on an equation of motion."""
+        text = f"{first.text} = {side.text}"
+        verdict = judge_formula(self._model_of(first, side), "", text, "euler_lagrange")
+        verdict = replace(verdict, corrections=self._in_place(verdict.corrections, first))
+        return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
+
+    def _in_place(self, corrections: tuple[Correction, ...], side: Text) -> tuple[Correction, ...]:
+        """A missing term in place of one that vanishes, such as that with sin(q1 - q1)."""
+        if len(corrections) != 1 or corrections[0].wrong:
+            return corrections
+        for term, sign in summands(syntax_tree(side.text)):
+            text = ast.unparse(term)
+            if self._scope.value(text) == 0 and text != "0":
+                return (Correction(f"-{text}" if sign < 0 else text, corrections[0].correct),)
+        return corrections
+
+    def value(self, side: Text, name: str, value: sp.Expr) -> SideVerdict:
+        """The verdict on a side that must have a value, to which a name is given."""
+        name = name if name.isidentifier() else "left_side"
+        model = self._model_of(side)
+        model = replace(model, names={**model.names, name: value})
+        return SideVerdict(
+            judge_formula(model, "", side.text, "value", name), ((0, side),), "value"
+        )
+
+    def _model_of(self, *sides: Text | str) -> Model:
+        """The model with the names of these sides alone, in which corrections are written."""
+        texts = [one.text if isinstance(one, Text) else one for one in sides]
+        words = {word for text in texts for word in WORD.findall(text)}
+        words |= {f"p_{word}" for word in words}
+        names = {name: value for name, value in self._scope.names.items() if name in words}
+        functions = {n: v for n, v in self._scope.names.items() if not isinstance(v, Value)}
+        return replace(self._model, names={**functions, **names})
+
+
+def _rates(text: str) -> Iterator[tuple[int, int]]:
+    """The places of operands of d/dt."""
+    for match in re.finditer(r"\bddt\(", text):
+        depth, end = 1, match.end()
+        while depth:
+            depth += {"(": 1, ")": -1}.get(text[end], 0)
+            end += 1
+        yield match.end(), end - 1
