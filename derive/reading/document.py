@@ -3,9 +3,10 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
-Kind: TypeAlias = Literal["latex", "markdown", "restructuredtext", "html", "notebook", "program"]
+#: The kind of a document: that of a format, or ``program``.
+Kind: TypeAlias = str
 
 
 class Place(NamedTuple):

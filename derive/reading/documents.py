@@ -3,39 +3,36 @@
 import os
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib import import_module
 from itertools import accumulate
 from pathlib import Path
+from pkgutil import iter_modules
 from types import ModuleType
 
+from derive.reading import formats
 from derive.reading.continuation import joined
 from derive.reading.document import CodeCell, Display, Document, Kind, Place
-from derive.reading.formats import html, markdown, notebook, restructuredtext, tex
+from derive.reading.formats import notebook, tex
 from derive.reading.scanning import Excerpt, Unread
 from solvers.io.toml_input import InputError, read_bytes
 
-KINDS: dict[str, Kind] = {
-    ".tex": "latex",
-    ".md": "markdown",
-    ".markdown": "markdown",
-    ".txt": "markdown",
-    ".rst": "restructuredtext",
-    ".html": "html",
-    ".htm": "html",
-    ".ipynb": "notebook",
-}
-FORMATS: dict[Kind, ModuleType] = {
-    "latex": tex,
-    "markdown": markdown,
-    "restructuredtext": restructuredtext,
-    "html": html,
-    "notebook": markdown,
-}
 #: Bytes of the largest document and of the largest notebook, most of which are outputs.
 MAX_BYTES, MAX_NOTEBOOK_BYTES = 2_000_000, 20_000_000
 #: Displays of a document, and all of its formulas.
 MAX_DISPLAYS, MAX_FORMULAS = 2_000, 20_000
 #: Places that a note lists.
 MAX_PLACES = 5
+
+
+def known_formats() -> dict[Kind, ModuleType]:
+    """All formats by their kinds: every file in the package `formats` is one."""
+    names = (f"{formats.__name__}.{one.name}" for one in iter_modules(formats.__path__))
+    return {module.KIND: module for module in map(import_module, names)}
+
+
+def kinds() -> dict[str, Kind]:
+    """Kinds of documents by the suffixes of their files."""
+    return {suffix: kind for kind, one in known_formats().items() for suffix in one.SUFFIXES}
 
 
 def read_document(path: str | os.PathLike[str]) -> Document:
@@ -47,9 +44,9 @@ def read_document(path: str | os.PathLike[str]) -> Document:
         If there is no such file, its kind is unknown, it is too large, or it is no text.
     """
     file = Path(path)
-    kind = KINDS.get(file.suffix.lower())
+    kind = kinds().get(file.suffix.lower())
     if kind is None:
-        raise InputError(f"{file} is no document: documents end in {', '.join(KINDS)}")
+        raise InputError(f"{file} is no document: documents end in {', '.join(kinds())}")
     most = MAX_NOTEBOOK_BYTES if kind == "notebook" else MAX_BYTES
     try:
         text = _text(file, read_bytes(file, most))
@@ -102,7 +99,7 @@ def _scanned(
     notes: tuple[str, ...],
 ) -> Document:
     """The document with the formulas of its parts, each of which starts at a position."""
-    form = FORMATS[document.kind]
+    form = known_formats()[document.kind]
     displays: list[Display] = []
     unread: dict[str, list[Place]] = {}
     found = ((offset, part, one) for offset, part in parts for one in form.excerpts(part))

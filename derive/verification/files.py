@@ -4,9 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from derive.reading.document import Document
-from derive.reading.documents import KINDS, read_document
+from derive.reading.documents import kinds, read_document
 from derive.reading.programs.program import Program, ProgramError
-from derive.reading.programs.reader import LANGUAGES, read_program
+from derive.reading.programs.reader import known_languages, read_program
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
@@ -18,12 +18,12 @@ from solvers.io.toml_input import InputError
 
 def is_document(name: str) -> bool:
     """Whether a file is a document, by its name."""
-    return Path(name).suffix.lower() in KINDS
+    return Path(name).suffix.lower() in kinds()
 
 
 def is_program(name: str) -> bool:
     """Whether a file is a program, by its name."""
-    return any(Path(name).suffix in one.suffixes for one in LANGUAGES)
+    return any(Path(name).suffix in one.suffixes for one in known_languages())
 
 
 def judge_file(

@@ -275,7 +275,7 @@ def test_repeated_delimiters_take_linear_work(tmp_path: Path, name: str, piece: 
 
 
 REFUSED: dict[str, tuple[str, bytes, str]] = {
-    "kind": ("a.pdf", b"", "documents end in .tex, .md"),
+    "kind": ("a.pdf", b"", "documents end in .html, .htm, .md"),
     "length": ("a.md", b" " * (MAX_BYTES + 1), f"more than {MAX_BYTES} bytes"),
     "notebook": ("a.ipynb", b" " * (MAX_NOTEBOOK_BYTES + 1), "bytes"),
     "formulas": ("a.md", b"$x=1$ " * 21_000, "more than 20000 formulas"),

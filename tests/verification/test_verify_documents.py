@@ -151,7 +151,7 @@ def test_a_wrong_formula_decides_the_exit_code(text: str, code: int, tmp_path: P
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["a.docx"], "a.docx is no document: documents end in .tex, .md"),
+        (["a.docx"], "a.docx is no document: documents end in .html, .htm, .md"),
         (["--annotate", "a.html"], "give a document"),
         (["--system", "single_pendulum"], "give a document"),
         (["double_pendulum", "--system", "single_pendulum"], "give a document"),

@@ -1,1 +1,1 @@
-"""One file a format: its delimiters of formulas, and its parts that hold none."""
+"""One file a format: its suffixes, its delimiters of formulas, and its parts that hold none."""

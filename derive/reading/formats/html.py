@@ -7,6 +7,7 @@ from html import unescape
 from derive.reading.formats.tex import environments
 from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
 
+KIND, SUFFIXES = "html", (".html", ".htm")
 #: Elements whose text is shown as it stands, or not at all.
 RAW = r"(?i:<(?:script|style|pre|code|textarea|noscript|svg|head|title)\b[^<>]*+>)"
 #: Tags, comments, and the ends of blocks of text, at which a formula ends.

@@ -8,6 +8,7 @@ from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
 from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
 
+KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
 #: The start of a line in a list or a quotation; an item of a list up to its text.
 MARGIN = r"^[ \t>]*+(?:(?:[-*+]|\d{1,9}[.)])[ \t]++)?"
 LIST_ITEM = re.compile(r"[ \t]*+(?:[-*+]|\d{1,9}[.)])[ \t]++(?=\S)")

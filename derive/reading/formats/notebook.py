@@ -4,6 +4,11 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
+from derive.reading.formats.markdown import decoded as decoded
+from derive.reading.formats.markdown import excerpts as excerpts
+
+KIND, SUFFIXES = "notebook", (".ipynb",)
+
 
 @dataclass(frozen=True)
 class Cell:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
 
+KIND, SUFFIXES = "restructuredtext", (".rst",)
 CODE = (
     "code|code-block|sourcecode|literalinclude|parsed-literal|highlight|raw|ipython|doctest|"
     "testcode|testsetup|testoutput|plot|jupyter-execute|csv-table|graphviz|tikz"

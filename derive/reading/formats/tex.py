@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, environment, scanned
 
+KIND, SUFFIXES = "latex", (".tex",)
 #: Escaped characters, which are no delimiters; comments, up to the end of the line.
 ESCAPED, COMMENT = r"\\[\\$%]", r"%[^\n]*+"
 VERBATIM = r"\\begin[ \t]*+\{(?:(?:verbatim|Verbatim|lstlisting|minted|comment|filecontents)\*?)\}"

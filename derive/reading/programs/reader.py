@@ -1,28 +1,20 @@
 """Read a program: its equations, and its method of integration."""
 
 import re
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 
+from derive.reading.programs import languages
 from derive.reading.programs.evaluation.context import Context
 from derive.reading.programs.findings.findings import Findings
 from derive.reading.programs.findings.regions import prepare, regions
-from derive.reading.programs.languages import cpp, fortran, javascript, julia, matlab, python
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.syntax.statements import Translator
 from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import read_bytes
 
-LANGUAGES: tuple[Language, ...] = (
-    python.language,
-    javascript.language,
-    javascript.typescript,
-    cpp.language,
-    matlab.language,
-    fortran.language,
-    fortran.fixed_form,
-    julia.language,
-)
 #: Characters of the longest program, and bytes of its file.
 MAX_LENGTH, MAX_BYTES = 100_000, 400_000
 #: Characters of the longest line; only generated programs have longer ones.
@@ -71,18 +63,27 @@ def _check(text: str) -> None:
         raise ProgramError("the program is no text: it contains null characters")
 
 
+def known_languages() -> tuple[Language, ...]:
+    """All languages: those of every file in the package `languages`."""
+    package = languages.__name__
+    modules = (import_module(f"{package}.{one.name}") for one in iter_modules(languages.__path__))
+    return tuple(
+        one for each in modules for one in vars(each).values() if isinstance(one, Language)
+    )
+
+
 def by_suffix(path: Path) -> Language:
     """The language of a file by its suffix."""
-    for one in LANGUAGES:
+    for one in known_languages():
         if path.suffix in one.suffixes:
             return one
-    known = " ".join(suffix for one in LANGUAGES for suffix in one.suffixes)
+    known = " ".join(suffix for one in known_languages() for suffix in one.suffixes)
     raise ProgramError(f"{path.name}: unknown suffix {path.suffix!r}; known are: {known}")
 
 
 def by_name(name: str) -> Language:
     """The language of a name, in capital letters or small ones."""
-    names = {other: one for one in LANGUAGES for other in (one.name, *one.other_names)}
+    names = {other: one for one in known_languages() for other in (one.name, *one.other_names)}
     for other, one in names.items():
         if name.lower() == other.lower():
             return one
