@@ -186,6 +186,6 @@ def _determinant_of_identity_minus(matrix: Sequence[Sequence[Number]]) -> tuple[
     for k in range(1, len(B) + 1):
         power = B @ (power + np.diag([coefficients[-1]] * len(B)))
         coefficients.append(-np.trace(power) / k)
-    while len(coefficients) > 1 and coefficients[-1] == 0:
+    while coefficients[-1] == 0:  # the first one is 1
         coefficients.pop()
     return tuple(coefficients)

@@ -28,6 +28,11 @@ EVALUATOR = Evaluator({x: sp.Rational(-3, 7), y: sp.Rational(5, 4), m: sp.Intege
         sp.pi - 2 * sp.pi / 2,
         sp.sinh(x) - (sp.exp(x) - sp.exp(-x)) / 2,
         sp.Piecewise((-x, x < 0), (y, True)) - sp.Abs(x),
+        # both sides of these conditions are equal
+        sp.Piecewise((0, sp.sin(y) ** 2 + sp.cos(y) ** 2 <= 1), (y, True)),
+        sp.Piecewise((y, sp.sin(y) ** 2 + sp.cos(y) ** 2 < 1), (0, True)),
+        sp.Piecewise((y, sp.sin(y) ** 2 + sp.cos(y) ** 2 > 1), (0, True)),
+        sp.Piecewise((y, sp.Ne((x + y) ** 2, x**2 + 2 * x * y + y**2)), (0, True)),
     ],
 )
 def test_identities_are_zero_and_small_terms_are_not(identity: sp.Expr) -> None:

@@ -33,6 +33,8 @@ def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path:
     (values,) = motions(path)
     for name, tolerance in (("t", 1e-6), ("positions", 1e-5), ("energy_error", 1e-9)):
         assert np.array(values[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
+    for name, digits in (("positions", 6), ("energy_error", 5)):
+        assert all(x == float(f"{x:.{digits}g}") for x in np.ravel(values[name]))
     assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
 
 

@@ -5,6 +5,7 @@ from math import log, pi, sqrt
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
@@ -12,7 +13,7 @@ from solvers.app.modules import load
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
-from solvers.studies.failure_modes.chaos import LONG_RUNS, ChaosResults
+from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, ChaosResults, statistics
 from solvers.studies.failure_modes.drift import CASES, EnergyDrift
 from solvers.studies.failure_modes.horizon import horizon, reference_motion
 from solvers.studies.failure_modes.lyapunov import INDEPENDENT, Mean, lyapunov
@@ -159,6 +160,18 @@ def test_the_standard_error_of_a_mean_is_that_of_repeated_means() -> None:
     means = [Mean.of(row, 40 * INDEPENDENT) for row in walk]
     spread = np.std([m.value for m in means])
     assert np.mean([m.error for m in means]) == pytest.approx(spread, rel=0.15)
+
+
+def test_means_of_a_motion_are_those_by_another_program() -> None:
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        mass, v = dp.mass_matrix(t, y[:4], dp.DEFAULTS), y[2:4]
+        return [*dp.rhs(t, y[:4], dp.DEFAULTS), v @ mass @ v / 2, float(np.cos(y[1]) < 0)]
+
+    found = statistics(dp, 8.0, {"method": "verner98", "rtol": 1e-11, "atol": 1e-11})
+    start = (*CHAOTIC, 0.0, 0.0)
+    mean = solve_ivp(rates, (0, 8), start, "DOP853", rtol=1e-9, max_step=0.01).y[4:, -1] / 8
+    # one sample in half a second
+    assert (found.kinetic.value, found.upright.value) == pytest.approx(mean, rel=0.1)
 
 
 @pytest.mark.long("a study of chaos")

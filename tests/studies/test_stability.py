@@ -280,3 +280,5 @@ def test_boundaries_are_where_nothing_grows_or_fades() -> None:
     size = np.abs(function(points[:, 0] + 1j * points[:, 1]))
     assert len(points) > 100
     assert np.abs(size - 1).max() < 0.02
+    axes = [[*zip(*line.get_data(), strict=True)] for line in panel.lines]
+    assert sorted(axes) == [[(0, 0), (0, 1)], [(0, 0), (1, 0)]]  # through the origin

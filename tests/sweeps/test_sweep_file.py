@@ -95,7 +95,7 @@ def test_the_command_reports_unknown_sweeps_and_options(capsys: pytest.CaptureFi
 
 def test_random_axes_have_the_count_and_the_seed_of_the_file(tmp_path: Path) -> None:
     text = FILE.replace(", count = 120", "")
-    for seed, line in ((0, ""), (7, "seed = 7")):
-        random = f"[random]\ncount = 5\n{line}\n[axes]"
+    for count, seed, line in ((5, 0, ""), (5, 7, "seed = 7"), (1, 0, "")):
+        random = f"[random]\ncount = {count}\n{line}\n[axes]"
         axes = find(str(write_sweep(tmp_path, text.replace("[axes]", random))), load_module).axes
-        assert axes == Random({"theta1": (-3, 3), "theta2": (-3, 3)}, 5, seed)
+        assert axes == Random({"theta1": (-3, 3), "theta2": (-3, 3)}, count, seed)

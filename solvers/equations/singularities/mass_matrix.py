@@ -104,7 +104,7 @@ def inertia(
     module: GeneratedModule, t: float, y: Sequence[float], params: Sequence[float]
 ) -> NDArray[np.float64]:
     """The mass matrix, with the inertia that constraints add where it is singular by design."""
-    matrix, G = function(module, "mass_matrix"), np.zeros((0, 0))
+    matrix = function(module, "mass_matrix")
     M = np.array(matrix(t, y, params))
     if has_function(module, "constraints_jacobian"):
         usual = np.array(matrix(t, y, module.DEFAULTS))

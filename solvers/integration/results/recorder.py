@@ -76,10 +76,10 @@ class Recorder:
 
     def _due(self, until: float) -> Array:
         """The times up to `until` to record that are not recorded yet."""
-        if self.samples is None or self._ascending is None:
+        if self._ascending is None:
             return np.array([until])
         due = int(np.searchsorted(self._ascending, self._direction * until, "right"))
-        return self.samples[self._sampled : due]
+        return self._direction * self._ascending[self._sampled : due]
 
     def _shapes(
         self, end: float, values: list[float], states: OrdinaryStates, curves: Iterable[Curve]
