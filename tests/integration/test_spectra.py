@@ -7,9 +7,12 @@ import pytest
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
+import generated.single_pendulum as pendulum
 import generated.swinging_atwood as atwood
+from solvers.integration.ensemble import ensemble
 from solvers.integration.loops import compiled_loop
 from solvers.integration.prepare import NotFinishedError
+from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
 from solvers.integration.variations.frames import Frames
 from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
@@ -108,3 +111,27 @@ def test_friction_contracts_volumes_in_sweeps(tmp_path: Path) -> None:
     definition = Sweep(driven, axes, {"all": Spectrum(2)}, 40.0, values, **tolerances)
     sums = sweep(definition, tmp_path).maps["all"].sum(axis=-1)
     assert sums == pytest.approx([-0.1, -0.4], abs=1e-7)  # -c/(m l²)
+
+
+@pytest.mark.parametrize("compensated", [False, True])
+@pytest.mark.parametrize("method", ["dp54", "verner98", "gauss8"])
+def test_perturbations_of_any_size_have_the_same_digits(method: str, compensated: bool) -> None:
+    # powers of two are taken out of large ones; no rounding error depends on them
+    sizes = np.exp2([0, -500, 60, 960])
+    starts = np.stack([0 * sizes + 3.1, 0 * sizes + 0.1, sizes, sizes])
+    event = Event(pendulum, "theta", 4.0)
+    motions = ensemble(
+        *(pendulum, (0, 8), starts, pendulum.DEFAULTS),
+        method=method,
+        form="variational",
+        h=0.1,
+        compensated=compensated,
+        events=event,
+    )
+    for changes in (motions.y[2:], motions.y_events[2:, :, 0, 0]):
+        scaled = changes / sizes
+        assert np.array_equal(scaled, np.repeat(scaled[:, :1], 4, axis=1))
+        assert np.abs(scaled).min() > 10
+    growth = np.log(np.hypot(*motions.y[2:] / sizes) / np.sqrt(2))
+    assert motions.growth == pytest.approx(growth, abs=1e-12)
+    assert motions.nfev == pytest.approx(motions.nfev[0], rel=0.02)
