@@ -8,6 +8,7 @@ import sys
 from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
 
 import nbformat
@@ -217,6 +218,28 @@ def test_a_matrix_that_is_too_wide_is_written_by_entries(documents) -> None:
     assert r"M_{15} & =" in text
     assert r"K_{0,15} & =" not in text  # zero
     assert "The solution is too long to read" in text
+
+
+@pytest.mark.parametrize(
+    "name", ["single_pendulum", "spherical_pendulum", "driven_pendulum", "henon_heiles", "duffing"]
+)
+def test_sentences_hold_for_the_numbers_of_the_generated_module(documents, name: str) -> None:
+    module = import_module(f"generated.{name}")
+    blocks = [block for section in documents(name).sections for block in section.blocks]
+    text = " ".join(block.text for block in blocks if isinstance(block, Paragraph))
+    n = len(module.COORDINATES)
+    assert ("with the mass matrix" in text) == (n > 1)
+    assert ("with the inertia" in text) == (n == 1)
+    is_conservative = not hasattr(module, "power")
+    assert ("The energy of a motion is constant" in text) == is_conservative
+    state = [0.3 + 0.1 * k for k in range(2 * n)]
+    positions = [module.positions(t, state, module.DEFAULTS) for t in (0.0, 0.7)]
+    assert ("Jacobi's integral" in text) == (positions[0] != positions[1])
+    for k, q in enumerate(module.COORDINATES):
+        turned = [y + (i == k) for i, y in enumerate(state)]
+        energies = [module.energy(0.0, y, module.DEFAULTS) for y in (state, turned)]
+        is_cyclic = energies[0] == pytest.approx(energies[1], rel=1e-14)
+        assert (f"the momentum `p_{q}` is constant" in text) == (is_cyclic and is_conservative)
 
 
 def test_reasons_are_given_where_there_are_no_normal_modes(documents) -> None:
