@@ -4,6 +4,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from shutil import copy
 
@@ -11,6 +12,10 @@ import pytest
 from folders import ROOT
 
 import generated.double_pendulum as dp
+from derive import Derivation, load, names
+from derive.codegen.function_specs import SPECS
+from derive.codegen.functions import Functions
+from derive.mechanics.reduced_coordinates import reduced
 
 FOLDER = ROOT / "generated"
 MODULES, HEADERS = sorted(FOLDER.glob("[a-z]*.py")), sorted(FOLDER.glob("*.h"))
@@ -67,6 +72,21 @@ def test_functions_over_arrays_take_the_arguments_of_those_over_numbers() -> Non
             dp.rhs_many(*wrong)
     with pytest.raises(TypeError, match="rhs_many takes t, y, params"):
         dp.rhs_many(0.0, y, params, t=0.0)
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_shipped_module_has_the_functions_that_exist_for_its_system(name: str) -> None:
+    module = import_module(f"generated.{name}")
+    known = {spec.name for spec in SPECS}
+    assert {*Functions(Derivation(reduced(load(name)))).names} == known & {*dir(module)}
+
+
+def test_long_derivatives_exist_for_few_coordinates_only() -> None:
+    def functions(links: int) -> set[str]:
+        return {*Functions(Derivation(load(f"chain_{links}"))).names}
+
+    left_out = {"parameter_jacobian", "rhs_sensitivity", "jacobian_hamiltonian"}
+    assert functions(15) ^ functions(16) == left_out
 
 
 def test_names_that_no_file_has_are_refused() -> None:
