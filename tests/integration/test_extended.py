@@ -213,6 +213,19 @@ def test_a_singularity_and_too_many_steps_end_a_motion_with_an_error(tmp_path: P
         integrate_extended(sp, (1.0, 0.0, 9.81), (1.0, 0.0), [0.0, 1.0], "quadruple", 1e-20)
 
 
+def test_roundings_of_the_equations_do_not_shorten_steps(tmp_path: Path) -> None:
+    # y' = y, of which the sum loses up to four digits, so that residuals of stages remain
+    (tmp_path / "hand.h").write_text(
+        "static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,\n"
+        "    const HOLONOMIC_REAL *params, HOLONOMIC_REAL *result)\n"
+        "{ result[0] = (state[0] + params[0]) - params[0]; (void)t; }\n"
+    )
+    module = handwritten("hand", ("y",), __file__=str(tmp_path / "hand.py"))
+    for lost in (0.0, 300.0, 1e3, 2e3, 1e4):
+        y = integrate_extended(module, (lost,), (1.0,), [0, 4], "long double", 1e-17, max_steps=14)
+        assert y[-1, 0] == pytest.approx(np.exp(4.0), rel=1e-14)
+
+
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_it_is_interrupted_at_once(precision: str) -> None:
     times = [0.0, *np.linspace(1, 1e6, 50_000)]
