@@ -220,6 +220,23 @@ def test_combinations_that_cannot_be_known_are_named() -> None:
         fit(oscillator(), data, ["m", "k"], params={"c": 0.0})
 
 
+def test_of_parameters_that_are_0_those_that_may_be_negative_are_fitted() -> None:
+    x, F = sp.symbols("x F", real=True)
+    k, c = sp.symbols("k c", positive=True)
+    parameters = [Parameter(k, "N/m", 3.0, "stiffness"), Parameter(F, "N", 0.0, "force"),
+        Parameter(c, "N s/m", 0.1, "friction")]  # fmt: skip
+    pulled = build(
+        System("pulled", "A pulled spring", [Coordinate(x, "m", "a length")], parameters,
+            [PointMass(1, (x, 0))], potential=k * x**2 / 2 - F * x, gravity=(0, 0),
+            dissipation=c * velocity(x) ** 2 / 2)
+    )  # fmt: skip
+    rest = -0.5 / 4  # where the spring of 4 N/m holds the force of -0.5 N
+    data = {"t": T, "x": rest + (1 - rest) * np.cos(2 * T)}
+    result = fit(pulled, data, params={"c": 0.0})
+    assert [*result.intervals] == ["k", "F"]
+    assert [result.params[name] for name in ("k", "F")] == pytest.approx([4, -0.5], abs=1e-6)
+
+
 def test_rest_determines_no_parameter() -> None:
     t = np.arange(0, 2, 0.1)
     with pytest.raises(ArithmeticError, match=r"do not determine theta at the start .*, l: hold"):
