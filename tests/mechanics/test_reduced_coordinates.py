@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import permutations
 from math import cos, sin, sqrt
 from pathlib import Path
 from typing import Any
@@ -343,3 +344,10 @@ def test_eliminated_coordinates_are_measured() -> None:
         assert str(found) == str(expected)
     with pytest.raises(SystemDefinitionError, match=r"Derivation\(derive.reduced\(system\)\)"):
         Derivation(pinned).identifiable(outputs=["x2"])
+
+
+@pytest.mark.parametrize("make", [guided, lifted, closed_crank])
+def test_constraints_keep_their_order(make: Callable[[], System]) -> None:
+    for given in permutations(make().conditions):
+        both = reduced(replace(make(), constraints=given)).all_conditions
+        assert [one.name for one in both] == [one.name for one in given]
