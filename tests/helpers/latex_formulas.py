@@ -143,6 +143,7 @@ mcos^2{\theta}  ⟶  m cos(theta)^2
 \operatorname{atan2}(y, x)  ⟶  atan2(<y, x>)
 \operatorname{sgn}(\dot q)  ⟶  sign(q.)
 \text{sgn}\,\dot q  ⟶  sign(q.)
+\text{sgn}\,\,\,\,\,\,\,\,\,\,\,\, \dot q  ⟶  sign(q.)
 \mathrm{sin}\,\theta  ⟶  sin(theta)
 \ln\left|x\right|  ⟶  log(|x|)
 \exp(-t/\tau)  ⟶  exp(- [t / tau])

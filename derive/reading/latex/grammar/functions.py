@@ -27,8 +27,8 @@ def function_at(tokens: list[Token], at: int, end: int) -> tuple[str, int] | Non
             return "atan2", at + 1
         return name, at
     if token.kind == "word" and token.text in FUNCTIONS:
-        after = next((t for t in tokens[at + 1 : min(end, at + 10)] if t.kind != "space"), None)
-        is_function = after is not None and after.kind in STARTS
+        kinds = (tokens[k].kind for k in range(at + 1, end))
+        is_function = next((kind for kind in kinds if kind != "space"), "") in STARTS
         return (FUNCTIONS[token.text], at + 1) if is_function else None  # \text{sec} is a unit
     if token.kind != "letter":
         return None
