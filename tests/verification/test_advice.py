@@ -84,6 +84,9 @@ ACCELERATION = (
      "g*l*sin(theta)", "g*l*cos(theta)"),
     ("single_pendulum", "energy", "", "m*l**2*theta_dot**2/2 - m*g*l*cos(theta) + m*g*theta",
      "m*g*theta", "0"),
+    # of two equal terms the shorter one is superfluous
+    ("henon_heiles", "potential_energy", "", "x**2/2 + y**2/2 - y**3/3 + y*(x*x) + x**2*y",
+     "x**2*y", "0"),
     # a square is missing in a bracket that is itself squared
     ("rotating_hoop", "kinetic_energy", "", "m*((R*theta_dot)**2 + (R*Omega*cos(theta))**2)/2",
      "(R*Omega*cos(theta))**2", "(R*Omega*sin(theta))**2"),
