@@ -39,9 +39,15 @@ def test_help_lists_every_command_and_each_command_shows_an_example(
     for name in COMMANDS:
         with pytest.raises(SystemExit, match="0"):
             main([name, "--help"])
-        text = capsys.readouterr().out
-        assert "example" in text
-        assert f"  holonomic {name}" in text
+        examples = re.search(r"^(examples?):\n((?:  .+\n)+)", capsys.readouterr().out, re.MULTILINE)
+        assert examples is not None
+        lines = examples[2].splitlines()
+        assert all(line.startswith(f"  holonomic {name}") for line in lines)
+        assert examples[1] == ("examples" if len(lines) > 1 else "example")
+        for line in lines:
+            (program, *arguments), *_ = map(str.split, re.split(r" {2,}| > ", line.strip()))
+            assert program == "holonomic"
+            assert command_parser().parse_args(arguments).command == name
 
 
 @pytest.mark.parametrize(("command", "kind"), [
