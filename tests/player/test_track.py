@@ -60,6 +60,7 @@ HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
     [
         ({"t": REST.t[:1]}, r"t has shape \(1,\), .* n at least 2"),
         ({"t": REST.t[:400]}, r"positions has shape \(1, 2, 501\), .* \(masses, 2, 400\)"),
+        ({"positions": np.array(1.0)}, r"positions has shape \(\), .* \(masses, 2, 501\)"),
         ({"positions": REST.positions[:0]}, r"positions has shape \(0, 2, 501\)"),
         ({"positions": REST.positions[:, :1]}, r"positions has shape \(1, 1, 501\)"),
         ({"energy_error": REST.t[:9]}, r"energy_error has shape \(9,\), .* \(501,\)"),
