@@ -5,6 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 from solvers.app.commands.chart import DEFAULT
@@ -60,6 +61,72 @@ def test_each_claim_has_its_verdict_and_a_number_or_a_reason(evidence: Evidence)
         for claim in found
         if claim.verdict != "untestable"
     )
+
+
+def textbook(t: float, y: np.ndarray, params: tuple[float, ...]) -> np.ndarray:
+    """Rates of a double pendulum: the equation of each rod, solved for the accelerations."""
+    m1, m2, l1, l2, g = params
+    (a, b), (u, v) = y[:2], y[2:]
+    coupling = m2 * l1 * l2 * np.cos(a - b)
+    matrix = [[(m1 + m2) * l1**2, coupling], [coupling, m2 * l2**2]]
+    turn = m2 * l1 * l2 * np.sin(a - b)
+    torques = [-turn * v**2 - (m1 + m2) * g * l1 * np.sin(a), turn * u**2 - m2 * g * l2 * np.sin(b)]
+    return np.array([u, v, *np.linalg.solve(matrix, torques)])
+
+
+def above_rest(y: np.ndarray, params: tuple[float, ...]) -> np.ndarray:
+    """The energy of states in columns, from the positions and velocities of the bobs."""
+    m1, m2, l1, l2, g = params
+    first, second = (
+        rod * np.exp(1j * angle) * rate
+        for rod, angle, rate in zip((l1, l2), y[:2], y[2:], strict=True)
+    )
+    heights = l1 * (1 - np.cos(y[0])), l2 * (1 - np.cos(y[1]))
+    kinetic = m1 * abs(first) ** 2 / 2 + m2 * abs(first + second) ** 2 / 2
+    return kinetic + m1 * g * heights[0] + m2 * g * (heights[0] + heights[1])
+
+
+def by_hand(scene: Scene, h: float, order: int) -> np.ndarray:
+    """States after every step of Euler's method or of that of order 4."""
+    states, params = [np.array(scene.y0)], scene.params
+    for _ in range(round(scene.duration / h)):
+        y = states[-1]
+        k = [textbook(0.0, y, params)]
+        for part in (0.5, 0.5, 1.0) if order == 4 else ():
+            k.append(textbook(0.0, y + part * h * k[-1], params))
+        weights = (1, 2, 2, 1) if order == 4 else (1,)
+        states.append(y + h * np.average(k, axis=0, weights=weights))
+    return np.transpose(states)
+
+
+def test_numbers_in_the_verdicts_are_those_of_another_program(evidence: Evidence) -> None:
+    texts = {claim.id: claim.number for claim in claims(evidence)}
+
+    def shown(name: str, before: str) -> float:
+        return float(texts[name].partition(before)[2].split()[0].rstrip(",;"))
+
+    times = np.linspace(0, 5, 5001)
+    prose, first, second = (
+        solve_ivp(textbook, (0, 5), one.y0, "DOP853", times, args=(one.params,), rtol=1e-11,
+            atol=1e-11).y for one in (PROSE, FIRST, SECOND)
+    )  # fmt: skip
+    ends = [np.abs(a[:2, -1] - b[:2, -1]).max() for a, b in ((first, prose), (first, second))]
+    assert shown("3.1a", "angles differ by") == pytest.approx(ends[0], rel=0.05)
+    assert shown("3.2a", "angles differ by") == pytest.approx(ends[1], rel=0.05)
+    for states, before in ((first, "half is"), (prose, "in program 1,")):
+        speed = np.abs(states[2:]).sum(axis=0)
+        ratio = speed[2500:].mean() / speed[:2500].mean()
+        assert shown("3.1b", before) == pytest.approx(ratio, abs=0.01)
+    assert shown("4.1", "sweeps") == pytest.approx(np.ptp(prose[1]) / (2 * pi), abs=0.006)
+    euler, rk4 = by_hand(PROSE, 0.01, 1), by_hand(PROSE, 0.01, 4)
+    energy = above_rest(euler, PROSE.params)
+    change = np.abs(energy / energy[0] - 1).max()
+    assert shown("4.2", "energy is") == pytest.approx(100 * change, abs=0.51)
+    error = np.abs(euler - prose[:, ::10])[:2, -1].max()
+    assert shown("4.2", "angles") == pytest.approx(error, rel=0.05)
+    assert shown("3.3b", "vertical") == np.count_nonzero(np.diff(np.sign(rk4[0])))
+    rough = np.abs(by_hand(PROSE, 0.1, 4) - prose[:, ::100])[:2, -1].max()
+    assert shown("4.3", "5 s is") == pytest.approx(rough, rel=0.05)
 
 
 def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
