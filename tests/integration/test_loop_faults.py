@@ -319,7 +319,7 @@ def test_ensembles_of_no_motions_or_over_no_time_are_valid() -> None:
         ({"workers": "2"}, "workers = '2'"),
         ({"occurrences": 1.5}, "occurrences = 1.5"),
         ({"events": Event(dp, "theta1", 0.0)}, "is not of generated.single_pendulum"),
-        ({"method": None}, "method = None must be the name of a method"),
+        ({"method": 3}, "method = 3 must be the name of a method"),
     ):
         with pytest.raises(ValueError, match=message):
             ensemble(sp, (0, 1), [[1.0], [0.0]], sp.DEFAULTS, **arguments)
