@@ -59,10 +59,7 @@ suppress_warnings = ["config.cache", "mystnb.unknown_mime_type"]
 
 myst_enable_extensions = ["colon_fence", "attrs_inline"]
 myst_heading_anchors = 3
-nb_execution_mode = "cache"
-nb_execution_cache_path = str(ROOT / "out" / "docs-cache")
-nb_execution_timeout = 300
-nb_execution_raise_on_error = True
+nb_execution_mode = "off"  # notebooks have their outputs, which a test compares
 numpydoc_show_class_members = False
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
