@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 from solvers.equations.arguments import known_names
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
-from solvers.integration.accuracy.accurate_ensemble import accurate_ensemble
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.many_motions import many_motions
 from solvers.integration.problem.events import Event
@@ -122,4 +121,7 @@ def ensemble(
     run = partial(many_motions, occurrences=occurrences, skip=skip, workers=workers, stop=stop)
     if accuracy is None:
         return run(module, t_span, y0, params, options)
+    # loads longer numbers and series, which other motions do not need
+    from solvers.integration.accuracy.accurate_ensemble import accurate_ensemble
+
     return accurate_ensemble(module, t_span, y0, params, options, accuracy, run)

@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike
 from solvers.equations.arguments import known_names
 from solvers.equations.module import GeneratedModule
 from solvers.equations.quantities import Values
-from solvers.integration.accuracy.accurate_motion import accurate_motion
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, EventFunction, Options
@@ -149,6 +148,9 @@ def integrate(
     options = Options(*control, t_eval, events, max_steps, backend, compensated, inputs)
     if accuracy is None:
         return single_motion(module, t_span, y0, params, options, energy=energy)
+    # loads longer numbers and series, which other motions do not need
+    from solvers.integration.accuracy.accurate_motion import accurate_motion
+
     is_named = method is not None or form is not None
     return accurate_motion(
         module, t_span, y0, params, options, accuracy, is_named=is_named, energy=energy

@@ -1,19 +1,18 @@
 """Results that show themselves: as a page that plays, a film, or plots."""
 
 import sys
-import webbrowser
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from tempfile import mkdtemp
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solvers.io.arguments import check_type
 from solvers.io.suggestion import shortened
-from solvers.player.geometry import tracks
-from solvers.player.page import Page
 from solvers.player.sampled_motion import SampledMotion
+
+if TYPE_CHECKING:
+    from solvers.player.page import Page
 
 
 class Playable(ABC):
@@ -23,7 +22,7 @@ class Playable(ABC):
     def sampled_motions(self) -> list[SampledMotion]:
         """The motions at times that show them smoothly."""
 
-    def play(self, beside: Sequence["Playable"] = ()) -> Page:
+    def play(self, beside: Sequence["Playable"] = ()) -> "Page":
         """The page that plays the motions: opened in a browser, in notebooks displayed.
 
         Parameters
@@ -33,6 +32,9 @@ class Playable(ABC):
         """
         page = _page(_together(self, beside))
         if "ipykernel" not in sys.modules:
+            import webbrowser
+            from tempfile import mkdtemp
+
             path = Path(mkdtemp(prefix="holonomic-")) / "motion.html"
             page.write(path)
             webbrowser.open(path.as_uri())
@@ -111,5 +113,8 @@ def _together(first: Playable, beside: Sequence[Playable]) -> list[SampledMotion
     return [replace(one, label=f"{k}: {one.label}") for k, one in enumerate(motions, 1)]
 
 
-def _page(motions: Sequence[SampledMotion]) -> Page:
+def _page(motions: Sequence[SampledMotion]) -> "Page":
+    from solvers.player.geometry import tracks
+    from solvers.player.page import Page
+
     return Page(motions[0].title, motions[0].note, tracks(motions))
