@@ -211,3 +211,19 @@ def test_an_ensemble_reports_motions_above_the_accuracy() -> None:
     with pytest.warns(AccuracyWarning, match="1 motion of 2 are above 1e-11"):
         motions = ensemble(dp, (0, 15), starts, {}, accuracy=1e-11, events=event)
     assert motions.error_estimate[0] <= 1e-11 < motions.error_estimate[1]
+
+
+def test_estimates_of_ensembles_contain_the_errors_of_the_checks() -> None:
+    """Where roundings grow to the accuracy, checks err as much as the motions."""
+    scene = random_scene(2101)
+    starts = np.array(scene.y0)[:, np.newaxis] * np.random.default_rng(2101).uniform(
+        0.9, 1.1, (4, 8)
+    )
+    times = [scene.duration / 3, scene.duration]
+    arguments = scene.module, (0, scene.duration)
+    motions = ensemble(*arguments, starts, scene.params, accuracy=1e-10, t_eval=times)
+    for k, start in enumerate(starts.T):
+        exact = integrate(*arguments, start, scene.params, accuracy=1e-12, t_eval=times)
+        error = np.abs(motions.samples[:, k] - exact.y).max()
+        assert error <= motions.error_estimate[k] + exact.error_estimate
+        assert motions.error_estimate[k] <= 1e-10

@@ -82,13 +82,15 @@ def _checked(
     first = _run(motions, rows, options, tolerance, run)
     main = options.form or fastest_form(module)
     form = fastest_form(module) if main == "lagrangian" else "lagrangian"
-    fine, errors = max(tolerance / TIGHTER, FINEST), np.zeros(len(rows))
-    for method in CHECKS:
-        other = _run(motions, rows, replace(options, method=method, form=form), fine, run)
-        errors = np.maximum(errors, MARGIN * _distances(first, other))
-        if method == CHECKS[0]:
-            rest = fine * np.abs(other.y).max(axis=0)
-    return first, errors + rest
+    fine = max(tolerance / TIGHTER, FINEST)
+    checks = [
+        _run(motions, rows, replace(options, method=method, form=form), fine, run)
+        for method in CHECKS
+    ]
+    distances = np.max([_distances(first, check) for check in checks], axis=0)
+    # errors of the checks themselves, as by roundings where the tolerance is near these
+    rest = _distances(*checks) + fine * np.abs(checks[0].y).max(axis=0)
+    return first, MARGIN * distances + rest
 
 
 def _run(
