@@ -1,6 +1,7 @@
 """Objectives, claims and recommendations: verdicts that follow from numbers, not from opinion."""
 
 import re
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 from solvers.app.commands.chart import DEFAULT
-from solvers.app.verdict.claims import _chapter_5, claims, objectives, recommendations
+from solvers.app.verdict.claims import _chapter_3, _chapter_5, claims, objectives, recommendations
 from solvers.app.verdict.evidence import Evidence
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
@@ -192,6 +193,9 @@ def test_verdicts_change_with_the_facts() -> None:
     honest = Evidence(PROSE, PROSE, PROSE, THIRD)
     verdicts = {claim.id: claim.verdict for claim in claims(honest)}
     assert verdicts["3.1a"] == verdicts["3.2a"] == "supported"
+    almost = replace(PROSE, y0=(PROSE.y0[0] + 0.01, *PROSE.y0[1:]))
+    verdicts = {claim.id: claim.verdict for claim in _chapter_3(replace(honest, first=almost))}
+    assert verdicts["3.1a"] == verdicts["3.2a"] == "contradicted"
 
 
 def test_the_reference_is_the_known_state(evidence: Evidence) -> None:

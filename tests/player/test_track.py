@@ -85,6 +85,16 @@ def test_tracks_that_cannot_be_played_are_refused(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("kinds", "least"), [(("rod", "thread", "spring", "rail"), 2), (("plate", "ring", "wheel"), 3)]
+)
+def test_links_have_the_points_that_determine_them(kinds: tuple[str, ...], least: int) -> None:
+    for kind in kinds:
+        replace(REST, links=((kind, (-1, 0, -1)[:least]),)).check()
+        with pytest.raises(ValueError, match=f"a {kind} of points .*: give {least} at least"):
+            replace(REST, links=((kind, (-1, 0, -1)[: least - 1]),)).check()
+
+
 def test_a_page_without_runs_is_refused_at_once() -> None:
     with pytest.raises(ValueError, match=r"tracks is empty, but .* at least one"):
         Page("", "", [])
