@@ -142,7 +142,7 @@ def rotations(axes: str, angles: Sequence[sp.Expr | float]) -> Orientation:
         turning.append((angle, tuple(matrix[row, :])))  # the axis after the later rotations
         matrix = _rotation(row, angle) * matrix
     words = f"rotations {axes} by {', '.join(map(str, values))}"
-    return Orientation(_rows(matrix), (*reversed(turning),), (), words)
+    return Orientation(_rows(matrix), tuple(turning), (), words)
 
 
 def rotation_matrix(rows: Sequence[Sequence[sp.Expr | float]]) -> Orientation:
