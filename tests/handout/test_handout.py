@@ -228,6 +228,9 @@ def test_sentences_hold_for_the_numbers_of_the_generated_module(documents, name:
     blocks = [block for section in documents(name).sections for block in section.blocks]
     text = " ".join(block.text for block in blocks if isinstance(block, Paragraph))
     n = len(module.COORDINATES)
+    masses = module.positions(0.0, [0.1] * (2 * n), module.DEFAULTS)
+    assert ("The positions of the masses" in text) == (len(masses) > 1)
+    assert ("The position of the mass" in text) == (len(masses) == 1)
     assert ("with the mass matrix" in text) == (n > 1)
     assert ("with the inertia" in text) == (n == 1)
     is_conservative = not hasattr(module, "power")
@@ -240,6 +243,34 @@ def test_sentences_hold_for_the_numbers_of_the_generated_module(documents, name:
         energies = [module.energy(0.0, y, module.DEFAULTS) for y in (state, turned)]
         is_cyclic = energies[0] == pytest.approx(energies[1], rel=1e-14)
         assert (f"the momentum `p_{q}` is constant" in text) == (is_cyclic and is_conservative)
+
+
+SENTENCES = {
+    "potential energy is that of the weight": {
+        "single_pendulum",
+        "double_bar_pendulum",
+        "heavy_top",
+    },
+    "potential energy includes that of the weight": {"elastic_pendulum"},
+    "potential energy belongs to the definition": {"henon_heiles", "chaplygin_sleigh"},
+    "half its moment of inertia times the square": {"double_bar_pendulum", "chaplygin_sleigh"},
+    "and the energy of its rotation": {"heavy_top"},
+    "These are centres of mass of rigid bodies": {
+        "double_bar_pendulum",
+        "chaplygin_sleigh",
+        "heavy_top",
+    },
+    "that are not integrable": {"chaplygin_sleigh"},
+    "Lagrangian of the other coordinates": {"heavy_top"},
+}
+
+
+def test_sentences_stand_where_they_apply(documents) -> None:
+    for name in sorted(set().union(*SENTENCES.values())):
+        blocks = [block for section in documents(name).sections for block in section.blocks]
+        text = " ".join(block.text for block in blocks if isinstance(block, Paragraph))
+        for sentence, systems in SENTENCES.items():
+            assert (sentence in text) == (name in systems), (name, sentence)
 
 
 def test_reasons_are_given_where_there_are_no_normal_modes(documents) -> None:
