@@ -3,13 +3,17 @@
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
-from derive import Derivation, load
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.handout.writing import write_document
 from derive.reading.documents import read_document
-from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.judgement import _read, judge_document
+from derive.verification.documents.letters.energies import has_rotations
 from derive.verification.documents.letters.hints import hints
+from derive.verification.documents.letters.letter_search import letters_of
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.statements import translated
 
 PENDULUM = r"""
 A bob at $(x, y)$ is subject to the constraint $x^2 + y^2 = l^2$.
@@ -172,3 +176,42 @@ def test_no_formula_of_a_correct_document_is_wrong(name: str, tmp_path: Path) ->
     assert "wrong" not in {one.verdict for one in judge_document(read_document(path)).formulas}
     own = judge_document(read_document(path), hints(name, None)).formulas
     assert {one.verdict for one in own} <= CORRECT
+
+
+x, theta = sp.symbols("x theta", real=True)
+m, a = sp.symbols("m a", positive=True)
+CENTRE = System(
+    "centre",
+    "The centre of a body",
+    [Coordinate(x, "m", "place"), Coordinate(theta, "rad", "angle")],
+    [Parameter(m, "kg", 1.0, "mass"), Parameter(a, "m", 1.0, "length")],
+    [PointMass(m, (x + a * sp.cos(theta), a * sp.sin(theta)))],
+    potential=0,
+    gravity=(0, 0),
+)
+
+
+@pytest.mark.parametrize(
+    ("added", "is_rotation"),
+    [
+        ("", False),
+        (r"+ \frac12 I\dot\theta^2", True),
+        (r"+ \frac12 I\dot\theta^2 + \frac12 J\dot x^2", True),
+        (r"- \frac12 I\dot\theta^2", False),
+        (r"+ \frac12 m\dot\theta^2", False),  # of a mass
+        (r"+ \frac12 I\theta\dot\theta^2", False),
+        (r"+ \frac12 I\dot\theta^3", False),
+        (r"+ \frac12 I\dot x\dot\theta", False),
+    ],
+)
+def test_rotations_add_squares_of_velocities_to_energies_of_points(
+    added: str, is_rotation: bool, tmp_path: Path
+) -> None:
+    path = tmp_path / "body.tex"
+    path.write_text(rf"""
+$$ T = \frac{{m}}{{2}} (\dot x^2 - 2 a\dot x\dot\theta\sin\theta + a^2\dot\theta^2) {added} $$
+$$ V = m g a\sin\theta $$
+""")
+    statements = translated(_read(read_document(path))[0])
+    letters = letters_of(statements.formulas, statements.derivatives)
+    assert has_rotations(CENTRE, letters, statements.formulas) == is_rotation
