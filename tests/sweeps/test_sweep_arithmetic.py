@@ -191,6 +191,9 @@ def test_the_command_names_the_difference(
     path = write_sweep(tmp_path, f'{text}[maps.end]\nkind = "final"\nof = ["theta1"]\n')
     argv = ["sweep", str(path), "--output", str(tmp_path / "out")]
     assert main(argv) == 0
+    out = tmp_path / "out"
+    files = f"files: {out / 'mine.png'} and {out}/*.npy"
+    assert capsys.readouterr().out.splitlines()[-1] == files
     next((tmp_path / "out" / "chunks").glob("*.npy")).unlink()
     in_python(monkeypatch)
     capsys.readouterr()

@@ -489,6 +489,7 @@ def test_partial_results_can_be_plotted(tmp_path: Path, capsys: pytest.CaptureFi
     assert main(["sweep", str(path), "--output", str(out), "--draw"]) == 0
     printed = capsys.readouterr().out
     assert "not done yet" in printed
+    assert printed.endswith(f"files: {out / 'mine.png'}\n")  # the others existed before
     assert (out / "mine.png").read_bytes().startswith(b"\x89PNG")
     assert files(out) == before
     assert main(["sweep", str(path), "--output", str(tmp_path / "none"), "--draw"]) == 2

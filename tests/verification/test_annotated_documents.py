@@ -202,6 +202,21 @@ def test_the_copy_of_a_document_has_notes_at_its_formulas(tmp_path: Path) -> Non
     assert r"\label" not in end
 
 
+def test_notes_name_the_line_and_the_display_of_a_wrong_formula(tmp_path: Path) -> None:
+    read = document(
+        tmp_path, "Energies:\n$$ T = 1 $$\nand, in a line, $V = 2$, then\n$$ E = 3 $$\n"
+    )
+    wrong = {"verdict": "wrong"}
+    notes = latex_notes(
+        judged(read, *((text, wrong) for text in ("T = 1", "V = 2", "E = 3"))), read
+    )
+    assert re.findall(r"\\textbf\{(Line .*?)\}", notes) == [
+        "Line 2: wrong (display 1)",
+        "Line 3: wrong",
+        "Line 4: wrong (display 2)",
+    ]
+
+
 def test_formulas_of_other_documents_are_listed(tmp_path: Path) -> None:
     text = f"$$\\newcommand{{\\q}}{{\\theta}}\\newcommand{{\\half}}{{\\frac12}}\n{ENERGY}$$"
     read = document(tmp_path, text, "a.md")
