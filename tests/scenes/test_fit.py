@@ -12,9 +12,11 @@ from scipy.special import stdtrit
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
+import generated.elastic_pendulum as elastic
 import generated.single_pendulum as single
 from derive import Coordinate, Parameter, PointMass, System, velocity
 from solvers import Measurement, build, compare, fit, integrate
+from solvers.app.fitting import _model
 from solvers.equations.module import GeneratedModule
 from solvers.scenes.fitting import least_squares as shooting_steps
 from solvers.scenes.fitting.experiment import Experiment
@@ -235,6 +237,17 @@ def test_of_parameters_that_are_0_those_that_may_be_negative_are_fitted() -> Non
     result = fit(pulled, data, params={"c": 0.0})
     assert [*result.intervals] == ["k", "F"]
     assert [result.params[name] for name in ("k", "F")] == pytest.approx([4, -0.5], abs=1e-6)
+
+
+def test_the_first_guess_of_a_system_is_rest_where_lengths_are_not_0() -> None:
+    _, start, params = _model(elastic)
+    assert dict(zip(elastic.STATE, start, strict=True)) == {
+        "r": 1.0,
+        "theta": 0.0,
+        "r_dot": 0.0,
+        "theta_dot": 0.0,
+    }
+    assert params == dict(zip(elastic.PARAMETERS, elastic.DEFAULTS, strict=True))
 
 
 def test_rest_determines_no_parameter() -> None:
