@@ -196,6 +196,8 @@ def generator_text() -> str:
         path = waiting.pop()
         if path not in texts and path.is_file():
             texts[path] = path.read_text(encoding="utf-8")
+            folders = (folder for folder in path.parents if folder.is_relative_to(root))
+            waiting += [folder / "__init__.py" for folder in folders]
             for package, one, several in IMPORTED.findall(texts[path]):
                 names = re.findall(r"\w+", one or several)
                 parts = [package, *(f"{package}.{name}" for name in names)]

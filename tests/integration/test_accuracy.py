@@ -45,7 +45,11 @@ def check_motion(seed: int) -> None:
     except (EndsEarlyError, NotAccurateError, TooLongError):
         return
     assert solution.error_estimate is not None
-    error = error_of(motion, solution.y.T, times, solution.error_estimate)
+    if solution.nfev:
+        error = error_of(motion, solution.y.T, times, solution.error_estimate)
+    else:  # where doubles lose the motion, as next to a pole, collocation in doubles does so, too
+        exact = np.array(taylor(scene.module, scene.params, scene.y0, times.tolist(), 34), float)
+        error = np.abs(solution.y - exact.T).max()
     assert error <= solution.error_estimate <= scene.accuracy, (seed, scene.module.SYSTEM)
 
 
