@@ -1,10 +1,9 @@
-from derive.codegen.writing import write as write
+from derive.codegen.module_files import write as write
 from derive.mechanics.derivation import Derivation as Derivation
 from derive.mechanics.linearisation.small_oscillations import Linearisation as Linearisation
 from derive.mechanics.linearisation.state_space import StateSpace as StateSpace
 from derive.mechanics.reduced_coordinates import reduced as reduced
 from derive.mechanics.specialisation import with_inputs as with_inputs
-from derive.system.catalogue import load as load
 from derive.system.constraints import Constraint as Constraint
 from derive.system.joints.body_joints import hinge as hinge
 from derive.system.joints.body_joints import prismatic as prismatic
@@ -36,3 +35,4 @@ from derive.system.shipped import names as names
 from derive.system.symbols import TIME as TIME
 from derive.system.symbols import velocity as velocity
 from derive.system.system import System as System
+from derive.system.system_catalogue import load as load

@@ -2,6 +2,6 @@
 
 import sys
 
-from derive.commands.derive import main
+from derive.commands.regenerate import main
 
 sys.exit(main(sys.argv[1:]))

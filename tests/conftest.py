@@ -23,7 +23,7 @@ from sharing import Shared
 from derive import Derivation, load
 from solvers.app.modules import load as load_module
 from solvers.integration.checks import predictability
-from solvers.scenes.reading import find
+from solvers.scenes.scene_reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.scene_stability import SceneStability

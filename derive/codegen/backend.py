@@ -7,8 +7,8 @@ from pkgutil import iter_modules
 from typing import ClassVar
 
 from derive.codegen import backends
-from derive.codegen.functions import Contents, Function
-from derive.codegen.operations.assignments import Assignments, Notation, Statement
+from derive.codegen.module_functions import Contents, Function
+from derive.codegen.operations.assignments import Assignments, LanguageNotation, Statement
 
 #: Place of the digest of all files of a system, by which files that belong together are known.
 DIGEST = "@digest@"
@@ -16,7 +16,7 @@ DIGEST = "@digest@"
 RESERVED = ("t", "y", "state", "params", "signs", "result")
 
 
-class Backend(Notation, ABC):
+class Backend(LanguageNotation, ABC):
     """The statements and files of a target language.
 
     A file in the folder ``derive/codegen/backends`` defines a subclass and ``backend``, its
@@ -46,7 +46,7 @@ class Backend(Notation, ABC):
     def statement(self, statement: Statement, function: Function) -> Iterable[str]:
         """The lines that compute a named value, in the body of a function."""
 
-    def notation(self, function: Function) -> Notation:
+    def notation(self, function: Function) -> LanguageNotation:
         """The notation in a function."""
         return self
 

@@ -10,7 +10,7 @@ from solvers.io.atomic_write import is_temporary, remove_abandoned, write_texts
 
 
 @dataclass(frozen=True)
-class Difference:
+class FileDifference:
     """A file that differs from the generator's text."""
 
     path: Path
@@ -19,18 +19,18 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Tree:
+class GeneratedFiles:
     """The generated texts for the files of a folder."""
 
     folder: Path
     texts: Mapping[str, str]  # by name or path of the file in the folder
     complete: bool  # whether every other file in the folder is an orphan
 
-    def differences(self) -> list[Difference]:
+    def differences(self) -> list[FileDifference]:
         """Files that are missing, that differ or that nothing generates, by name."""
         texts = self.texts.items()
         compared = (self._difference(self.folder / name, text) for name, text in texts)
-        orphans = (Difference(path, "orphan") for path in self.orphans())
+        orphans = (FileDifference(path, "orphan") for path in self.orphans())
         return sorted([*filter(None, compared), *orphans], key=lambda each: each.path)
 
     def orphans(self) -> list[Path]:
@@ -55,13 +55,15 @@ class Tree:
         return changed
 
     @staticmethod
-    def _difference(path: Path, text: str) -> Difference | None:
+    def _difference(path: Path, text: str) -> FileDifference | None:
         if not path.is_file():
-            return Difference(path, "missing")
+            return FileDifference(path, "missing")
         present = path.read_bytes()
         if present == text.encode():
             return None
         before = present.decode(errors="backslashreplace").splitlines(keepends=True)
         after = text.splitlines(keepends=True)
         diff = "".join(unified_diff(before, after, f"{path.name} as it is", "as generated", n=1))
-        return Difference(path, "differs", diff or "only line ends or the final newline differ\n")
+        return FileDifference(
+            path, "differs", diff or "only line ends or the final newline differ\n"
+        )

@@ -4,13 +4,23 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Literal, TypeAlias
 
-from derive.handout.document import Block, Code, Document, Equation, Paragraph, Section, in_text
+from derive.handout.document_model import (
+    Block,
+    Code,
+    HandoutDocument,
+    HandoutSection,
+    NumberedEquation,
+    Paragraph,
+    in_text,
+)
 from derive.handout.mistakes import Mistake, planted
 
 Exercise: TypeAlias = Literal["blank", "mistakes"]
 
 
-def with_exercises(document: Document, kind: Exercise, seed: int) -> tuple[Document, Document]:
+def with_exercises(
+    document: HandoutDocument, kind: Exercise, seed: int
+) -> tuple[HandoutDocument, HandoutDocument]:
     """A document with exercises and its key, both without generated code, which has the solution.
 
     Parameters
@@ -51,29 +61,33 @@ def with_exercises(document: Document, kind: Exercise, seed: int) -> tuple[Docum
     return _replaced(document, changed, task), _key(document, answers)
 
 
-def _is_derived(equation: Equation) -> bool:
+def _is_derived(equation: NumberedEquation) -> bool:
     return equation.value is not None and not equation.is_given
 
 
-def _answer(equation: Equation, mistake: Mistake) -> Iterator[Block]:
+def _answer(equation: NumberedEquation, mistake: Mistake) -> Iterator[Block]:
     wrong, right = (in_text(equation.order.tree(e)) for e in (mistake.wrong, mistake.right))
     yield Paragraph(f"({equation.number}) A wrong {mistake.kind}: {wrong} instead of {right}.")
     yield equation
 
 
-def _replaced(document: Document, changed: dict[int, Equation], task: str) -> Document:
+def _replaced(
+    document: HandoutDocument, changed: dict[int, NumberedEquation], task: str
+) -> HandoutDocument:
     """The document with other formulas, and the task before its first section."""
 
     def block(one: Block) -> Block:
-        return changed.get(one.number, one) if isinstance(one, Equation) else one
+        return changed.get(one.number, one) if isinstance(one, NumberedEquation) else one
 
     sections = [
         replace(section, blocks=tuple(map(block, section.blocks)))
         for section in document.sections
         if not any(isinstance(one, Code) for one in section.blocks)
     ]
-    return Document(document.title, (Section("Exercise", (Paragraph(task),)), *sections))
+    return HandoutDocument(
+        document.title, (HandoutSection("Exercise", (Paragraph(task),)), *sections)
+    )
 
 
-def _key(document: Document, answers: Sequence[Block]) -> Document:
-    return Document(f"Key: {document.title}", (Section("Solutions", tuple(answers)),))
+def _key(document: HandoutDocument, answers: Sequence[Block]) -> HandoutDocument:
+    return HandoutDocument(f"Key: {document.title}", (HandoutSection("Solutions", tuple(answers)),))

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from derive.formulas.derivative import derivative
-from derive.handout.document import Block, Paragraph
-from derive.handout.motion import has_inverse, legendre
-from derive.handout.notation import names_of, words
+from derive.handout.derived_letters import names_of, words
+from derive.handout.document_model import Block, Paragraph
+from derive.handout.motion_sections import has_inverse, legendre
 from derive.handout.numbering import Numbering, tidied
 from derive.mechanics.derivation import Derivation
 from derive.system.parts import SystemDefinitionError

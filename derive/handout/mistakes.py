@@ -12,10 +12,10 @@ from typing import Literal, TypeAlias
 
 import sympy as sp
 
+from derive.formulas.evaluation.generic_values import STATES, sample
 from derive.formulas.evaluation.numeric import Evaluator, NoValueError
-from derive.formulas.evaluation.sampling import STATES, sample
 from derive.formulas.typeset.lettering import lettering
-from derive.handout.document import Equation
+from derive.handout.document_model import NumberedEquation
 
 Kind: TypeAlias = Literal["sign", "index", "power", "function", "factor"]
 
@@ -30,7 +30,7 @@ class Mistake:
     kind: Kind
     right: sp.Expr
     wrong: sp.Expr
-    equation: Equation
+    equation: NumberedEquation
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class _Change:
     entry: int  # of a matrix
 
 
-def planted(equation: Equation, seed: str) -> Mistake | None:
+def planted(equation: NumberedEquation, seed: str) -> Mistake | None:
     """One mistake in the derived side of a formula; None where there is none, as in 0.
 
     Parameters
@@ -77,7 +77,7 @@ def planted(equation: Equation, seed: str) -> Mistake | None:
     return None
 
 
-def _changes(entry: sp.Expr, k: int, equation: Equation) -> Iterator[_Change]:
+def _changes(entry: sp.Expr, k: int, equation: NumberedEquation) -> Iterator[_Change]:
     """All replacements of one part of an expression."""
     symbols = [*equation.order.kinds]
 
@@ -129,7 +129,7 @@ def _is_similar(right: sp.Expr, wrong: sp.Expr) -> bool:
     return abs(wrong.count_ops() - right.count_ops()) <= OPERATIONS
 
 
-def _is_wrong(right: sp.Expr, wrong: sp.Expr, equation: Equation) -> bool:
+def _is_wrong(right: sp.Expr, wrong: sp.Expr, equation: NumberedEquation) -> bool:
     """Whether the values differ at a generic state, and not by a factor or constant that may be."""
     kinds, difference = equation.order.kinds, wrong - right
     variables = {s for s, kind in kinds.items() if kind in ("coordinate", "rate", "acceleration")}

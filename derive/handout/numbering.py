@@ -9,8 +9,8 @@ import sympy as sp
 
 from derive.formulas.syntax import is_sum, summands
 from derive.formulas.typeset.line_breaks import latex_rows, width_of
-from derive.handout.document import WIDTH, Block, Equation, Paragraph, in_text
-from derive.handout.notation import Notation
+from derive.handout.derived_letters import DerivedLetters
+from derive.handout.document_model import WIDTH, Block, NumberedEquation, Paragraph, in_text
 from derive.mechanics.energies.reduction import collected
 
 #: Width of the left side of a column or matrix, and lines of the longest readable formula.
@@ -23,7 +23,7 @@ MOST_PARTS = 5000
 class Numbering:
     """Formulas in the notation of a system, numbered in the order in which they are requested."""
 
-    notation: Notation
+    notation: DerivedLetters
     numbers: Iterator[int] = field(default_factory=lambda: count(1))
 
     def equation(
@@ -32,14 +32,16 @@ class Numbering:
         value: sp.Expr | sp.MatrixBase,
         after: tuple[str, ...] = (),
         is_given: bool = False,
-    ) -> Equation:
+    ) -> NumberedEquation:
         """A formula with a derived side, after the sides `before` and before those `after`."""
         order = self.notation.order
-        return Equation(next(self.numbers), before, value, after, order, is_given)
+        return NumberedEquation(next(self.numbers), before, value, after, order, is_given)
 
-    def relation(self, *sides: str) -> Equation:
+    def relation(self, *sides: str) -> NumberedEquation:
         """A formula between names."""
-        return Equation(next(self.numbers), sides, None, (), self.notation.order, is_given=True)
+        return NumberedEquation(
+            next(self.numbers), sides, None, (), self.notation.order, is_given=True
+        )
 
     def vectors(
         self, rate: str, values: Sequence[sp.MatrixBase], *, is_given: bool = False

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.evaluation.numeric import Evaluator, mp
-from derive.handout.document import Block, Paragraph, Table
+from derive.handout.document_model import Block, HandoutTable, Paragraph
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.linearisation.small_oscillations import Linearisation
@@ -37,7 +37,7 @@ def oscillations(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         yield Paragraph("The system is in equilibrium at these coordinates.")
         pairs = zip(d.system.q, linear.equilibrium, strict=True)
         rows = tuple((f"`{q}`", formulas.text(value)) for q, value in pairs)
-        yield Table(("coordinate", "value"), rows)
+        yield HandoutTable(("coordinate", "value"), rows)
     else:
         yield Paragraph("The system is in equilibrium where all coordinates are zero.")
     if d.system.conditions:
@@ -71,7 +71,7 @@ def _characteristic_polynomial(linear: Linearisation, omega: sp.Symbol) -> sp.Ex
     return sp.Mul(*(sp.collect(sp.expand(b), omega, sp.factor) ** n for b, n in factors))
 
 
-def _table(modes: list[Mode], linear: Linearisation, formulas: Numbering) -> Table:
+def _table(modes: list[Mode], linear: Linearisation, formulas: Numbering) -> HandoutTable:
     """Frequencies, periods and shapes of the normal modes; a mode that grows has no period."""
     omega = formulas.notation.letter("omega")
     rows = []
@@ -81,7 +81,7 @@ def _table(modes: list[Mode], linear: Linearisation, formulas: Numbering) -> Tab
         rows.append((f"{square:.4g}", frequency, period, ", ".join(f"{x:.3g}" for x in shape)))
     title = "shape (" + ", ".join(f"`{name}`" for name in linear.states) + ")"
     head = (f"`{omega}**2` in 1/s²", f"`{omega}` in rad/s", "period in s", title)
-    return Table(head, tuple(rows))
+    return HandoutTable(head, tuple(rows))
 
 
 def normal_modes(d: Derivation, linear: Linearisation) -> list[Mode]:

@@ -7,11 +7,18 @@ from typing import TypeAlias
 
 from derive.codegen.backend import find_backends
 from derive.codegen.elimination.factorisation import LARGE
-from derive.codegen.functions import contents
-from derive.handout.document import WIDTH, Block, Code, Document, Paragraph, Section
+from derive.codegen.module_functions import contents
+from derive.handout.derived_letters import DerivedLetters, names_of, words
+from derive.handout.document_model import (
+    WIDTH,
+    Block,
+    Code,
+    HandoutDocument,
+    HandoutSection,
+    Paragraph,
+)
 from derive.handout.hamilton import hamilton, routhian
-from derive.handout.motion import accelerations, energy, euler_lagrange, lagrangian
-from derive.handout.notation import Notation, names_of, words
+from derive.handout.motion_sections import accelerations, energy, euler_lagrange, lagrangian
 from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
 from derive.handout.setup import constraints, energies, system, velocities
@@ -39,7 +46,7 @@ LARGEST_SYSTEM = 10
 LANGUAGES = {".py": "Python", ".h": "C"}
 
 
-def document(derivation: Derivation) -> Document:
+def document(derivation: Derivation) -> HandoutDocument:
     """The document of a derivation.
 
     Parameters
@@ -72,14 +79,14 @@ def document(derivation: Derivation) -> Document:
             "allowed; choose a system with fewer"
         )
     derivation = with_letters(derivation)
-    formulas = Numbering(Notation(derivation.system))
+    formulas = Numbering(DerivedLetters(derivation.system))
     sections = [
-        Section(title, tuple(blocks(derivation, formulas)))
+        HandoutSection(title, tuple(blocks(derivation, formulas)))
         for title, blocks in SECTIONS.items()
         if _exists(blocks, derivation)
     ]
-    sections.append(Section("Generated code", tuple(_code(derivation, formulas))))
-    return Document(words(derivation.system.title), tuple(sections))
+    sections.append(HandoutSection("Generated code", tuple(_code(derivation, formulas))))
+    return HandoutDocument(words(derivation.system.title), tuple(sections))
 
 
 def _exists(blocks: Blocks, derivation: Derivation) -> bool:

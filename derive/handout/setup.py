@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
-from derive.handout.document import Block, Paragraph, Table
-from derive.handout.notation import unit_words, words
+from derive.handout.derived_letters import unit_words, words
+from derive.handout.document_model import Block, HandoutTable, Paragraph
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation
 from derive.system.parts import Coordinate, Input, Parameter
@@ -16,18 +16,18 @@ def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
     """Coordinates, parameters, masses and positions."""
     yield Paragraph("The coordinates of the system are as follows.")
     coordinates = ((f"`{c.symbol}`", unit_words(c.unit), meaning(c)) for c in d.system.coordinates)
-    yield Table(("coordinate", "unit", "meaning"), tuple(coordinates))
+    yield HandoutTable(("coordinate", "unit", "meaning"), tuple(coordinates))
     if d.system.parameters:
         yield Paragraph("The parameters are constant.")
         parameters = (
             (f"`{p.symbol}`", f"{p.default:g} {unit_words(p.unit)}".rstrip(), meaning(p))
             for p in d.system.parameters
         )
-        yield Table(("parameter", "default value", "meaning"), tuple(parameters))
+        yield HandoutTable(("parameter", "default value", "meaning"), tuple(parameters))
     if d.system.inputs:
         yield Paragraph("The inputs may change during a motion.")
         inputs = ((f"`{u.symbol}`", unit_words(u.unit), meaning(u)) for u in d.system.inputs)
-        yield Table(("input", "unit", "meaning"), tuple(inputs))
+        yield HandoutTable(("input", "unit", "meaning"), tuple(inputs))
     masses = d.system.masses
     noun = "positions of the masses" if len(masses) > 1 else "position of the mass"
     names = formulas.text(*dict.fromkeys(mass.mass for mass in masses))
@@ -40,7 +40,7 @@ def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         values = ((b.mass, b.inertia, b.orientation) for b in bodies if b.axes is None)
         rows = tuple(tuple(map(formulas.text, row)) for row in values)
         if rows:
-            yield Table(("mass", "moment of inertia", "orientation"), rows)
+            yield HandoutTable(("mass", "moment of inertia", "orientation"), rows)
         yield from _in_space([body for body in bodies if body.axes], formulas)
 
 
@@ -67,7 +67,7 @@ def constraints(d: Derivation, formulas: Numbering) -> Iterator[Block]:
         "velocities if it contains any, is the reaction that keeps it so."
     )
     rows = ((f"`{c.symbol}`", unit_words(c.unit), words(c.meaning)) for c in d.system.conditions)
-    yield Table(("multiplier", "unit", "meaning"), tuple(rows))
+    yield HandoutTable(("multiplier", "unit", "meaning"), tuple(rows))
     decision = d.integrability
     if decision.integrals:
         yield Paragraph(

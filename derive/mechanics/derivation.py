@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from derive.mechanics.constraints.constraints import Constraints
+from derive.mechanics.constraints.differentiated_constraints import Constraints
 from derive.mechanics.independence import check_independence, is_singular
-from derive.mechanics.linearisation.equilibria import equilibria
-from derive.mechanics.linearisation.point import Formula, Point
+from derive.mechanics.linearisation.closed_form_equilibria import equilibria
+from derive.mechanics.linearisation.point import Formula, OperatingPoint
 from derive.mechanics.linearisation.small_oscillations import Linearisation, SmallOscillations
 from derive.mechanics.linearisation.state_space import StateSpace, state_space
 from derive.mechanics.outputs import outputs as output_formulas
@@ -203,7 +203,7 @@ class Derivation(StepByStep):
         >>> hanging.C
         Matrix([[l, 0]])
         """
-        point = Point.of(self.system, at or {})
+        point = OperatingPoint.of(self.system, at or {})
         return state_space(point, self, outputs)
 
     def identifiable(
@@ -290,10 +290,10 @@ class Derivation(StepByStep):
         {theta: -acos(g/(Omega**2*R)) + 2*pi}
         {theta: acos(g/(Omega**2*R))}
         """
-        point = Point.of(self.system, at or {})
+        point = OperatingPoint.of(self.system, at or {})
         moving = {*self.system.qdot}
         values = {s: x for s, x in point.values.items() if s in moving or s.name in (at or {})}
-        return equilibria(Point(self.system, values), self)
+        return equilibria(OperatingPoint(self.system, values), self)
 
     @cached_property
     def _default_linearisation(self) -> Linearisation:

@@ -7,7 +7,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.derivative import derivative
-from derive.mechanics.constraints.constraints import Constraints
+from derive.mechanics.constraints.differentiated_constraints import Constraints
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import collected, reduced
 from derive.system.parts import SystemDefinitionError

@@ -15,13 +15,13 @@ from math import lcm
 import numpy as np
 import sympy as sp
 
-from derive.formulas.evaluation.residue_values import Evaluation, Point, branches
+from derive.formulas.evaluation.residue_values import Evaluation, RandomResidues, branches
 from derive.formulas.evaluation.residues import (
     PRIME,
     NoRootError,
     Residues,
+    ResidueSeries,
     Rows,
-    Series,
     echelon,
     inverse,
     null_space,
@@ -157,7 +157,7 @@ def _rows_and_values(
     number: int,
 ) -> tuple[Rows, list[int]]:
     """Conditions on changes of the parameters that leave all outputs as they are; their values."""
-    values = Point(number)
+    values = RandomResidues(number)
     parameters = {symbol: values.residue(symbol) for symbol in (*system.params, *system.u)}
     conditions: Rows = []
     seeds = iter(range(ATTEMPTS * (number + 1), ATTEMPTS * (number + 2)))
@@ -165,7 +165,7 @@ def _rows_and_values(
         rows: Rows = []
         for seed in seeds:
             try:
-                motion = _Motion(system, parameters, unknown, Point(seed, choices))
+                motion = _MotionSeries(system, parameters, unknown, RandomResidues(seed, choices))
                 rows = motion.derivatives(mass_matrix, forcing, outputs)
                 break
             except NoRootError:
@@ -177,7 +177,7 @@ def _rows_and_values(
     return conditions, [parameters[symbol] for symbol in unknown]
 
 
-class _Motion:
+class _MotionSeries:
     """A motion from a random state, as series in time with derivatives by start and parameters."""
 
     def __init__(
@@ -185,7 +185,7 @@ class _Motion:
         system: System,
         parameters: dict[sp.Symbol, int],
         unknown: Sequence[sp.Symbol],
-        point: Point,
+        point: RandomResidues,
     ) -> None:
         self._system, self._point = system, point
         self._columns = [*system.q, *system.qdot, *unknown]
@@ -213,7 +213,7 @@ class _Motion:
 
     def _evaluation(self, accelerations: Sequence[Residues]) -> Evaluation:
         """Evaluation of expressions as series that are longer by one term than accelerations."""
-        length, known = 1 + accelerations[0].shape[1], dict[sp.Basic, Series]()
+        length, known = 1 + accelerations[0].shape[1], dict[sp.Basic, ResidueSeries]()
         for symbol, number in self._numbers.items():
             rows = np.zeros((1 + len(self._columns), length), np.int64)
             rows[0, 0] = number
@@ -221,7 +221,7 @@ class _Motion:
                 rows[1 + self._columns.index(symbol), 0] = 1
             if symbol == TIME:
                 rows[0, 1:2] = 1
-            known[symbol] = Series(rows)
+            known[symbol] = ResidueSeries(rows)
         pairs = zip(self._system.q, self._system.qdot, accelerations, strict=True)
         for q, velocity, acceleration in pairs:
             for symbol, rates in ((velocity, acceleration), (q, known[velocity].rows)):

@@ -16,7 +16,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.derivative import derivative
-from derive.formulas.proofs.expansion import is_expandable
+from derive.formulas.proofs.expansion_size import is_expandable
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced

@@ -10,10 +10,10 @@ from pkgutil import iter_modules
 from types import ModuleType
 
 from derive.reading import formats
-from derive.reading.continuation import joined
+from derive.reading.continued_displays import joined
 from derive.reading.document import CodeCell, Display, Document, Kind, Place
 from derive.reading.formats import notebook, tex
-from derive.reading.scanning import Excerpt, Unread
+from derive.reading.scanning import Excerpt, UnreadDisplay
 from solvers.io.toml_input import InputError, read_bytes
 
 #: Bytes of the largest document and of the largest notebook, most of which are outputs.
@@ -106,7 +106,7 @@ def _scanned(
     for count, (offset, part, one) in enumerate(found):
         if count == MAX_FORMULAS:
             raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
-        if isinstance(one, Unread):
+        if isinstance(one, UnreadDisplay):
             place = document.place(offset + one.start)
             unread.setdefault(one.reason, []).append(place)
         elif latex := form.decoded(part, one).rstrip():

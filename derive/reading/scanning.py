@@ -18,7 +18,7 @@ BLANK_LINE = r"\n[ \t]*+\n"
 
 
 @dataclass(frozen=True)
-class Token:
+class Delimiter:
     """A delimiter of formulas, or the start of a part that is skipped.
 
     `closing` is a regular expression: its group ``end`` is the closing delimiter, its group
@@ -48,7 +48,7 @@ class Excerpt:
 
 
 @dataclass(frozen=True)
-class Unread:
+class UnreadDisplay:
     """A display that is not read, and why."""
 
     start: int
@@ -56,8 +56,8 @@ class Unread:
 
 
 def scanned(
-    text: str, tokens: Sequence[Token], start: int = 0, end: int | None = None
-) -> Iterator[Excerpt | Unread]:
+    text: str, tokens: Sequence[Delimiter], start: int = 0, end: int | None = None
+) -> Iterator[Excerpt | UnreadDisplay]:
     """Formulas in the order of the text, and displays without an end."""
     openings = _expression("|".join(f"(?P<t{i}>{one.opening})" for i, one in enumerate(tokens)))
     end = len(text) if end is None else end
@@ -81,19 +81,19 @@ def scanned(
             without_end.add(pattern)
         if token.delimiter and not token.is_inline:
             delimiter = opening.group() if token.is_environment else token.delimiter
-            yield Unread(opening.start(), f"{delimiter} is not closed")
+            yield UnreadDisplay(opening.start(), f"{delimiter} is not closed")
 
 
 def _excerpt(
-    text: str, token: Token, opening: re.Match[str], mark: re.Match[str]
-) -> Excerpt | Unread:
+    text: str, token: Delimiter, opening: re.Match[str], mark: re.Match[str]
+) -> Excerpt | UnreadDisplay:
     start, end, delimiter = opening.end(), mark.start(), token.delimiter
     if token.is_environment:
         start, end, delimiter = opening.start(), mark.end(), environment(opening)
     if token.inner:
         inner = _expression(token.inner).search(text, start, end)
         if inner is None:
-            return Unread(opening.start(), f"<{delimiter}> contains no LaTeX")
+            return UnreadDisplay(opening.start(), f"<{delimiter}> contains no LaTeX")
         start, end = inner.span(1)
     return Excerpt(start, end, (opening.start(), mark.end()), delimiter, token.is_inline)
 

@@ -8,7 +8,6 @@ from itertools import chain
 import sympy as sp
 
 from derive.formulas.typeset.typesetting import Formula
-from derive.system.checks import check
 from derive.system.constraints import Eliminated, constraints
 from derive.system.declaration import Declaration
 from derive.system.links.link import Link
@@ -25,6 +24,7 @@ from derive.system.parts import (
     items,
 )
 from derive.system.prescribed import as_functions_of_time, parts
+from derive.system.system_checks import check
 from solvers.io.suggestion import shortened
 
 #: Types of the parts of a system.

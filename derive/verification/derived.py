@@ -5,16 +5,16 @@ from collections.abc import Callable, Iterable
 import sympy as sp
 
 from derive.system.symbols import TIME
-from derive.verification.model import Model, time_derivative
+from derive.verification.reference_system import ReferenceSystem, time_derivative
 from derive.verification.routhians import routhian, value_of
 
 
-def _acceleration(model: Model, name: str) -> sp.Expr:
+def _acceleration(model: ReferenceSystem, name: str) -> sp.Expr:
     system, value = model.derivation.system, model.context.scope[name]
     return time_derivative(system, time_derivative(system, value))
 
 
-def _hamilton(model: Model, name: str) -> sp.Expr:
+def _hamilton(model: ReferenceSystem, name: str) -> sp.Expr:
     """The rate of a coordinate or momentum; that of a momentum is ∂L/∂q + Q."""
     system = model.derivation.system
     pairs = zip(system.q, model.forces, strict=True)
@@ -22,7 +22,7 @@ def _hamilton(model: Model, name: str) -> sp.Expr:
 
 
 def _rate(
-    model: Model, name: str, velocities: Iterable[sp.Expr], forces: Iterable[sp.Expr]
+    model: ReferenceSystem, name: str, velocities: Iterable[sp.Expr], forces: Iterable[sp.Expr]
 ) -> sp.Expr:
     system, value = model.derivation.system, model.context.scope[name]
     rates = zip((*system.q, *system.p), (*velocities, *forces), strict=True)
@@ -33,7 +33,7 @@ def _rate(
 #: have a formula for each coordinate, or name of one: a mirrored angle has the opposite momentum.
 #: The name of a Routhian is that of its eliminated coordinates. The last is any other quantity that
 #: a name stands for.
-QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
+QUANTITIES: dict[str, Callable[[ReferenceSystem, str], sp.Expr]] = {
     "kinetic_energy": lambda model, _: model.derivation.kinetic_energy,
     "potential_energy": lambda model, _: model.derivation.potential_energy,
     "lagrangian": lambda model, _: model.lagrangian,
@@ -50,7 +50,7 @@ QUANTITIES: dict[str, Callable[[Model, str], sp.Expr]] = {
 CANONICAL = ("hamiltonian", "hamilton")
 
 
-def foreign_symbols(model: Model, kind: str, name: str) -> frozenset[sp.Symbol]:
+def foreign_symbols(model: ReferenceSystem, kind: str, name: str) -> frozenset[sp.Symbol]:
     """Symbols that a formula for a quantity cannot contain."""
     system = model.derivation.system
     if kind == "value":
@@ -63,7 +63,7 @@ def foreign_symbols(model: Model, kind: str, name: str) -> frozenset[sp.Symbol]:
     return frozenset((*system.qddot, *others))
 
 
-def printed_formula(model: Model, kind: str, name: str) -> sp.Expr | None:
+def printed_formula(model: ReferenceSystem, kind: str, name: str) -> sp.Expr | None:
     """The formula in the variables of its kind; None if it requires a large inverse."""
     derivation, system = model.derivation, model.derivation.system
     if kind in ("accelerations", *CANONICAL) and not model.has_inverse:

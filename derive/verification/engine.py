@@ -12,8 +12,8 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.evaluation.generic_values import STATES
 from derive.formulas.evaluation.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
-from derive.formulas.evaluation.sampling import STATES
 from derive.formulas.expression import Scope, parse
 from derive.formulas.proofs.zero import is_positive, vanishes
 from derive.formulas.syntax import RELATION, ExpressionError

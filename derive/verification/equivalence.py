@@ -4,17 +4,17 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion import is_expandable
+from derive.formulas.proofs.expansion_size import is_expandable
 from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.engine import joined
-from derive.verification.model import Model, depends_on, euler_lagrange
+from derive.verification.reference_system import ReferenceSystem, depends_on, euler_lagrange
 from derive.verification.routhians import equivalents
 
 Differences = tuple[sp.Expr, ...]
 
 
-def equivalence(model: Model, kind: str, value: sp.Expr) -> str | None:
+def equivalence(model: ReferenceSystem, kind: str, value: sp.Expr) -> str | None:
     """Return the reason for which a formula is equivalent to the derived one; None if it is not."""
     candidates = CANDIDATES.get(kind)
     for differences, reason in candidates(model, value) if candidates else ():
@@ -24,7 +24,7 @@ def equivalence(model: Model, kind: str, value: sp.Expr) -> str | None:
     return None
 
 
-def _lagrangians(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
+def _lagrangians(model: ReferenceSystem, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
     system, mass = model.derivation.system, model.derivation.mass_matrix[0, 0]
     difference = value - model.lagrangian
     own = euler_lagrange(system, difference)
@@ -58,7 +58,7 @@ def _absorbed(system: System, own: Differences) -> list[sp.Expr] | None:
     return forces if any(forces) else None
 
 
-def _potentials(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
+def _potentials(model: ReferenceSystem, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
     difference, system = value - model.derivation.potential_energy, model.derivation.system
     state = (*system.q, *system.qdot, *system.multipliers)
     yield _gradient(difference, (*state, *_of_time(system))), "it differs by a constant"
@@ -70,7 +70,7 @@ def _of_time(system: System) -> tuple[sp.Symbol, ...]:
     return (TIME, *(one.symbol for one in system.inputs))
 
 
-def _energies(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
+def _energies(model: ReferenceSystem, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
     derivation, system = model.derivation, model.derivation.system
     variables = (*system.q, *system.qdot, *system.multipliers, *_of_time(system))
     terms = sp.Add.make_args(derivation.potential_energy)
@@ -88,7 +88,7 @@ def _energies(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]
             yield _gradient(difference + of_time, variables), joined(reason, lacking)
 
 
-def _hamiltonians(model: Model, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
+def _hamiltonians(model: ReferenceSystem, value: sp.Expr) -> Iterator[tuple[Differences, str]]:
     system = model.derivation.system
     difference = value.xreplace(model.momenta) - model.energy
     state = (*system.q, *system.qdot, *system.multipliers)

@@ -6,13 +6,13 @@ from pathlib import Path
 from derive.reading.document import Document
 from derive.reading.documents import kinds, read_document
 from derive.reading.programs.program import Program, ProgramError
-from derive.reading.programs.reader import known_languages, read_program
+from derive.reading.programs.program_reader import known_languages, read_program
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from derive.verification.documents.program_judgement import judge_program
-from derive.verification.report.document import judge_report
-from derive.verification.report.judgement import OrderOf
+from derive.verification.report.report_document import judge_report
+from derive.verification.report.report_judgement import OrderOf
 from solvers.io.toml_input import InputError
 
 

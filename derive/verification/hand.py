@@ -9,21 +9,21 @@ from typing import Any
 from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
-from derive.system.catalogue import load, published
-from derive.system.files.tables import Table, read
+from derive.system.files.tables import TomlTable, read
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
+from derive.system.system_catalogue import load, published
 from derive.verification.derived import QUANTITIES
-from derive.verification.equations_of_motion import judge_set
-from derive.verification.model import Model
-from derive.verification.notation import (
+from derive.verification.motion_verdicts import judge_set
+from derive.verification.quantity_verdicts import judge_formula
+from derive.verification.reference_system import ReferenceSystem
+from derive.verification.system_names import (
     meanings,
     names_of_coordinates,
     normalised,
     parsed,
     with_multipliers,
 )
-from derive.verification.quantities import judge_formula
 from derive.verification.verdict import Verdict
 from solvers.io.toml_input import InputError
 
@@ -64,11 +64,13 @@ def judge(source: str | Path) -> HandDerivation:
 
 
 def _judged(label: str, values: Mapping[str, Any], folder: Path) -> HandDerivation:
-    table = Table(label, values, (*HEADER, *EQUATIONS))
+    table = TomlTable(label, values, (*HEADER, *EQUATIONS))
     name = table.text("system")
     system = load(folder / name if name.endswith(".toml") else name)
     names = table.entries("names")
-    model = Model(Derivation(_with_equal_parameters(table, system)), meanings(names, system))
+    model = ReferenceSystem(
+        Derivation(_with_equal_parameters(table, system)), meanings(names, system)
+    )
     texts = table.formulas("euler_lagrange") if "euler_lagrange" in table.values else []
     model = with_multipliers(model, texts)
     verdicts = tuple(_verdicts(table, model))
@@ -77,7 +79,7 @@ def _judged(label: str, values: Mapping[str, Any], folder: Path) -> HandDerivati
     return HandDerivation(label, name, table.text("source", ""), table.text("note", ""), verdicts)
 
 
-def _with_equal_parameters(table: Table, system: System) -> System:
+def _with_equal_parameters(table: TomlTable, system: System) -> System:
     """Substitute the parameters that the source sets equal to others, or to numbers."""
     symbols = {s.name: s for s in system.params}
     values = {}
@@ -88,7 +90,7 @@ def _with_equal_parameters(table: Table, system: System) -> System:
     return substituted(system, values)
 
 
-def _verdicts(table: Table, model: Model) -> list[Verdict]:
+def _verdicts(table: TomlTable, model: ReferenceSystem) -> list[Verdict]:
     """Judge all equations; the Lagrangian first, because others can follow from an equivalent."""
     judged: dict[str, list[Verdict]] = {}
     source = None
@@ -108,7 +110,9 @@ def _verdicts(table: Table, model: Model) -> list[Verdict]:
     return [verdict for kind in table.values for verdict in judged[kind]]
 
 
-def _formulas(table: Table, kind: str, model: Model) -> Iterator[tuple[str, str, str, str]]:
+def _formulas(
+    table: TomlTable, kind: str, model: ReferenceSystem
+) -> Iterator[tuple[str, str, str, str]]:
     """Label, text, kind and coordinate of each equation of a kind."""
     values = table.values[kind]
     if kind in EQUATIONS and values in ([], {}):
@@ -119,7 +123,7 @@ def _formulas(table: Table, kind: str, model: Model) -> Iterator[tuple[str, str,
     elif kind in BY_COORDINATE:
         if isinstance(values, Mapping):
             values = {normalised(key): value for key, value in values.items()}
-        row = Table(kind, values, names_of_coordinates(kind, model))
+        row = TomlTable(kind, values, names_of_coordinates(kind, model))
         for key in row.values:
             yield f"{kind}.{key}", row.formula(key), kind, key
     elif kind in QUANTITIES:

@@ -5,10 +5,10 @@ from itertools import islice
 
 import sympy as sp
 
+from derive.formulas.evaluation.generic_values import changes_of_sign
 from derive.formulas.evaluation.numeric import mp
-from derive.formulas.evaluation.sampling import changes_of_sign
 from derive.verification.engine import State
-from derive.verification.model import Model, depends_on
+from derive.verification.reference_system import ReferenceSystem, depends_on
 
 #: States at which solutions are computed, and the largest relative value that counts as zero.
 STATES, TINY = 3, 1e-15
@@ -20,7 +20,7 @@ ODD = (sp.sinh, sp.tanh, sp.atan)
 VANISHING, INJECTIVE = (sp.Abs, *ODD), (sp.exp, sp.log, *ODD)
 
 
-def without_outer_function(model: Model, value: sp.Expr) -> sp.Expr | None:
+def without_outer_function(model: ReferenceSystem, value: sp.Expr) -> sp.Expr | None:
     """The number g of a function f(g) that vanishes where g does, and only there, or None.
 
     Such are powers, absolute values, products of multiples, ``exp(g) - 1`` and ``log(1 + g)``.
@@ -33,7 +33,7 @@ def without_outer_function(model: Model, value: sp.Expr) -> sp.Expr | None:
     return inner if further is None else further
 
 
-def _inside(model: Model, value: sp.Expr) -> sp.Expr | None:
+def _inside(model: ReferenceSystem, value: sp.Expr) -> sp.Expr | None:
     accelerations = model.derivation.system.qddot
     if value.is_Pow and value.exp.is_Rational and value.exp > 0:
         return value.base
@@ -60,7 +60,7 @@ def _inside(model: Model, value: sp.Expr) -> sp.Expr | None:
     return None
 
 
-def has_other_solutions(model: Model, value: sp.Expr) -> bool | None:
+def has_other_solutions(model: ReferenceSystem, value: sp.Expr) -> bool | None:
     """Whether an equation has real solutions other than the motion, and vanishing accelerations.
 
     At a state, the equation is restricted to a line through the accelerations of the motion. Where
@@ -72,7 +72,7 @@ def has_other_solutions(model: Model, value: sp.Expr) -> bool | None:
     return True if any(found) else None if None in found else False
 
 
-def _on_line(model: Model, value: sp.Expr, state: State) -> bool | None:
+def _on_line(model: ReferenceSystem, value: sp.Expr, state: State) -> bool | None:
     accelerations, s = model.derivation.system.qddot, sp.Dummy("s", real=True)
     line = {a: state[a] + s * (1 + sp.Rational(k, 7)) for k, a in enumerate(accelerations)}
     restricted = value.xreplace({**state, **line})

@@ -8,10 +8,10 @@ from derive.formulas.expression import number
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.routhian import Routhian
 from derive.system.system import System
-from derive.verification.model import Model, depends_on, time_derivative
+from derive.verification.reference_system import ReferenceSystem, depends_on, time_derivative
 
 
-def eliminated(model: Model, value: sp.Expr) -> tuple[int, ...]:
+def eliminated(model: ReferenceSystem, value: sp.Expr) -> tuple[int, ...]:
     """Indices of the coordinates whose momenta a formula contains.
 
     Of a formula without momenta, these are the cyclic coordinates whose velocities it lacks.
@@ -23,7 +23,7 @@ def eliminated(model: Model, value: sp.Expr) -> tuple[int, ...]:
     return own or tuple(k for k, (q, v) in rows if q in cyclic and v not in used)
 
 
-def eliminated_names(model: Model, text: str) -> str:
+def eliminated_names(model: ReferenceSystem, text: str) -> str:
     """The name of the Routhian that a formula states: that of its eliminated coordinates."""
     try:
         value = number(text, model.context.scope)
@@ -37,13 +37,13 @@ def names_of(system: System, indices: tuple[int, ...]) -> str:
     return " ".join(system.q[k].name for k in indices)
 
 
-def routhian(model: Model, name: str) -> Routhian:
+def routhian(model: ReferenceSystem, name: str) -> Routhian:
     """The derived Routhian of the coordinates in a name."""
     q = [one.name for one in model.derivation.system.q]
     return Routhian(model.derivation, tuple(q.index(one) for one in name.split()))
 
 
-def value_of(model: Model, name: str) -> sp.Expr:
+def value_of(model: ReferenceSystem, name: str) -> sp.Expr:
     """L - Σ p q̇ over the coordinates in a name, as a function of velocities."""
     system = model.derivation.system
     rows = zip(system.q, system.p, system.qdot, strict=True)
@@ -51,7 +51,9 @@ def value_of(model: Model, name: str) -> sp.Expr:
     return model.lagrangian - sp.Add(*work)
 
 
-def equivalents(model: Model, value: sp.Expr) -> Iterator[tuple[tuple[sp.Expr, ...], str]]:
+def equivalents(
+    model: ReferenceSystem, value: sp.Expr
+) -> Iterator[tuple[tuple[sp.Expr, ...], str]]:
     """Differences that vanish for other Routhians with the same equations, and the reasons."""
     system, indices = model.derivation.system, eliminated(model, value)
     derived = routhian(model, names_of(system, indices))
@@ -74,14 +76,14 @@ def equivalents(model: Model, value: sp.Expr) -> Iterator[tuple[tuple[sp.Expr, .
         )
 
 
-def _residuals(model: Model, derived: Routhian, function: sp.Expr) -> tuple[sp.Expr, ...]:
+def _residuals(model: ReferenceSystem, derived: Routhian, function: sp.Expr) -> tuple[sp.Expr, ...]:
     """d/dt ∂F/∂q̇ - ∂F/∂q of the remaining coordinates, with constant momenta."""
     system = model.derivation.system
     pairs = [(system.q[k], system.qdot[k]) for k in derived.remaining]
     return tuple(time_derivative(system, function.diff(v)) - function.diff(q) for q, v in pairs)
 
 
-def without_legendre_term(model: Model, kind: str, value: sp.Expr) -> str:
+def without_legendre_term(model: ReferenceSystem, kind: str, value: sp.Expr) -> str:
     """A note if momenta are substituted into L as if this were a Routhian, or else ""."""
     system = model.derivation.system
     indices = eliminated(model, value)

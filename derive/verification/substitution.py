@@ -5,12 +5,12 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.verification.model import Model, time_derivative
+from derive.verification.reference_system import ReferenceSystem, time_derivative
 
 Removed = dict[sp.Symbol, sp.Expr]
 
 
-def substituted_constraints(model: Model, kind: str, value: sp.Expr) -> str:
+def substituted_constraints(model: ReferenceSystem, kind: str, value: sp.Expr) -> str:
     """A note if a wrong Lagrangian or equation of motion follows from this mistake, or else "".
 
     Such a Lagrangian is that of motions alone: its derivatives lack the displacements by which
@@ -35,7 +35,7 @@ def substituted_constraints(model: Model, kind: str, value: sp.Expr) -> str:
     return ""
 
 
-def _removals(model: Model) -> Iterator[Removed]:
+def _removals(model: ReferenceSystem) -> Iterator[Removed]:
     """Velocities that constraints give as functions of the others."""
     derivation, qdot = model.derivation, model.derivation.system.qdot
     G = derivation.constraint_jacobian
@@ -48,7 +48,7 @@ def _removals(model: Model) -> Iterator[Removed]:
             yield dict(zip(dependent, solution, strict=True))
 
 
-def _equations(model: Model, removed: Removed) -> Iterator[sp.Expr]:
+def _equations(model: ReferenceSystem, removed: Removed) -> Iterator[sp.Expr]:
     """Lagrange's equations of the Lagrangian without the velocities."""
     system = model.derivation.system
     lagrangian = model.derivation.lagrangian.xreplace(removed)
@@ -58,7 +58,7 @@ def _equations(model: Model, removed: Removed) -> Iterator[sp.Expr]:
             yield change - lagrangian.diff(q) - force
 
 
-def _is_multiple(model: Model, value: sp.Expr, wrong: sp.Expr, removed: Removed) -> bool:
+def _is_multiple(model: ReferenceSystem, value: sp.Expr, wrong: sp.Expr, removed: Removed) -> bool:
     """Whether two equations are multiples of each other where the constraints hold."""
     system = model.derivation.system
     accelerations = {

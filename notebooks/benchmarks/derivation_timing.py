@@ -9,10 +9,10 @@ import sympy as sp
 import sympy.physics.mechanics as me
 from sympy.core.cache import clear_cache
 
-from derive.codegen.functions import contents
-from derive.codegen.writing import files
+from derive.codegen.module_files import files
+from derive.codegen.module_functions import contents
 from derive.mechanics.derivation import Derivation
-from derive.system.catalogue import load
+from derive.system.system_catalogue import load
 
 
 def lambdified_rhs() -> Callable[..., Any]:

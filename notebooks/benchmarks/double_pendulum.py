@@ -13,11 +13,11 @@ from benchmarks.motions import END, METHODS, MOTIONS, PARALLEL, START
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.layout import SOURCES
+from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.ensemble import ensemble
 from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.studies import heyoka
 
 #: Global errors at which programs are compared.

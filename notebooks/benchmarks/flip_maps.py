@@ -19,7 +19,7 @@ from solvers.studies import heyoka
 from solvers.sweeps.definition.axes import Random
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.pool import Pool
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.sweep_run import sweep
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from solvers.integration.compiled.native import equations
 from solvers.integration.loops import compiled_loop
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stepper import Array
 
 #: Least duration in s of a burst of calls: a call alone, after other programs, would be timed with

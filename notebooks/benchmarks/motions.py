@@ -20,7 +20,7 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.studies import heyoka
-from solvers.studies.work_precision.measurement import FINEST_OF_SCIPY
+from solvers.studies.work_precision.measured_curves import FINEST_OF_SCIPY
 
 Array = NDArray[np.float64]
 #: Seconds and global errors of each program, from loose to tight tolerances.

@@ -11,16 +11,16 @@ from numpy.typing import ArrayLike
 
 from solvers.app.modules import generator_text, load, system_of
 from solvers.app.scenes import load_scene
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module_cache import cached_module
+from solvers.equations.signature_checks import checked
 from solvers.integration.problem import validation
 from solvers.io.suggestion import did_you_mean
-from solvers.scenes.fitting import prediction, reading
-from solvers.scenes.fitting.fit import Fit, fitted
+from solvers.scenes.fitting import measurement_tables, prediction
+from solvers.scenes.fitting.fitted_model import Fit, fitted
 from solvers.scenes.fitting.measurement import Measurement, Outputs
-from solvers.scenes.fitting.prediction import Comparison
+from solvers.scenes.fitting.prediction import ModelComparison
 from solvers.scenes.scene import Scene
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def fit(
 
 
 @checked
-def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> Comparison:
+def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> ModelComparison:
     """Compare fitted models by their predictions of runs that were kept back.
 
     Parameters
@@ -169,7 +169,7 @@ def read_measurement(
     >>> read_measurement("swing.csv", sp)
     Measurement of theta: 3 times, 2 values
     """
-    return reading.read(Path(path), units(module), ignored)
+    return measurement_tables.read(Path(path), units(module), ignored)
 
 
 def units(module: GeneratedModule) -> dict[str, str]:
@@ -197,7 +197,7 @@ def outputs_of(module: GeneratedModule, runs: Iterable[Measurement]) -> Outputs:
 def _formulas(module: GeneratedModule, names: tuple[str, ...]) -> GeneratedModule:
     """The generated functions of quantities that are no components of the state."""
     from derive import Derivation
-    from derive.codegen.writing import output_texts
+    from derive.codegen.module_files import output_texts
     from derive.mechanics.outputs import outputs
 
     derivation = Derivation(system_of(module))
@@ -266,7 +266,7 @@ def _model(model: Model) -> tuple[GeneratedModule, np.ndarray, dict[str, float]]
 def named_model(name: str) -> Scene | GeneratedModule:
     """The scene or system of this name, or in this file."""
     from solvers.io.toml_input import QUANTITY_HINT, read_table
-    from solvers.scenes.reading import names
+    from solvers.scenes.scene_reading import names
 
     if name in names():
         return load_scene(name)
@@ -295,5 +295,5 @@ def _measurement(module: GeneratedModule, item: Data) -> Measurement:
         case Measurement():
             return item
         case Mapping():
-            return reading.measurement(item, units(module))
+            return measurement_tables.measurement(item, units(module))
     return read_measurement(item, module)

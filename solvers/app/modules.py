@@ -7,7 +7,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from solvers.equations.arguments import checked
 from solvers.equations.lazy_module import LazyModule
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module_cache import (
@@ -16,6 +15,7 @@ from solvers.equations.module_cache import (
     required_functions,
     specialised_module,
 )
+from solvers.equations.signature_checks import checked
 from solvers.integration.accuracy.method_choice import MethodChoice
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def load(name: str) -> GeneratedModule:
         If no system has this name.
     ValueError
         If the file does not exist or does not describe a system.
-    derive.codegen.expression_graph.translation.UnsupportedFunctionError
+    derive.codegen.expression_graph.sympy_translation.UnsupportedFunctionError
         If its equations contain an unsupported function.
 
     Warns
@@ -67,11 +67,11 @@ def load(name: str) -> GeneratedModule:
     """
     if module := _shipped(name):
         return module
-    from derive.system import catalogue
+    from derive.system import system_catalogue
 
     try:
-        return build(catalogue.load(name))
-    except catalogue.UnknownSystemError as error:
+        return build(system_catalogue.load(name))
+    except system_catalogue.UnknownSystemError as error:
         raise LookupError(str(error)) from error
 
 
@@ -111,7 +111,7 @@ def build(system: "System") -> GeneratedModule:
     ------
     ValueError
         If `system` is not a system, such as the path of a system file.
-    derive.codegen.expression_graph.translation.UnsupportedFunctionError
+    derive.codegen.expression_graph.sympy_translation.UnsupportedFunctionError
         If its equations contain an unsupported function.
 
     Warns
@@ -127,8 +127,8 @@ def build(system: "System") -> GeneratedModule:
     ('theta1', 'theta2', 'theta3', 'theta4')
     """
     from derive import Derivation, reduced
-    from derive.codegen.functions import Functions
-    from derive.codegen.writing import files
+    from derive.codegen.module_files import files
+    from derive.codegen.module_functions import Functions
     from derive.system.system import as_system
 
     # symbols of one name may differ in their assumptions
@@ -159,7 +159,7 @@ def specialiser(
         name: str, values: Mapping[str, float], functions: Sequence[str]
     ) -> dict[str, str]:
         from derive import Derivation
-        from derive.codegen.writing import texts
+        from derive.codegen.module_files import texts
         from derive.mechanics.specialisation import specialised
 
         system = system_of(module)
@@ -177,9 +177,9 @@ def specialiser(
 def system_of(module: GeneratedModule) -> "System":
     """The system that a module was generated from, without eliminated coordinates."""
     from derive import reduced
-    from derive.system import catalogue
+    from derive.system import system_catalogue
 
-    return reduced(_systems.get(module.__name__) or catalogue.load(module.SYSTEM))
+    return reduced(_systems.get(module.__name__) or system_catalogue.load(module.SYSTEM))
 
 
 @cache

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from math import inf
 from pathlib import Path
 
-from derive.codegen.generated_folder import Tree
-from derive.commands import systems
-from solvers.runge_kutta.catalogue import load, names
+from derive.codegen.generated_folder import GeneratedFiles
+from derive.commands import system_description
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.tableau import Tableau
-from solvers.scenes.models import catalogue
+from solvers.scenes.models import model_catalogue
 from solvers.sweeps.definition import map_kinds
 from solvers.sweeps.results import STATUSES
 
@@ -52,15 +52,15 @@ def _joined(numbers: list[int]) -> str:
 
 #: The table between the markers ``<!-- title -->`` and ``<!-- end of title -->`` of a README.
 TABLES: tuple[tuple[str, str, Callable[[], str]], ...] = (
-    ("derive/README.md", "systems", systems.markdown_table),
+    ("derive/README.md", "systems", system_description.markdown_table),
     ("solvers/runge_kutta/README.md", "methods", methods_table),
-    ("solvers/scenes/README.md", "models", catalogue.markdown_table),
+    ("solvers/scenes/README.md", "models", model_catalogue.markdown_table),
     ("solvers/sweeps/README.md", "map kinds", map_kinds.markdown_table),
     ("solvers/sweeps/README.md", "statuses of motions", status_table),
 )
 
 
-def readmes() -> list[Tree]:
+def readmes() -> list[GeneratedFiles]:
     """The READMEs beside the packages, with current tables; none in an installation.
 
     A `ValueError` names a README without the markers of its table.
@@ -78,4 +78,4 @@ def readmes() -> list[Tree]:
                     f"{end!r} where it belongs"
                 )
             texts[name] = f"{before}{start}{table()}{end}{after}"
-    return [Tree(ROOT, texts, complete=False)] if texts else []
+    return [GeneratedFiles(ROOT, texts, complete=False)] if texts else []

@@ -5,14 +5,14 @@ from os import PathLike, fspath
 from pathlib import Path
 
 from solvers.app.modules import load, specialiser
-from solvers.equations.arguments import checked
-from solvers.scenes import run
-from solvers.scenes.reading import find as find_scene
-from solvers.scenes.run import SceneResult
+from solvers.equations.signature_checks import checked
+from solvers.scenes import scene_run
 from solvers.scenes.scene import Scene
-from solvers.sweeps.definition import reading
+from solvers.scenes.scene_reading import find as find_scene
+from solvers.scenes.scene_run import SceneResult
+from solvers.sweeps.definition import sweep_reading
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution import run as sweeps
+from solvers.sweeps.execution import sweep_run as sweeps
 from solvers.sweeps.execution.pool import Pool
 from solvers.sweeps.results import Results
 
@@ -76,7 +76,7 @@ def run_scene(scene: Scene | str | PathLike[str]) -> SceneResult:
     True
     """
     definition = scene if isinstance(scene, Scene) else load_scene(scene)
-    return run.run_scene(definition, specialiser)
+    return scene_run.run_scene(definition, specialiser)
 
 
 @checked
@@ -104,7 +104,7 @@ def load_sweep(name: str | PathLike[str]) -> Sweep:
     >>> load_sweep("flips").motions
     262144
     """
-    return reading.find(fspath(name), load)
+    return sweep_reading.find(fspath(name), load)
 
 
 @checked

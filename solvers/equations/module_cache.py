@@ -10,7 +10,7 @@ from typing import cast
 from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
 from solvers.io.build_cache import NoPlaceError, built_folder
 from solvers.io.suggestion import warn_caller
-from solvers.runge_kutta.catalogue import SCIPY, load
+from solvers.runge_kutta.method_catalogue import SCIPY, load
 
 
 def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> GeneratedModule:

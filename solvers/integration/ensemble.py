@@ -5,9 +5,9 @@ from functools import partial
 
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import known_names
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
+from solvers.equations.signature_checks import known_names
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.many_motions import many_motions
 from solvers.integration.problem.events import Event

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import known_names
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
+from solvers.equations.signature_checks import known_names
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, EventFunction, Options
@@ -57,8 +57,8 @@ def integrate(
         double precision does not suffice, longer numbers or Taylor series follow. `method` and
         `form` fix what they name. Times of events are not checked.
     method : str, optional
-        One of ``solvers.runge_kutta.catalogue.names()``, or a method of SciPy's ``solve_ivp``; by
-        default ``verner853``, or with `accuracy` the cheapest.
+        One of ``solvers.runge_kutta.method_catalogue.names()``, or a method of SciPy's
+        ``solve_ivp``; by default ``verner853``, or with `accuracy` the cheapest.
     form : {"lagrangian", "hamiltonian", "rational", "variational", "sensitivity"}, optional
         The form of the equations; by default the rational form, where it exists, in a compiled
         loop of an explicit method, and Lagrange's form otherwise. The variational form
@@ -110,7 +110,7 @@ def integrate(
         locate events.
     solvers.integration.accuracy.integration_run.NotAccurateError
         When nothing reaches the `accuracy`; the message states what is reached.
-    solvers.runge_kutta.catalogue.UnknownMethodError
+    solvers.runge_kutta.method_catalogue.UnknownMethodError
         When no method has this name.
     solvers.integration.compiled.compiler.NoCompilerError
         When ``backend="compiled"`` or ``compensated=True``, and no compiler could build the loop.

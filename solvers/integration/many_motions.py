@@ -9,10 +9,10 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import check_module
 from solvers.equations.module import GeneratedModule
 from solvers.equations.module import inputs as input_names
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
+from solvers.equations.signature_checks import check_module
 from solvers.equations.singularities.mass_matrix import check_condition, examined
 from solvers.integration.checks.accuracy_warnings import ensemble_warnings
 from solvers.integration.checks.predictability import (
@@ -33,7 +33,7 @@ from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.integration.results.ensemble_times import EnsembleTimes
 from solvers.integration.results.solution import Interrupted, Solution
 from solvers.integration.single_motion import single_motion
-from solvers.io.arguments import check_type
+from solvers.io.argument_types import check_type
 from solvers.io.suggestion import shortened, warn_caller
 from solvers.runge_kutta.stepper import Array
 
@@ -42,7 +42,7 @@ MOST_WORKERS = 1024
 
 
 @dataclass(frozen=True)
-class Motions:
+class MotionBatch:
     """Checked arguments of `ensemble`: initial states and parameters of all motions, in rows."""
 
     problem: Problem
@@ -108,7 +108,7 @@ def many_motions(
 ) -> Ensemble:
     """The motions of `ensemble` with these options, whose arguments it describes."""
     check_type("stop", stop, StopFlag | None, "a StopFlag")
-    motions = Motions.of(module, t_span, y0, params, options)
+    motions = MotionBatch.of(module, t_span, y0, params, options)
     problem, states, constants, times = (
         motions.problem, motions.states, motions.constants, motions.times
     )  # fmt: skip

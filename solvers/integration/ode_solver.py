@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from scipy.integrate import DenseOutput, OdeSolver
 
-from solvers.equations.quantities import positive, real_number, real_numbers
-from solvers.integration.loops.attempts import Accepted, Attempts, Point, Rejected
+from solvers.equations.number_checks import positive, real_number, real_numbers
+from solvers.integration.loops.attempts import Accepted, Rejected, StepAttempts, TimedState
 from solvers.integration.problem.problem import shortest_step
 from solvers.integration.problem.validation import tolerances, warn_if_flushed
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import Array, Stepper, evaluated
 from solvers.runge_kutta.tableau import Tableau
@@ -40,7 +40,7 @@ def ode_solver(method: str) -> type[OdeSolver]:
     ------
     ValueError
         For a method without error estimate, or an implicit one.
-    solvers.runge_kutta.catalogue.UnknownMethodError
+    solvers.runge_kutta.method_catalogue.UnknownMethodError
         When no method has this name.
 
     Examples
@@ -87,8 +87,8 @@ class _Method(OdeSolver):
         limits = tolerances(options["rtol"], options["atol"], self.n)
         self._controller = Controller.of(self.tableau, *limits)
         stepper = Stepper(self.tableau, self.fun)
-        self._attempts = Attempts(stepper, self._controller)
-        self._point = Point(self.t, self.y, stepper.derivative(self.t, self.y))
+        self._attempts = StepAttempts(stepper, self._controller)
+        self._point = TimedState(self.t, self.y, stepper.derivative(self.t, self.y))
         self._max_step, self._h = options["max_step"], first_step or 0.0
         if first_step is None and duration:
             guess = self._attempts.first_step_size

@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from solvers.equations.arguments import known_names
 from solvers.equations.module import (
     GeneratedModule,
     has_constraints,
@@ -17,7 +16,8 @@ from solvers.equations.module import (
     parameter_names,
 )
 from solvers.equations.module import inputs as input_names
-from solvers.equations.quantities import REAL, Values
+from solvers.equations.number_checks import REAL, Values
+from solvers.equations.signature_checks import known_names
 from solvers.equations.singularities.mass_matrix import check_condition
 from solvers.equations.starts.assembly import Assembly
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
@@ -25,7 +25,7 @@ from solvers.integration.checks.singularity import singularity
 from solvers.integration.checks.step_stability import diagnosis
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import compiled_loop
 from solvers.integration.loops.passage import rerun
 from solvers.integration.problem import validation

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule, has_perturbation
 from solvers.equations.module import inputs as input_names
-from solvers.equations.quantities import NotFiniteNumberError, Values
+from solvers.equations.number_checks import NotFiniteNumberError, Values
 from solvers.equations.singularities.mass_matrix import check_condition, checked_before
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
 from solvers.integration.checks.global_error import global_error_estimate

@@ -14,7 +14,7 @@ from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from solvers.io.arguments import check_type
+from solvers.io.argument_types import check_type
 from solvers.io.atomic_write import write_text
 from solvers.io.suggestion import shortened
 

@@ -53,7 +53,7 @@ def _width() -> int:
     return min(columns - 1, WIDTH)  # a full line would move some terminals to the next
 
 
-class Rate:
+class ProgressRate:
     """Progress of `total` parts, of which `left` are left: the rate, and the remaining time."""
 
     def __init__(self, total: int, left: int) -> None:

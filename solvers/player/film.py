@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
-from solvers.equations.quantities import positive
+from solvers.equations.number_checks import positive
 from solvers.io.atomic_write import write_text
 from solvers.io.figures import COLOURS, FORMATS, panels, save
 from solvers.player.geometry import links_and_points, mass_positions, projected
-from solvers.player.plots import label_axes, plain
+from solvers.player.motion_plots import label_axes, plain
 from solvers.player.sampled_motion import SampledMotion
 from solvers.player.shapes import draw_link
 from solvers.player.track import Array

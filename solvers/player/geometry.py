@@ -6,9 +6,9 @@ import numpy as np
 
 from solvers.equations.energy import energy_unit
 from solvers.equations.module import function, links
-from solvers.io.notation import plain_symbol
+from solvers.io.figure_names import plain_symbol
 from solvers.player.sampled_motion import SampledMotion
-from solvers.player.track import Coordinate, Links, Track
+from solvers.player.track import CoordinateTrack, Links, Track
 
 #: Largest relative change of a rod's length.
 RIGID = 1e-6
@@ -90,7 +90,7 @@ def energy_errors(motions: Sequence[SampledMotion]) -> tuple[list[np.ndarray | N
     return errors, units[0].name if units and is_relative else "J"
 
 
-def coordinates(motions: Sequence[SampledMotion]) -> list[tuple[Coordinate, ...]]:
+def coordinates(motions: Sequence[SampledMotion]) -> list[tuple[CoordinateTrack, ...]]:
     """Coordinates over time that exist in all runs, of each run."""
     runs = []
     for motion in motions:
@@ -98,7 +98,7 @@ def coordinates(motions: Sequence[SampledMotion]) -> list[tuple[Coordinate, ...]
         rows = zip(module.COORDINATES, motion.y[:n], motion.y[n:], strict=True)
         runs.append(
             {
-                name: Coordinate(plain_symbol(name), module.UNITS[name], values, rates)
+                name: CoordinateTrack(plain_symbol(name), module.UNITS[name], values, rates)
                 for name, values, rates in rows
                 if np.isfinite([values, rates]).all()
             }

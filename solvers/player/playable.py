@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solvers.io.arguments import check_type
+from solvers.io.argument_types import check_type
 from solvers.io.suggestion import shortened
 from solvers.player.sampled_motion import SampledMotion
 
 if TYPE_CHECKING:
-    from solvers.player.page import Page
+    from solvers.player.player_page import Page
 
 
 class Playable(ABC):
@@ -92,7 +92,7 @@ class Playable(ABC):
         beside : sequence of Solution, Ensemble or SceneResult, optional
             Results to show in the same panels.
         """
-        from solvers.player.plots import figure
+        from solvers.player.motion_plots import figure
 
         return figure(_together(self, beside))
 
@@ -115,6 +115,6 @@ def _together(first: Playable, beside: Sequence[Playable]) -> list[SampledMotion
 
 def _page(motions: Sequence[SampledMotion]) -> "Page":
     from solvers.player.geometry import tracks
-    from solvers.player.page import Page
+    from solvers.player.player_page import Page
 
     return Page(motions[0].title, motions[0].note, tracks(motions))

@@ -19,7 +19,7 @@ MOST_SAMPLES = 20_000
 
 
 @dataclass(frozen=True)
-class Coordinate:
+class CoordinateTrack:
     """A coordinate of a run over time.
 
     Attributes
@@ -69,7 +69,7 @@ class Track:
     energy_error: Array | None
     energy_unit: str
     points: Array = field(default_factory=lambda: np.empty((0, 2, 0)))
-    coordinates: tuple[Coordinate, ...] = ()
+    coordinates: tuple[CoordinateTrack, ...] = ()
 
     def check(self) -> None:
         """Raise `ValueError` where this run cannot be played."""

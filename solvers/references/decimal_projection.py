@@ -7,7 +7,7 @@ from functools import partial
 from solvers.equations.forms import Form
 from solvers.equations.module import function, integrals, named, with_functions
 from solvers.references.exact_literals import with_exact_literals
-from solvers.references.series import Series
+from solvers.references.power_series import PowerSeries
 from solvers.references.series_functions import series_functions
 
 #: Steps of Newton's method: from a start in doubles, residuals have 16, 32, 64 ... digits.
@@ -18,24 +18,24 @@ class DecimalProjection:
     """Steps onto the constraints of a form, whose correction is evaluated as series of order 0."""
 
     def __init__(self, form: Form, params: Sequence[float]) -> None:
-        self._form, self._tape = form, list[Series]()
-        self._time = Series(self._tape, [])
-        self._state = [Series(self._tape, []) for _ in form.state]
-        constants = [*map(partial(Series.number, self._tape), params)]
-        self._kept = [Series(self._tape, []) for _ in integrals(form.module)]
+        self._form, self._tape = form, list[PowerSeries]()
+        self._time = PowerSeries(self._tape, [])
+        self._state = [PowerSeries(self._tape, []) for _ in form.state]
+        constants = [*map(partial(PowerSeries.number, self._tape), params)]
+        self._kept = [PowerSeries(self._tape, []) for _ in integrals(form.module)]
         self._integrals = []
         if self._kept:
             self._integrals = self._series(named("integrals", form.name), constants)
         self._changes = self._series(form.correction, [*constants, *self._kept])
 
-    def _series(self, name: str, params: Sequence[Series]) -> list[Series]:
+    def _series(self, name: str, params: Sequence[PowerSeries]) -> list[PowerSeries]:
         """The results of a function of the module."""
-        number = partial(Series.number, self._tape)
+        number = partial(PowerSeries.number, self._tape)
         exact = with_exact_literals(function(self._form.module, name), number)
         results = with_functions(exact, series_functions(self._tape, []))(
             self._time, self._state, params
         )
-        return [one if isinstance(one, Series) else number(one) for one in results]
+        return [one if isinstance(one, PowerSeries) else number(one) for one in results]
 
     def keep_integrals(self, t: Decimal, state: Sequence[Decimal]) -> None:
         """Keep the values of integrals at this state of the form."""
@@ -60,7 +60,9 @@ class DecimalProjection:
                 result[size + a] += changes[k]
         return result
 
-    def _at(self, t: Decimal, state: Sequence[Decimal], results: Sequence[Series]) -> list[Decimal]:
+    def _at(
+        self, t: Decimal, state: Sequence[Decimal], results: Sequence[PowerSeries]
+    ) -> list[Decimal]:
         for series in self._tape:
             series.coefficients.clear()
         self._time.coefficients[:] = [t]

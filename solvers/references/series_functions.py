@@ -10,10 +10,10 @@ from math import atan2
 from operator import mul
 
 from solvers.equations.starts.decimal_state import sine_and_cosine
-from solvers.references.series import ZERO, Series, Tape
+from solvers.references.power_series import ZERO, PowerSeries, Tape
 
 #: A function of series and numbers.
-SeriesFunction = Callable[..., Series]
+SeriesFunction = Callable[..., PowerSeries]
 
 
 def series_functions(tape: Tape, switches: "Tape | None" = None) -> dict[str, SeriesFunction]:
@@ -22,42 +22,44 @@ def series_functions(tape: Tape, switches: "Tape | None" = None) -> dict[str, Se
     Series on whose signs choices depend are appended to `switches`; they are valid as long as the
     signs stay as they are at 0.
     """
-    circular: dict[Series, tuple[Series, Series]] = {}
+    circular: dict[PowerSeries, tuple[PowerSeries, PowerSeries]] = {}
 
-    def sine_cosine(x: Series | float) -> tuple[Series, Series]:
+    def sine_cosine(x: PowerSeries | float) -> tuple[PowerSeries, PowerSeries]:
         x = as_series(x)
         if x not in circular:
             circular[x] = _sine_and_cosine(x)
         return circular[x]
 
-    def as_series(x: Series | float) -> Series:
-        return x if isinstance(x, Series) else Series.number(tape, x)
+    def as_series(x: PowerSeries | float) -> PowerSeries:
+        return x if isinstance(x, PowerSeries) else PowerSeries.number(tape, x)
 
-    def tan(x: Series | float) -> Series:
+    def tan(x: PowerSeries | float) -> PowerSeries:
         sine, cosine = sine_cosine(x)
         return sine / cosine
 
-    def hyperbolic(x: Series | float) -> tuple[Series, Series]:
+    def hyperbolic(x: PowerSeries | float) -> tuple[PowerSeries, PowerSeries]:
         power = _exp(as_series(x))
         return (power - 1 / power) / 2, (power + 1 / power) / 2
 
-    def tanh(x: Series | float) -> Series:
+    def tanh(x: PowerSeries | float) -> PowerSeries:
         sine, cosine = hyperbolic(x)
         return sine / cosine
 
-    def power(base: Series | float, exponent: Series | float) -> Series:
+    def power(base: PowerSeries | float, exponent: PowerSeries | float) -> PowerSeries:
         base, exponent = as_series(base), as_series(exponent)
         if base.constant and exponent.constant:
-            return Series.number(tape, base.at(0) ** exponent.at(0))
+            return PowerSeries.number(tape, base.at(0) ** exponent.at(0))
         return _exp(exponent * _log(base))
 
-    def select(s: Series | float, a: Series | float, b: Series | float) -> Series:
+    def select(
+        s: PowerSeries | float, a: PowerSeries | float, b: PowerSeries | float
+    ) -> PowerSeries:
         s, a, b = map(as_series, (s, a, b))
         if s.constant:
             return a if s.at(0) > 0 else b
         if switches is not None:
             switches.append(s)
-        return Series(tape, [], lambda k: (a if s.at(0) > 0 else b).at(k))
+        return PowerSeries(tape, [], lambda k: (a if s.at(0) > 0 else b).at(k))
 
     return {
         "sin": lambda x: sine_cosine(x)[0],
@@ -76,13 +78,13 @@ def series_functions(tape: Tape, switches: "Tape | None" = None) -> dict[str, Se
     }
 
 
-def _sine_and_cosine(x: Series) -> tuple[Series, Series]:
+def _sine_and_cosine(x: PowerSeries) -> tuple[PowerSeries, PowerSeries]:
     """From (sin x)' = x' cos x and (cos x)' = -x' sin x."""
     tape = x.tape
     if x.constant:
         first, second = sine_and_cosine(x.at(0))
-        return Series.number(tape, first), Series.number(tape, second)
-    rate, sine, cosine = _rate(x), Series(tape, []), Series(tape, [])
+        return PowerSeries.number(tape, first), PowerSeries.number(tape, second)
+    rate, sine, cosine = _rate(x), PowerSeries(tape, []), PowerSeries(tape, [])
 
     def coefficient_of_sine(k: int) -> Decimal:
         return _integrated(rate, cosine, k) if k else sine_and_cosine(x.at(0))[0]
@@ -93,25 +95,25 @@ def _sine_and_cosine(x: Series) -> tuple[Series, Series]:
     return _recorded(sine, coefficient_of_sine), _recorded(cosine, coefficient_of_cosine)
 
 
-def _exp(x: Series) -> Series:
+def _exp(x: PowerSeries) -> PowerSeries:
     """From (exp x)' = x' exp x."""
     if x.constant:
-        return Series.number(x.tape, x.at(0).exp())
-    rate, power = _rate(x), Series(x.tape, [])
+        return PowerSeries.number(x.tape, x.at(0).exp())
+    rate, power = _rate(x), PowerSeries(x.tape, [])
     return _recorded(power, lambda k: _integrated(rate, power, k) if k else x.at(0).exp())
 
 
-def _log(x: Series) -> Series:
+def _log(x: PowerSeries) -> PowerSeries:
     """From x (log x)' = x'."""
     if x.constant:
-        return Series.number(x.tape, x.at(0).ln())
+        return PowerSeries.number(x.tape, x.at(0).ln())
     return _quotient_integrated(_rate(x), x, lambda: x.at(0).ln())
 
 
-def _angle(y: Series, x: Series) -> Series:
+def _angle(y: PowerSeries, x: PowerSeries) -> PowerSeries:
     """From (x² + y²) a' = x y' - y x'."""
     if x.constant and y.constant:
-        return Series.number(x.tape, _atan2(y.at(0), x.at(0)))
+        return PowerSeries.number(x.tape, _atan2(y.at(0), x.at(0)))
     rate = (x * _rate(y)) - (y * _rate(x))
     return _quotient_integrated(rate, x * x + y * y, lambda: _atan2(y.at(0), x.at(0)))
 
@@ -125,9 +127,11 @@ def _atan2(y: Decimal, x: Decimal) -> Decimal:
     return angle
 
 
-def _quotient_integrated(rate: Series, other: Series, first: Callable[[], Decimal]) -> Series:
+def _quotient_integrated(
+    rate: PowerSeries, other: PowerSeries, first: Callable[[], Decimal]
+) -> PowerSeries:
     """The integral of the quotient of `rate` times 1/x and `other`, from `first` on."""
-    integral = Series(other.tape, [])
+    integral = PowerSeries(other.tape, [])
 
     def coefficient(k: int) -> Decimal:
         if not k:
@@ -140,11 +144,11 @@ def _quotient_integrated(rate: Series, other: Series, first: Callable[[], Decima
     return integral
 
 
-def _sqrt(x: Series) -> Series:
+def _sqrt(x: PowerSeries) -> PowerSeries:
     """From (√x)² = x."""
     if x.constant:
-        return Series.number(x.tape, x.at(0).sqrt())
-    root = Series(x.tape, [])
+        return PowerSeries.number(x.tape, x.at(0).sqrt())
+    root = PowerSeries(x.tape, [])
 
     def coefficient(k: int) -> Decimal:
         if not k:
@@ -155,17 +159,17 @@ def _sqrt(x: Series) -> Series:
     return _recorded(root, coefficient)
 
 
-def _rate(x: Series) -> Series:
+def _rate(x: PowerSeries) -> PowerSeries:
     """The derivative of a series times its variable."""
-    return Series(x.tape, [], lambda k: k * x.at(k))
+    return PowerSeries(x.tape, [], lambda k: k * x.at(k))
 
 
-def _integrated(rate: Series, other: Series, k: int) -> Decimal:
+def _integrated(rate: PowerSeries, other: PowerSeries, k: int) -> Decimal:
     """Coefficient k > 0 of the integral of a derivative times `other`, from lower ones of that."""
     return sum(map(mul, rate.coefficients[1 : k + 1], other.coefficients[k - 1 :: -1]), ZERO) / k
 
 
-def _recorded(series: Series, next_coefficient: Callable[[int], Decimal]) -> Series:
+def _recorded(series: PowerSeries, next_coefficient: Callable[[int], Decimal]) -> PowerSeries:
     series.next_coefficient = next_coefficient
     series.tape.append(series)
     return series

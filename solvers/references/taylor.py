@@ -18,7 +18,7 @@ from solvers.equations.module import GeneratedModule, with_functions
 from solvers.equations.starts.decimal_state import decimal_state
 from solvers.references.decimal_projection import DecimalProjection
 from solvers.references.exact_literals import with_exact_literals
-from solvers.references.series import Series
+from solvers.references.power_series import PowerSeries
 from solvers.references.series_functions import series_functions
 
 Array = NDArray[np.float64]
@@ -96,7 +96,7 @@ def decimal_motion(
     """The states of `taylor` with all their digits."""
     samples = [Decimal(float(t)) for t in np.asarray(times, dtype=float)]
     with localcontext(prec=digits + GUARD):
-        motion = _Motion(module, params, y0, samples[0])
+        motion = _TaylorMotion(module, params, y0, samples[0])
         order = int(digits * 2.302585 / 2) + 2
         t, h, states, products = samples[0], Decimal(0), [], 0
         shortest = SHORTEST * float(np.spacing(max(abs(float(t)) for t in samples)))
@@ -123,7 +123,7 @@ def decimal_motion(
     return states
 
 
-class _Motion:
+class _TaylorMotion:
     """A motion as power series of its state about the current time.
 
     The state is that of the fastest form, followed by the angles, whose derivatives are velocities
@@ -134,20 +134,22 @@ class _Motion:
         self, module: GeneratedModule, params: Sequence[float], y0: Sequence[float], start: Decimal
     ) -> None:
         form = Form(module, fastest_form(module), (0.0,) * len(module.PARAMETERS))
-        half, self._tape = len(module.COORDINATES), list[Series]()
-        self._time = Series(self._tape, [])
-        self._state = [Series(self._tape, []) for _ in form.state]
-        constants = [Series.number(self._tape, p) for p in params]
-        exact = with_exact_literals(form.function, partial(Series.number, self._tape))
-        self._switches = list[Series]()
+        half, self._tape = len(module.COORDINATES), list[PowerSeries]()
+        self._time = PowerSeries(self._tape, [])
+        self._state = [PowerSeries(self._tape, []) for _ in form.state]
+        constants = [PowerSeries.number(self._tape, p) for p in params]
+        exact = with_exact_literals(form.function, partial(PowerSeries.number, self._tape))
+        self._switches = list[PowerSeries]()
         function = with_functions(exact, series_functions(self._tape, self._switches))
         rates = function(self._time, self._state, constants)
-        self._rates = [r if isinstance(r, Series) else Series.number(self._tape, r) for r in rates]
+        self._rates = [
+            r if isinstance(r, PowerSeries) else PowerSeries.number(self._tape, r) for r in rates
+        ]
         columns = dict(form.shared_columns)
         for k, _ in form.angle_columns:
             columns[k] = len(self._state)
             self._rates.append(self._state[columns[half + k]])
-            self._state.append(Series(self._tape, []))
+            self._state.append(PowerSeries(self._tape, []))
         self._columns = [columns[k] for k in range(2 * half)]
         self._project = DecimalProjection(form, params) if form.has_constraints else None
         state = decimal_state(form, y0)
@@ -210,6 +212,6 @@ class _Motion:
             raise self.error("the equations have a kink or a jump in the next step")
 
 
-def _sum(series: Series, h: Decimal) -> Decimal:
+def _sum(series: PowerSeries, h: Decimal) -> Decimal:
     """The sum of a series at `h`, by Horner's rule."""
     return reduce(lambda value, c: value * h + c, reversed(series.coefficients), Decimal(0))

@@ -139,7 +139,7 @@ class Polynomial:
 
 
 @dataclass(frozen=True)
-class Stages:
+class IteratedStages:
     """Stages after an iteration: increments, its contraction, the norm of the step's error.
 
     The iteration ended early if that is larger than the prediction permits.
@@ -165,7 +165,7 @@ class ParallelStages:
 
     def solve(
         self, derivatives: Callable[[Array], Array], y: Array, h: float, last: Polynomial
-    ) -> Stages:
+    ) -> IteratedStages:
         """Solve the stages of a step of size `h` from `y`.
 
         `derivatives` evaluates all stages, whose states are rows; `last` predicts them.
@@ -206,7 +206,7 @@ class ParallelStages:
             raise NoFixedPointError(f"{MAX_ITERATIONS} iterations do not suffice")
         if norm is None or (square > SLOW and is_last):
             norm = self.error_norm(y, increments)
-        return Stages(increments, float(np.sqrt(square)), norm)
+        return IteratedStages(increments, float(np.sqrt(square)), norm)
 
     def error_norm(self, y: Array, increments: Array) -> float:
         """Root mean square of the top coefficients, times a power of their ratio to the lowest.

@@ -32,7 +32,7 @@ class StabilityFunction:
 
     Examples
     --------
-    >>> from solvers.runge_kutta.catalogue import load
+    >>> from solvers.runge_kutta.method_catalogue import load
     >>> function = StabilityFunction.of(load("rk4"))
     >>> [str(c) for c in function.numerator]
     ['1', '1', '1/2', '1/6', '1/24']

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from solvers.io.suggestion import shortened
 from solvers.runge_kutta.continuous_extension import ContinuousExtension
 from solvers.runge_kutta.lagrange import lagrange
-from solvers.runge_kutta.newton import Newton, Stages, Start, UnsolvedError
+from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start, UnsolvedError
 from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
 from solvers.runge_kutta.tableau import Tableau
 
@@ -31,7 +31,7 @@ class NoConvergenceError(ArithmeticError):
     """The stage equations of an implicit method were not solved."""
 
 
-class Step(NamedTuple):
+class StepResult(NamedTuple):
     """A step: the state at its end, and what its stages tell.
 
     Estimates of the local error are of shape (estimates, state): one row of zeros for a method
@@ -44,11 +44,11 @@ class Step(NamedTuple):
     derivative: Array | None = None
     polynomial: Polynomial | None = None  # of a method with parallel stages
     contraction: float = 0.0  # of its iteration
-    stages: Stages | None = None  # of a method that solves them by Newton's iteration
+    stages: NewtonStages | None = None  # of a method that solves them by Newton's iteration
     k: Array | None = None  # derivatives at the stages of another method
 
     @property
-    def last(self) -> Polynomial | Stages | None:
+    def last(self) -> Polynomial | NewtonStages | None:
         """The part that the next step starts from."""
         return self.polynomial or self.stages
 
@@ -124,8 +124,13 @@ class Stepper:
         return value
 
     def step(
-        self, t: float, y: Array, h: float, first: Array, last: Polynomial | Stages | None = None
-    ) -> Step:
+        self,
+        t: float,
+        y: Array,
+        h: float,
+        first: Array,
+        last: Polynomial | NewtonStages | None = None,
+    ) -> StepResult:
         """The step of size `h` from the state `y`.
 
         `first` is the derivative at the start, `last` the polynomial or the stages of the last step
@@ -133,7 +138,7 @@ class Stepper:
         raises `NotFiniteError`, implicit ones `NoConvergenceError`.
         """
         if self._parallel_stages:
-            assert not isinstance(last, Stages)
+            assert not isinstance(last, NewtonStages)
             return self._parallel(self._parallel_stages, t, y, h, first, last)
         if self._newton:
             assert not isinstance(last, Polynomial)
@@ -141,7 +146,7 @@ class Stepper:
         k = self._explicit(t, y, h, first)
         end = y + h * (self._b @ k)
         error = h * (self._error_weights @ k) if self._tableau.b_hat else np.zeros((1, len(y)))
-        return Step(end, error, k[-1] if self._tableau.is_fsal else None, k=k)
+        return StepResult(end, error, k[-1] if self._tableau.is_fsal else None, k=k)
 
     def _parallel(
         self,
@@ -151,7 +156,7 @@ class Stepper:
         h: float,
         first: Array,
         last: Polynomial | None,
-    ) -> Step:
+    ) -> StepResult:
         times = (t + stages.c * h).tolist()
 
         def derivatives(states: Array) -> Array:
@@ -165,7 +170,7 @@ class Stepper:
         coefficients = stages.legendre @ solved.increments
         end = y + coefficients[0]
         norm = np.array([[solved.error_norm]])
-        return Step(end, norm, None, Polynomial(h, coefficients), solved.contraction)
+        return StepResult(end, norm, None, Polynomial(h, coefficients), solved.contraction)
 
     def _explicit(self, t: float, y: Array, h: float, first: Array) -> Array:
         k = np.empty((len(self._b), len(y)))
@@ -174,8 +179,10 @@ class Stepper:
             k[i] = self.derivative(t + self._c[i] * h, y + h * (self._A[i, :i] @ k[:i]))
         return k
 
-    def _implicit(self, newton: Newton, start: Start, first: Array, last: Stages | None) -> Step:
-        last = last or Stages.constant(start.t, start.y, start.h, first, newton.c)
+    def _implicit(
+        self, newton: Newton, start: Start, first: Array, last: NewtonStages | None
+    ) -> StepResult:
+        last = last or NewtonStages.constant(start.t, start.y, start.h, first, newton.c)
         try:
             stages = newton.solve(start, first, last)
         except UnsolvedError as failure:
@@ -184,9 +191,9 @@ class Stepper:
         error = np.zeros((1, len(end)))
         if self._tableau.is_radau and newton.is_controlled:
             error[0] = self._defect(newton, start, first, stages)
-        return Step(end, error, contraction=stages.contraction, stages=stages)
+        return StepResult(end, error, contraction=stages.contraction, stages=stages)
 
-    def _defect(self, newton: Newton, start: Start, first: Array, stages: Stages) -> Array:
+    def _defect(self, newton: Newton, start: Start, first: Array, stages: NewtonStages) -> Array:
         """The error, by the difference of the polynomial's derivative at the start from `first`.
 
         The embedded solution that uses `first`, too, differs by h g (first - p'(0)), where g is the

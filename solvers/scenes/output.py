@@ -5,10 +5,10 @@ from pathlib import Path
 
 from solvers.io.atomic_write import write_text
 from solvers.player.geometry import tracks
-from solvers.player.page import Page
-from solvers.scenes.run import SceneResult
+from solvers.player.player_page import Page
 from solvers.scenes.scene import Scene
-from solvers.scenes.summary import table, together
+from solvers.scenes.scene_run import SceneResult
+from solvers.scenes.scene_summary import table, together
 
 
 def file_names(scene: Scene, runs: int, *, plot: bool) -> dict[str, str]:
@@ -45,7 +45,7 @@ def write_files(
     motions = together(results)
     if "picture" in paths:
         from solvers.io.figures import save
-        from solvers.player.plots import figure
+        from solvers.player.motion_plots import figure
 
         save(figure(motions), paths["picture"])
     write_text(paths["table"], table(results[0]))

@@ -6,16 +6,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.arguments import check_module, known_names
 from solvers.equations.module import GeneratedModule, has_constraints
-from solvers.equations.quantities import positive
+from solvers.equations.number_checks import positive
+from solvers.equations.signature_checks import check_module, known_names
 from solvers.equations.singularities.mass_matrix import check_condition
 from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.problem import validation
-from solvers.io.arguments import check_texts, check_type
+from solvers.io.argument_types import check_texts, check_type
 from solvers.io.toml_input import whole
 from solvers.player.sampled_motion import sample_times
-from solvers.scenes import checks
+from solvers.scenes import scene_checks
 
 #: An output that is no component of the state.
 ENERGY = "energy"
@@ -47,7 +47,8 @@ class Scene:
         Number of times, evenly spaced over the duration, both ends included; 0 for a hundred a
         second, at least 501 and at most 20,001. Or increasing times in s.
     model : str or None
-        A key of `solvers.scenes.models.catalogue.load`; by default the smallest sufficient model.
+        A key of `solvers.scenes.models.model_catalogue.load`; by default the smallest sufficient
+        model.
     method, form : str or None
         A method of this package or of SciPy's ``solve_ivp``, and form of the equations,
         ``lagrangian``, ``hamiltonian`` or ``rational``; by default the cheapest.
@@ -132,22 +133,22 @@ class Scene:
             object.__setattr__(self, name, value)
         for name in ("duration", "accuracy", *(["step"] if self.step is not None else [])):
             positive(name, getattr(self, name))
-        checks.check_accuracy(self.accuracy)
-        checks.check_masses(self.module, self.params, self.y0)
+        scene_checks.check_accuracy(self.accuracy)
+        scene_checks.check_masses(self.module, self.params, self.y0)
         check_condition(self.module, [("", self.params, self.y0)])
-        checks.check_method(self.module, self.method, self.form, self.step, self.duration)
+        scene_checks.check_method(self.module, self.method, self.form, self.step, self.duration)
         if self.model is not None:
-            from solvers.scenes.models import catalogue
+            from solvers.scenes.models import model_catalogue
 
-            checks.check_choice("model", self.model, tuple(catalogue.load()))
-        checks.check_choice("code", self.code, ("general", "specialised"))
+            scene_checks.check_choice("model", self.model, tuple(model_catalogue.load()))
+        scene_checks.check_choice("code", self.code, ("general", "specialised"))
         if not isinstance(self.samples, int):
-            samples = checks.sample_times(self.samples, self.duration)
+            samples = scene_checks.sample_times(self.samples, self.duration)
             object.__setattr__(self, "samples", samples)
         elif self.samples:
-            whole("samples", self.samples, 2, checks.MOST_SAMPLES)
-        checks.check_outputs(self.outputs, state, (*state, ENERGY))
-        checks.check_pictures(self.pictures, state)
+            whole("samples", self.samples, 2, scene_checks.MOST_SAMPLES)
+        scene_checks.check_outputs(self.outputs, state, (*state, ENERGY))
+        scene_checks.check_pictures(self.pictures, state)
 
     def _start(self, params: list[float]) -> dict[str, object]:
         """The initial state, and a description of what constraints determine of it."""

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from solvers.integration.accuracy.checked_motion import Motion, OutsideDomainError
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest, usual_form
-from solvers.integration.accuracy.motion import Motion, OutsideDomainError
 from solvers.integration.accuracy.sufficient_run import sufficient_run
-from solvers.scenes.models.catalogue import closed_forms
 from solvers.scenes.models.full_equations import FullEquations
 from solvers.scenes.models.model import ClosedForm, Model
+from solvers.scenes.models.model_catalogue import closed_forms
 from solvers.scenes.scene import Scene
 
 #: An error estimate above this is not reported as a number.

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from solvers.integration.problem.status import Status
 from solvers.io.exports import dataset
-from solvers.sweeps.definition.checks import unit
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.definition.sweep_checks import unit
 
 ENDS = (status.name.lower().replace("_", " ") for status in Status)
 #: Status of a motion, by its number in ``status.npy``.

@@ -14,7 +14,7 @@ from solvers.app.verdict.claims import _chapter_3, _chapter_5, claims, objective
 from solvers.app.verdict.evidence import Evidence
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
-from solvers.studies.failure_modes.lyapunov import Mean
+from solvers.studies.failure_modes.largest_exponent import Mean
 from solvers.studies.failure_modes.study import studies
 
 EQUATIONS = {"verified": 119, "misprint": 23}

@@ -13,7 +13,7 @@ from folders import ROOT
 from sharing import Shared
 
 from derive.verification.report import contexts
-from derive.verification.report.equation import Equation
+from derive.verification.report.equation import ReportEquation
 from solvers.app.cli import COMMANDS, command_parser, main
 from solvers.app.commands import verify
 from solvers.app.commands.options import shipped
@@ -200,11 +200,13 @@ def test_the_readme_of_verification_states_the_numbers_of_verdicts(
 def test_verify_fails_if_an_equation_is_wrong_without_a_proved_correction(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from derive.verification.report import judgement
+    from derive.verification.report import report_judgement
 
-    wrong = Equation("eq47", r"x_1 = l_1 \cos \theta_1", changes=((r"l_1 \cos", r"l_2 \sin"),))
-    assert judgement.verdict(wrong, order).verdict == "wrong"
-    monkeypatch.setattr(judgement, "EQUATIONS", {"eq47": wrong})
+    wrong = ReportEquation(
+        "eq47", r"x_1 = l_1 \cos \theta_1", changes=((r"l_1 \cos", r"l_2 \sin"),)
+    )
+    assert report_judgement.verdict(wrong, order).verdict == "wrong"
+    monkeypatch.setattr(report_judgement, "EQUATIONS", {"eq47": wrong})
     assert main(["verify"]) == 1
     assert "wrong" in capsys.readouterr().out
 

@@ -15,17 +15,17 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
-from derive.verification.report.judgement import EQUATIONS
+from derive.verification.report.report_judgement import EQUATIONS
 from solvers.app.cli import main
-from solvers.app.demo import motions, stages, verdicts
-from solvers.app.demo.equations import FUNCTIONS, generation
-from solvers.app.demo.page import write_page
+from solvers.app.demo import motions_stage, stages, verdicts_stage
+from solvers.app.demo.demo_page import write_page
+from solvers.app.demo.equations_stage import FUNCTIONS, generation
 from solvers.app.demo.stage import Stage, table
 from solvers.app.modules import load as load_module
 from solvers.equations.module import operations_on_state
 from solvers.integration.integrate import integrate
-from solvers.scenes.reading import find
-from solvers.studies.work_precision import measurement
+from solvers.scenes.scene_reading import find
+from solvers.studies.work_precision import measured_curves
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
     folder = tmp_path_factory.mktemp("demo")
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(StringIO()) as screen:
         # which methods are listed must not depend on the speed of the machine
-        patch.setitem(measurement.LONGEST, "scipy", inf)
+        patch.setitem(measured_curves.LONGEST, "scipy", inf)
         assert main(["demo", "--output", str(folder)]) == 0
     return screen.getvalue(), folder / "demo.html"
 
@@ -236,7 +236,7 @@ def test_operation_counts_equal_those_of_the_generated_module() -> None:
 
 def test_the_numbers_of_the_motion_are_its_largest_errors() -> None:
     scene = find("report", load_module)
-    stage = motions.motion(scene)
+    stage = motions_stage.motion(scene)
     difference, change = (number.value for number in stage.numbers)
     run = partial(integrate, dp, (0, 5), scene.y0, dp.DEFAULTS, method="verner98", energy=True)
     fine = run(rtol=1e-12, atol=1e-12, t_eval=scene.times)
@@ -269,7 +269,7 @@ def test_programs_and_claims_are_listed_with_their_reasons() -> None:
     equations = [{"id": "2.1", "verdict": "verified"}, {"id": "2.2", "verdict": "verified"}]
     programs = [{"stops": []}, {"stops": ["no import", "x < 1 is wrong"]}]
     claims = [{"id": "C1", "claim": "RK4 is best", "verdict": "contradicted", "number": "5 < 9"}]
-    html = verdicts._section(equations, programs, claims)
+    html = verdicts_stage._section(equations, programs, claims)
     assert html.startswith(
         "<p>Of 2 equations, <strong>2</strong> hold as printed. Of 1 objectives, claims and "
         "recommendations, <strong>1</strong> do not hold.</p>"

@@ -10,10 +10,10 @@ import pytest
 from sympy import besselj, symbols
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, reduced
-from derive.codegen import functions as codegen
-from derive.codegen.expression_graph.translation import UnsupportedFunctionError
-from derive.codegen.writing import files as files_of
-from derive.system import catalogue
+from derive.codegen import module_functions as codegen
+from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
+from derive.codegen.module_files import files as files_of
+from derive.system import system_catalogue
 from solvers import integrate, load
 from solvers.app.modules import build
 from solvers.equations.module import GeneratedModule, depends_on_time, has_function, header
@@ -78,7 +78,7 @@ def test_only_functions_that_are_used_are_generated(generated: list[str]) -> Non
 @pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_functions_in_parts_are_those_of_the_whole_module(name: str) -> None:
-    system = catalogue.load(name)
+    system = system_catalogue.load(name)
     lazy, whole = build(system), ModuleType(name)
     functions = codegen.Functions(Derivation(reduced(system)))
     files = files_of(functions.part(functions.names))

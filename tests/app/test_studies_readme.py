@@ -12,11 +12,11 @@ import generated.single_pendulum as sp
 from solvers.app.modules import load
 from solvers.app.verdict.claims import objectives
 from solvers.app.verdict.evidence import Evidence
-from solvers.runge_kutta.catalogue import load as load_method
+from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.scenes.scene import Scene
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, statistics
 from solvers.studies.failure_modes.drift import EnergyDrift
-from solvers.studies.failure_modes.lyapunov import lyapunov
+from solvers.studies.failure_modes.largest_exponent import lyapunov
 from solvers.studies.failure_modes.separatrix import upright
 from solvers.studies.failure_modes.stiffness import Stiffness, crossover
 from solvers.studies.stability.critical_step import CriticalStep

@@ -15,9 +15,9 @@ import pytest
 from folders import ROOT
 
 import generated
-from derive.codegen.generated_folder import Tree
-from derive.commands import derive as command
-from derive.commands.derive import main, planned
+from derive.codegen.generated_folder import GeneratedFiles
+from derive.commands import regenerate as command
+from derive.commands.regenerate import main, planned
 from solvers import integrate
 
 
@@ -179,7 +179,7 @@ def test_a_folder_that_cannot_be_written_to_is_named(
 
 
 def test_current_files_are_not_written_again(tmp_path: Path) -> None:
-    tree = Tree(tmp_path, {"a.py": "a\n", "b.py": "b\n"}, complete=True)
+    tree = GeneratedFiles(tmp_path, {"a.py": "a\n", "b.py": "b\n"}, complete=True)
     assert [path.name for path in tree.write()] == ["a.py", "b.py"]
     (tmp_path / "b.py").write_text("c\n")
     assert [path.name for path in tree.write()] == ["b.py"]
@@ -189,14 +189,14 @@ def test_current_files_are_not_written_again(tmp_path: Path) -> None:
 def test_a_failed_write_leaves_the_old_files_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    Tree(tmp_path, {"a.py": "old\n"}, complete=True).write()
+    GeneratedFiles(tmp_path, {"a.py": "old\n"}, complete=True).write()
 
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space"):
-        Tree(tmp_path, {"a.py": "new\n"}, complete=True).write()
+        GeneratedFiles(tmp_path, {"a.py": "new\n"}, complete=True).write()
     assert [path.name for path in tmp_path.iterdir()] == ["a.py"]
     assert (tmp_path / "a.py").read_text() == "old\n"
 
@@ -207,7 +207,7 @@ def test_the_next_run_removes_files_of_a_killed_run_but_not_of_an_active_one(
     sleeper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
     temporary = tmp_path / f".a.py.{sleeper.pid}"
     temporary.write_text("")
-    tree = Tree(tmp_path, {"a.py": "a\n"}, complete=True)
+    tree = GeneratedFiles(tmp_path, {"a.py": "a\n"}, complete=True)
     tree.write()
     assert temporary.exists()
     assert tree.orphans() == []
@@ -226,7 +226,7 @@ def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
         "    Tree(Path(sys.argv[1]), texts, complete=True).write()\n"
         "    print(n, flush=True)\n"
     )
-    Tree(tmp_path, old, complete=True).write()
+    GeneratedFiles(tmp_path, old, complete=True).write()
     for pause in (0.0, 0.001, 0.003, 0.007, 0.013):
         run = subprocess.Popen(
             [sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE
@@ -241,5 +241,5 @@ def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
             lines = (tmp_path / name).read_text().splitlines()
             assert len(lines) == 20_000
             assert len(set(lines)) == 1
-    Tree(tmp_path, old, complete=True).write()
+    GeneratedFiles(tmp_path, old, complete=True).write()
     assert {path.name for path in tmp_path.iterdir()} == set(old)

@@ -17,8 +17,8 @@ from folders import ROOT
 from mpmath import mpf, workdps
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, load, names, write
-from derive.codegen.functions import Function, contents
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
+from derive.codegen.module_functions import Function, contents
 from solvers.equations.forms import Form
 from solvers.equations.module import parameter_names
 

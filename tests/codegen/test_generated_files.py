@@ -14,7 +14,7 @@ from folders import ROOT
 import generated.double_pendulum as dp
 from derive import Derivation, load, names
 from derive.codegen.function_specs import SPECS
-from derive.codegen.functions import Functions
+from derive.codegen.module_functions import Functions
 from derive.mechanics.reduced_coordinates import reduced
 
 FOLDER = ROOT / "generated"

@@ -10,9 +10,9 @@ import sympy as sp
 from derive.codegen.elimination.factorisation import LARGE, Factorisation, factorisation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
-from derive.codegen.expression_graph.translation import Translation, UnsupportedFunctionError
+from derive.codegen.expression_graph.sympy_translation import Translation, UnsupportedFunctionError
 from derive.codegen.operations import operation as op
-from derive.codegen.operations.assignments import Assignments, Notation
+from derive.codegen.operations.assignments import Assignments, LanguageNotation
 from derive.codegen.operations.lowering import Lowering
 
 pi = sp.pi
@@ -28,17 +28,17 @@ def evaluated(lowering: Lowering, values: dict[str, float]) -> list[float]:
         operation = lowering.operations[number]
         inner = [value(n) for n in operation.operands]
         match operation:
-            case op.Leaf(name=name):
+            case op.LeafOperation(name=name):
                 return values[name]
-            case op.Constant(value=constant):
+            case op.ConstantOperation(value=constant):
                 return float(constant)
-            case op.Sum(coefficients=coefficients):
+            case op.SumOperation(coefficients=coefficients):
                 return math.fsum(float(k) * v for k, v in zip(coefficients, inner, strict=True))
-            case op.Product():
+            case op.ProductOperation():
                 return math.prod(inner)
-            case op.Quotient():
+            case op.QuotientOperation():
                 return inner[0] / inner[1] if len(inner) == 2 else 1 / inner[0]
-            case op.Call(function=function):
+            case op.CallOperation(function=function):
                 return FUNCTIONS[function](*inner)
         raise NotImplementedError(operation)
 
@@ -208,7 +208,7 @@ def test_a_sum_that_cancels_with_a_shared_pair_is_the_number_0() -> None:
     more = graph.sum([(p, 1), (q, 1), (r, 1), (named, -1)])
     lowering = Lowering([named * r, cancelling, more], ())
     assert evaluated(lowering, {"p": 2.0, "q": 3.0, "r": 7.0}) == [35.0, 0.0, 7.0]
-    texts = Assignments(lowering, (), Notation()).outputs
+    texts = Assignments(lowering, (), LanguageNotation()).outputs
     assert texts == ["r*(p + q)", "0.0", "r"]
 
 

@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System
-from derive.codegen.expression_graph.translation import UnsupportedFunctionError
-from derive.codegen.functions import contents
-from derive.commands.derive import main
+from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
+from derive.codegen.module_functions import contents
+from derive.commands.regenerate import main
 from derive.system.parts import SystemDefinitionError
 from solvers.app.modules import build, load
 from solvers.integration.integrate import integrate

@@ -18,9 +18,9 @@ import generated.four_bar as four_bar
 import generated.single_pendulum as sp
 from derive import Derivation, load
 from derive.codegen.forms.lagrangian_form import LagrangianForm
-from derive.codegen.functions import contents
-from derive.codegen.operations.assignments import Notation
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
+from derive.codegen.module_functions import contents
+from derive.codegen.operations.assignments import LanguageNotation
 from derive.mechanics.specialisation import specialised as folded
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.system import System
@@ -89,7 +89,7 @@ def test_folded_numbers_are_exact_and_rounded_once() -> None:
 
 
 def test_a_folded_number_is_written_so_that_it_is_rounded_once() -> None:
-    literal = Notation().literal
+    literal = LanguageNotation().literal
     assert literal(Fraction(981, 100)) == "(981.0/100.0)"  # as exact as the type that reads it
     long = Fraction(1234567890123457581, 1000000000000010473)
     assert float(literal(long)) == float(long)
@@ -120,7 +120,8 @@ def test_a_changed_system_is_generated_anew() -> None:
 def test_the_generator_s_text_is_that_of_all_modules_that_a_generation_imports() -> None:
     code = (
         "import sys\nfrom derive import Derivation, System, load, reduced\n"
-        "from derive.codegen.functions import Functions\nfrom derive.codegen.writing import texts\n"
+        "from derive.codegen.module_functions import Functions\n"
+        "from derive.codegen.module_files import texts\n"
         "from derive.mechanics.specialisation import specialised\n"
         "texts(Derivation(specialised(reduced(load('rotating_hoop')), {'g': 1.0})), ('rhs',))\n"
         "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('derive.')), sep='\\n')"

@@ -18,7 +18,7 @@ from solvers.integration.prepare import prepare
 from solvers.integration.problem.status import Status
 from solvers.sweeps.definition.axes import Grid, Random
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.sweep_run import sweep
 from solvers.sweeps.maps.final import Final
 
 #: Rods that are aligned, nearly so, and at right angles: the motion aligns them.

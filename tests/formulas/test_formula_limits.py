@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Parameter, PointMass, System, write
-from derive.codegen.expression_graph.translation import UnsupportedFunctionError
+from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
 from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.formulas.syntax import ExpressionError
 from solvers.app.cli import main

@@ -5,8 +5,8 @@ from itertools import combinations
 import pytest
 import sympy as sp
 
+from derive.formulas.evaluation.generic_values import STATES, sample
 from derive.formulas.evaluation.numeric import Evaluator, NoValueError, independent, solved
-from derive.formulas.evaluation.sampling import STATES, sample
 
 x, y = sp.symbols("x y", real=True)
 m = sp.Symbol("m", positive=True)

@@ -13,7 +13,7 @@ import sympy as sp
 from derive import Derivation
 from derive.formulas.typeset import typesetting
 from derive.formulas.typeset.typesetting import Formula
-from derive.verification.report.judgement import EQUATIONS
+from derive.verification.report.report_judgement import EQUATIONS
 
 #: Names of the report, and their handwritten form: letter, dots, indices.
 LETTERS = {

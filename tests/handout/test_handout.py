@@ -17,20 +17,20 @@ import sympy as sp
 from folders import ROOT
 
 from derive import Derivation, Parameter, load, names
-from derive.commands.derive import main
+from derive.commands.regenerate import main
+from derive.formulas.evaluation.generic_values import STATES, sample
 from derive.formulas.evaluation.numeric import Evaluator
-from derive.formulas.evaluation.sampling import STATES, sample
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.handout.document import Code, Document, Equation, Paragraph
+from derive.handout.derived_letters import DerivedLetters
+from derive.handout.document_files import write_document
+from derive.handout.document_model import Code, HandoutDocument, NumberedEquation, Paragraph
 from derive.handout.exercises import with_exercises
 from derive.handout.formats.characters import declarations
 from derive.handout.formats.notebook import notebook
 from derive.handout.formats.page import BLANK, page
 from derive.handout.formats.tex import tex
 from derive.handout.mistakes import planted
-from derive.handout.notation import Notation
 from derive.handout.sections import document
-from derive.handout.writing import write_document
 
 #: A system with friction, a driving force, a spring, and letters of derived quantities.
 DAMPED = """
@@ -210,7 +210,7 @@ def test_letters_of_the_system_are_not_those_of_derived_quantities(documents, de
     system = derivation("damped").system
     assert not {s.name for s in system.params} & left
     taken = replace(system, parameters=[*system.parameters, Parameter(L_SYS, "m", 1.0, "")])
-    assert Notation(taken).letter("L") == "L_sys2"
+    assert DerivedLetters(taken).letter("L") == "L_sys2"
 
 
 def test_a_matrix_that_is_too_wide_is_written_by_entries(documents) -> None:
@@ -287,7 +287,7 @@ def test_normal_modes_have_the_frequencies_of_textbooks(documents) -> None:
     assert cart[0] == ("0", "none", "none", "1, 0, 0, 0")  # the cart moves freely
 
 
-def modes(one: Document) -> tuple[tuple[str, ...], ...]:
+def modes(one: HandoutDocument) -> tuple[tuple[str, ...], ...]:
     (section,) = (section for section in one.sections if section.title == "Small oscillations")
     rows: tuple[tuple[str, ...], ...] = section.blocks[-1].rows  # type: ignore[union-attr]
     return rows
@@ -334,11 +334,11 @@ def test_every_planted_mistake_is_wrong_and_its_key_right(documents, name, seed:
     assert {e.number for e in derived} - {*answers} <= {e.number for e in derived if is_zero(e)}
 
 
-def is_zero(equation: Equation) -> bool:
+def is_zero(equation: NumberedEquation) -> bool:
     return bool(sp.Matrix([equation.value]).is_zero_matrix)
 
 
-def differs(right: Equation, wrong: Equation) -> bool:
+def differs(right: NumberedEquation, wrong: NumberedEquation) -> bool:
     """Whether values differ at a generic state; also from every multiple where they are zero."""
     difference = sp.Matrix([wrong.value]) - sp.Matrix([right.value])
     for index in range(STATES):
@@ -348,7 +348,7 @@ def differs(right: Equation, wrong: Equation) -> bool:
     return False
 
 
-def is_similar(right: Equation, wrong: Equation) -> bool:
+def is_similar(right: NumberedEquation, wrong: NumberedEquation) -> bool:
     """Whether no entry is much longer or shorter than the right one."""
     pairs = zip(sp.Matrix([right.value]), sp.Matrix([wrong.value]), strict=True)
     return all(abs(a.count_ops() - b.count_ops()) <= 2 for a, b in pairs)
@@ -382,13 +382,13 @@ def test_all_kinds_of_mistakes_are_planted(documents) -> None:
 
 
 def test_a_multiple_of_zero_and_another_zero_of_energy_are_no_mistakes(derivation) -> None:
-    order = Notation(derivation("rotating_hoop").system).order
+    order = DerivedLetters(derivation("rotating_hoop").system).order
     symbols = {s.name: s for s in order.kinds}
-    zero = Equation(1, (), symbols["R"] * symbols["theta_ddot"], ("0",), order)
+    zero = NumberedEquation(1, (), symbols["R"] * symbols["theta_ddot"], ("0",), order)
     for seed in map(str, range(20)):
         mistake = planted(zero, seed)
         assert mistake is None or mistake.kind == "power"
-    potential = Equation(
+    potential = NumberedEquation(
         1, ("V",), symbols["R"] - symbols["R"] * sp.cos(symbols["theta"]), (), order
     )
     for seed in map(str, range(20)):

@@ -12,12 +12,12 @@ from latex_trees import show
 
 from derive import Derivation, load, names, reduced
 from derive.formulas.typeset.lettering import lettering
+from derive.handout.derived_letters import DerivedLetters
+from derive.handout.document_files import write_document
 from derive.handout.formats.tex import equation_rows
-from derive.handout.notation import Notation
 from derive.handout.sections import document, with_letters
-from derive.handout.writing import write_document
 from derive.reading.documents import read_document
-from derive.reading.latex.reader import formulas
+from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import (
     Application,
     Call,
@@ -85,7 +85,7 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
     """What stands behind the left sides of a document, by the first side as text."""
     s, many = d.system, len(d.system.q) > 1
     slopes = [d.lagrangian.diff(q) for q in s.q]
-    masses = Notation(s).positions
+    masses = DerivedLetters(s).positions
     values = {
         **{f"{r}_vector": sp.Matrix(m.position) for r, m in zip(masses, s.masses, strict=True)},
         **{f"{r}_vector_dot": v for r, v in zip(masses, d.velocities, strict=True)},
@@ -112,7 +112,7 @@ def expected(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:
         values[f"ddt(d(L, {qdot}))"] = left + slope + applied + reactions
         values[f"d(L, {q})"] = slope
         force = f" - Q_{q}" if applied else ""
-        reaction = Notation(s).reaction(s.q.index(q)).replace("_sys", "")
+        reaction = DerivedLetters(s).reaction(s.q.index(q)).replace("_sys", "")
         values[f"ddt(d(L, {qdot})) - d(L, {q}){force}{reaction}"] = left
         values[f"Q_{q}"] = applied
         values[f"pdot_{q}"] = slope + applied  # with the momenta of the velocities

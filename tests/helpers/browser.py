@@ -13,7 +13,7 @@ from PIL import Image
 import generated.double_pendulum as dp
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.player.page import Page
+from solvers.player.player_page import Page
 from solvers.player.track import Track
 
 #: What energy errors of the tracks are relative to.

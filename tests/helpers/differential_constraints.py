@@ -3,7 +3,7 @@
 import sympy as sp
 
 from derive import Coordinate, Input, Parameter, PointMass, System, velocity
-from derive.mechanics.constraints.constraints import Constraints
+from derive.mechanics.constraints.differentiated_constraints import Constraints
 
 x, y, z, theta, phi = sp.symbols("x y z theta phi", real=True)
 u = sp.Symbol("u", real=True)

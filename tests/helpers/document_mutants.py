@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from derive.reading.document import Document
-from derive.reading.latex.reader import formulas
+from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import (
     Call,
     Letter,

@@ -8,7 +8,7 @@ import generated
 from solvers.app.modules import load as load_module
 from solvers.equations.module import function, has_constraints, has_function
 from solvers.equations.starts.consistent_start import consistent_start
-from solvers.integration.accuracy.motion import Motion
+from solvers.integration.accuracy.checked_motion import Motion
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor

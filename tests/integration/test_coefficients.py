@@ -12,7 +12,7 @@ from solvers.integration.compiled import compiler, method_source
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.parallel_stages import symplectic_ratios
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]

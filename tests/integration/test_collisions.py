@@ -15,8 +15,8 @@ from solvers.integration.integrate import integrate
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.problem.status import Status
 from solvers.references.taylor import SeriesError, taylor
-from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_run import run_scene
 
 #: A body released at the distance 1 falls to the centre of the potential -1/r after π/√8.
 COLLISION = 1.1107207345395915

@@ -18,7 +18,7 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled import compiler
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.kernel_source import program
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
@@ -27,7 +27,7 @@ from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 
 EXPLICIT = [name for name in names() if load(name).is_explicit]
 FORMS = ("lagrangian", "hamiltonian", "rational")

@@ -15,9 +15,9 @@ from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import SystemDefinitionError
 from solvers.integration.compiled import equations_source, kernel_source
 from solvers.integration.compiled.kernel_source import PROGRAM, program
-from solvers.integration.compiled.layout import SOURCES
+from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.compiled.native import equations
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 

@@ -266,7 +266,7 @@ def test_a_hanging_compiler_is_known_to_other_processes_for_some_time(
 
     def in_another_process() -> int:
         """The calls of the compiler so far."""
-        monkeypatch.setattr(compiler, "_attempts", compilation.Attempts())
+        monkeypatch.setattr(compiler, "_attempts", compilation.FailedCompilations())
         fails(1)
         return calls(tmp_path)
 
@@ -283,7 +283,7 @@ def test_a_hanging_compiler_is_known_to_other_processes_for_some_time(
     assert in_another_process() == 6
     Path(hanging[0]).write_text(f"#!/bin/sh\nexec '{shutil.which('cc')}' $@\n")
     monkeypatch.setattr(compilation, "PATIENCE", 20.0)
-    monkeypatch.setattr(compiler, "_attempts", compilation.Attempts())
+    monkeypatch.setattr(compiler, "_attempts", compilation.FailedCompilations())
     assert answer(build(SOURCE).path) == 42  # the mark is that of another file
 
 

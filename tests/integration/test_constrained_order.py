@@ -25,7 +25,7 @@ from solvers.equations.starts.decimal_state import decimal_state, sine_and_cosin
 from solvers.references.decimal_projection import DecimalProjection
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.taylor import decimal_motion
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau
 

@@ -13,8 +13,8 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
-from solvers.runge_kutta.catalogue import load, names
 from solvers.runge_kutta.continuous_extension import ContinuousExtension, bernstein_values
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.order_conditions import Tree, density, trees
 from solvers.runge_kutta.stepper import Stepper
 

@@ -17,7 +17,7 @@ from sympy import Poly, Rational, Symbol
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.integration.checks.predictability import ignore_predictability
-from solvers.integration.compiled.layout import SOURCES
+from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event

@@ -11,9 +11,9 @@ import generated.cart_3 as cart
 import generated.coupled_pendulums as coupled
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.double_double import DoubleDouble, in_calls
-from solvers.integration.compiled.equations_source import Equations
+from solvers.integration.compiled.equations_source import EquationsSource
 from solvers.integration.compiled.extended_source import NotArithmeticError
-from solvers.integration.compiled.layout import SOURCES
+from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.compiled.native import equations
 
 OPERATIONS = {
@@ -74,7 +74,7 @@ static inline void hand_rhs(HOLONOMIC_REAL t, const HOLONOMIC_REAL *state,
         (add + state[0])/t - 2*state[0];
     (void)t;
 }"""
-    source = Equations(header, "hand_rhs", "", 1, 1, 1, (), (), (), True)
+    source = EquationsSource(header, "hand_rhs", "", 1, 1, 1, (), (), (), True)
     body = re.findall(r"v_(?:add|result\[0\]) = (.*);", in_calls(source, "RHS", source.rhs))
     tenth = f"constant(0.1, {float(Fraction(1, 10) - Fraction(0.1))!r})"
     assert body == [
@@ -95,8 +95,8 @@ def test_functions_and_statements_that_are_no_definitions_are_refused() -> None:
         ("result[0] = t ? 1 : 0;", "is no arithmetic"),
         ("result[0] = t % 2;", "is no arithmetic"),
     ):
-        source = Equations(f"{start} {body} }}", "f", "", 1, 1, 1, (), (), (), True)
+        source = EquationsSource(f"{start} {body} }}", "f", "", 1, 1, 1, (), (), (), True)
         with pytest.raises(NotArithmeticError, match=re.escape(message)):
             in_calls(source, "RHS", source.rhs)
     with pytest.raises(NotArithmeticError, match="g is missing"):
-        in_calls(Equations("", "g", "", 1, 1, 1, (), (), (), True), "RHS", "g")
+        in_calls(EquationsSource("", "g", "", 1, 1, 1, (), (), (), True), "RHS", "g")

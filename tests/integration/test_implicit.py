@@ -29,7 +29,7 @@ from solvers.integration.prepare import prepare
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
 from solvers.integration.results.solution import Solution
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.sweep import Sweep

@@ -35,7 +35,7 @@ from derive import (
     RigidBody,
     velocity,
 )
-from derive.mechanics.constraints.constraints import Constraints
+from derive.mechanics.constraints.differentiated_constraints import Constraints
 from holonomic import build, ensemble, integrate, prepare
 from solvers.equations.module import GeneratedModule
 from solvers.equations.starts.consistent_start import consistent_start

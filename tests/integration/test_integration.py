@@ -14,7 +14,7 @@ import generated.single_pendulum as sp
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 
 EXPLICIT_PAIRS = [n for n in names() if load(n).b_hat]
 FORMS = ("lagrangian", "hamiltonian", "rational")

@@ -15,7 +15,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.ode_solver import ode_solver
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import UnknownMethodError
+from solvers.runge_kutta.method_catalogue import UnknownMethodError
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 #: The report's scene at 5 s, from an 80-bit Taylor series.

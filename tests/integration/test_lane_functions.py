@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from solvers import ensemble
 from solvers.app.modules import load as load_module
 from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.layout import source
+from solvers.integration.compiled.memory_layout import source
 
 MANY = """
 void many(const double *x, double *sines, double *cosines, int64_t n);

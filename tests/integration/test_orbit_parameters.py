@@ -18,8 +18,8 @@ from solvers.app.modules import build
 from solvers.integration.orbits.family import SpecialOrbit
 from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.orbit_family import orbit_family
+from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart
 from solvers.integration.orbits.periodic_orbit import periodic_orbit
-from solvers.integration.orbits.shooting import Point, Shooting
 from solvers.integration.orbits.symmetry import Reversal
 
 DAMPED = {"a": 0.01, "Omega": 6.0, "c": 0.3}
@@ -239,11 +239,12 @@ def test_half_a_period_has_the_derivatives_of_the_whole(
         return 2 * np.pi / by_name["Omega"]
 
     orbit = periodic_orbit(module, y, period(params), params, symmetry=symmetry)
-    point = Point(orbit.y, orbit.period, constants)
+    point = OrbitStart(orbit.y, orbit.period, constants)
     nature = Nature.of(module, orbit.y, constants, index)
     reversal = Reversal.of(module, symmetry, orbit.y, constants)
     whole, half = (
-        Shooting(module, nature, 1e-12, 1e-12, r, index, period)(point) for r in (None, reversal)
+        OrbitConditions(module, nature, 1e-12, 1e-12, r, index, period)(point)
+        for r in (None, reversal)
     )
     assert np.abs(whole.residual).max() < 1e-10
     columns = [0, 1, 3]  # by the start and the parameter

@@ -23,7 +23,7 @@ from solvers.app.modules import build
 from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.integrate import integrate
-from solvers.integration.orbits import shooting
+from solvers.integration.orbits import orbit_shooting
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem.events import Event
@@ -156,7 +156,7 @@ def test_no_orbit_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(NoPeriodicOrbitError, match="equilibrium"):
         periodic_orbit(single, {"theta": 1e-9}, 2.0, {"l": 1.0})
     with monkeypatch.context() as patch:
-        patch.setattr("solvers.integration.orbits.newton.MAX_ITERATIONS", 1)
+        patch.setattr("solvers.integration.orbits.orbit_newton.MAX_ITERATIONS", 1)
         with pytest.raises(NoPeriodicOrbitError, match=r"still changes.*better guess"):
             periodic_orbit(single, {"theta": 1.0}, 2.0, {"l": 1.0})
     with pytest.raises(ValueError, match=r"period = 0.9 s is not one of driven_pendulum"):
@@ -322,6 +322,6 @@ def test_an_energy_that_cannot_be_held_is_refused() -> None:
 
 def test_motions_of_very_many_steps_are_no_way_to_an_orbit(monkeypatch: pytest.MonkeyPatch) -> None:
     """A swing of 2 s from rest at 1 rad takes more than 5 steps at 1e-12."""
-    monkeypatch.setattr(shooting, "MOST_STEPS", 5)
+    monkeypatch.setattr(orbit_shooting, "MOST_STEPS", 5)
     with pytest.raises(NotFinishedError, match="the maximum number of steps was reached"):
         periodic_orbit(single, {"theta": 1.0}, 2.0, {})

@@ -20,7 +20,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.prepare import prepare
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.parallel_stages import (
     EARLY,
     ParallelStages,

@@ -16,8 +16,8 @@ from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
 from solvers.integration.results.solution import Solution
 from solvers.references.taylor import taylor
-from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.continuous_extension import ContinuousExtension
+from solvers.runge_kutta.method_catalogue import load
 
 METHODS = ["dp54", "verner853", "verner98"]
 STARTS = {

@@ -19,7 +19,7 @@ from solvers.io import exports
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution import pool, worker
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.sweep_run import sweep
 from solvers.sweeps.maps.final import Final
 
 Y0 = {"r": 1.1, "theta": 0.5}

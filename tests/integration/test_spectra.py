@@ -20,7 +20,7 @@ from solvers.integration.variations.transition_matrix import transition_matrix
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.sweep_run import sweep
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.lyapunov_spectrum import Spectrum
 

@@ -10,17 +10,17 @@ from solvers.app.modules import load as load_module
 from solvers.integration.compiled import method_source
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Batch, Kernel
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.integrate import integrate
 from solvers.integration.loops import python_loop
 from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.problem.validation import problem
 from solvers.integration.results.outcome import Outcome
-from solvers.runge_kutta.catalogue import load, names
-from solvers.runge_kutta.newton import Newton, Stages, Start
+from solvers.runge_kutta.method_catalogue import load, names
+from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start
 from solvers.runge_kutta.order_choice import FAST, SLOW, OrderChoice
-from solvers.scenes.reading import find
+from solvers.scenes.scene_reading import find
 from solvers.studies.stability import scene_stability
 
 ORDERS = tuple(method.order for method in load("radau").members)
@@ -161,7 +161,7 @@ def test_the_polynomial_of_another_order_predicts_the_stages() -> None:
         for method in members:
             newton = Newton(method, rhs, lambda t, y: np.zeros((1, 1)), 1e-12, 1e-12)
             c = np.array(last.c, float)
-            stages = Stages(1.0, c, c[:, np.newaxis] ** 2, 0.0, np.zeros(1), 0.0)
+            stages = NewtonStages(1.0, c, c[:, np.newaxis] ** 2, 0.0, np.zeros(1), 0.0)
             calls = []
             newton._derivative = lambda t, y, calls=calls: calls.append(t) or rhs(t, y)
             newton.solve(Start(1.0, np.array([1 / 3]), 2.0), rhs(1.0, np.zeros(1)), stages)

@@ -16,8 +16,8 @@ from folders import ROOT
 
 import generated.single_pendulum as sp
 from derive import Derivation, load
-from derive.codegen.functions import Functions
-from derive.codegen.writing import files
+from derive.codegen.module_files import files
+from derive.codegen.module_functions import Functions
 from solvers.app.cli import main
 from solvers.equations.module import header
 from solvers.equations.module_cache import cached_module

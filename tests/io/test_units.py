@@ -10,15 +10,15 @@ import pytest
 import generated
 import generated.free_body as free_body
 from derive import load
-from derive.codegen.summary import units
+from derive.codegen.module_summary import units
 from solvers import consistent_start, integrate, run_scene
 from solvers import load as load_module
 from solvers.app.cli import main
 from solvers.equations.module import has_constraints, inputs
-from solvers.io.notation import axis_label
+from solvers.io.figure_names import axis_label
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.units import dimension, with_unit
-from solvers.scenes.summary import summary
+from solvers.scenes.scene_summary import summary
 from solvers.sweeps.definition import map_kinds
 
 NUMBERS = (100, 0.1, -1.5e-05, 2e20)

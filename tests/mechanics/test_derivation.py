@@ -8,7 +8,7 @@ from sympy.physics.mechanics import LagrangesMethod, Lagrangian, Particle, Point
 from sympy.physics.mechanics import dynamicsymbols as dynamic
 
 from derive import TIME, Coordinate, Derivation, Parameter, PointMass, RigidBody, System
-from derive.codegen.functions import contents
+from derive.codegen.module_functions import contents
 from derive.formulas.proofs.zero import vanishes
 from derive.mechanics.energies.reduction import collected, reduced
 from derive.system.parts import SystemDefinitionError

@@ -7,8 +7,14 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, load, velocity
-from derive.formulas.evaluation.residue_values import Evaluation, Point
-from derive.formulas.evaluation.residues import PRIME, NoRootError, Series, echelon, null_space
+from derive.formulas.evaluation.residue_values import Evaluation, RandomResidues
+from derive.formulas.evaluation.residues import (
+    PRIME,
+    NoRootError,
+    ResidueSeries,
+    echelon,
+    null_space,
+)
 from derive.system.parts import SystemDefinitionError
 
 x = sp.Symbol("x", real=True)
@@ -111,15 +117,15 @@ def test_derivatives_of_residues_are_those_of_formulas(formula: sp.Expr) -> None
 
 
 def derivatives_agree(formula: sp.Expr, seed: int) -> bool:
-    point, rows = Point(seed), np.zeros((2, 6), np.int64)
+    point, rows = RandomResidues(seed), np.zeros((2, 6), np.int64)
     rows[0], rows[1, 0] = [point.residue(k) for k in range(6)], 1
     constant = np.zeros((2, 6), np.int64)
     constant[0, 0] = point.residue("c")
-    evaluate = Evaluation({x: Series(rows), c: Series(constant)}, point)
+    evaluate = Evaluation({x: ResidueSeries(rows), c: ResidueSeries(constant)}, point)
     values, slopes = evaluate(formula).rows[1], evaluate(sp.diff(formula, x)).rows[0]
     # the series in time of f(x(t)) has the derivative f'(x) x'
     series, n = evaluate(formula).rows[0], np.arange(6)
-    rate = Series(slopes[np.newaxis]) * Series(np.roll(rows[:1] * n % PRIME, -1))
+    rate = ResidueSeries(slopes[np.newaxis]) * ResidueSeries(np.roll(rows[:1] * n % PRIME, -1))
     in_time = ((series * n)[1:] % PRIME == rate.rows[0][:-1]).all()
     return bool(in_time and (values == slopes).all())
 

@@ -25,7 +25,7 @@ from differential_constraints import (
 )
 
 from derive import TIME, Derivation, PointMass
-from derive.commands.derive import main
+from derive.commands.regenerate import main
 from derive.system.parts import SystemDefinitionError
 from holonomic import build, integrate
 

@@ -5,7 +5,7 @@ import trees
 from sympy import Abs, Symbol, cos, sin, symbols
 
 from derive import TIME, Coordinate, Derivation, Parameter, PointMass, System, load
-from derive.codegen.functions import contents
+from derive.codegen.module_functions import contents
 from derive.mechanics.energies.kinematic_tree import _sums
 
 m, l, g = symbols("m l g", positive=True)  # noqa: E741

@@ -10,7 +10,7 @@ import sympy as sp
 from cart_pole import F, T, cart_pole, theta, x
 
 from derive import Derivation, System, load, velocity, with_inputs
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
 from derive.system.parts import SystemDefinitionError
 from solvers.app.modules import build
 from solvers.equations.linearisation.linear_system import linearise

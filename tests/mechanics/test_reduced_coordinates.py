@@ -26,8 +26,8 @@ from derive import (
     velocity,
 )
 from derive import load as load_system
-from derive.codegen.writing import texts
-from derive.commands.derive import main
+from derive.codegen.module_files import texts
+from derive.commands.regenerate import main
 from derive.mechanics.derivation import RedundancyWarning
 from derive.mechanics.equations import Equations
 from derive.system.parts import SystemDefinitionError

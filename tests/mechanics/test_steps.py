@@ -8,8 +8,8 @@ import sympy as sp
 from derive import Derivation, load, names
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.typeset.typesetting import Formula
-from derive.verification.report.comparison import EQUATIONS_OF_STEP, compare_steps
-from derive.verification.report.judgement import EQUATIONS
+from derive.verification.report.derivation_beside_report import EQUATIONS_OF_STEP, compare_steps
+from derive.verification.report.report_judgement import EQUATIONS
 from derive.verification.verdict import Verdict
 
 

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from browser import UNIT, Player, at_rest, track_of
 
-from solvers.player import page
-from solvers.player.track import Coordinate, Track
+from solvers.player import player_page
+from solvers.player.track import CoordinateTrack, Track
 
 BOBS, ROD = ((0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00)), (0x4A, 0x52, 0x59)
 # runs have the colours after those of their masses
@@ -73,11 +73,11 @@ def test_masses_are_at_their_positions_on_any_screen(
 
 def mutated(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str, old: str, new: str) -> None:
     """Plant a mistake in one of the sources of the player."""
-    sources = Path(shutil.copytree(page.SOURCES, tmp_path / "sources"))
+    sources = Path(shutil.copytree(player_page.SOURCES, tmp_path / "sources"))
     text = (sources / name).read_text(encoding="utf-8")
     assert text.count(old) == 1
     (sources / name).write_text(text.replace(old, new), encoding="utf-8")
-    monkeypatch.setattr(page, "SOURCES", sources)
+    monkeypatch.setattr(player_page, "SOURCES", sources)
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
@@ -249,8 +249,8 @@ def test_marks_are_round_and_paths_end_at_their_times(player: Player) -> None:
     t = np.linspace(0, 5, 6)
     player.open([Track("across", t, np.array([[t, 0 * t]]), (), t, UNIT)])
     sources = "".join(
-        (page.SOURCES / name).read_text()
-        for name in page.SCRIPTS[: page.SCRIPTS.index("panel.js") + 1]
+        (player_page.SOURCES / name).read_text()
+        for name in player_page.SCRIPTS[: player_page.SCRIPTS.index("panel.js") + 1]
     )
     spacings, marks, path, ranges, corners = player.driver.execute_script(f"""{sources}
         const view = new View(boundingBox(), 400, 300);
@@ -419,8 +419,8 @@ def test_the_view_follows_a_system_that_goes_far(axes: int, player: Player) -> N
 
 def test_coordinates_are_shown_over_time_and_in_the_phase_plane(player: Player) -> None:
     t = np.linspace(0, 5, 501)
-    swing = Coordinate("θ₁", "rad", np.cos(t), -np.sin(t))
-    slide = Coordinate("x", "m", 3 * t, 0 * t + 3)
+    swing = CoordinateTrack("θ₁", "rad", np.cos(t), -np.sin(t))
+    slide = CoordinateTrack("x", "m", 3 * t, 0 * t + 3)
     player.open([replace(at_rest(), coordinates=(swing, slide))])
     chart, plane = "#over-time", "#phase-plane"
     places = {}
@@ -458,7 +458,7 @@ def test_text_is_shown_and_never_executed(player: Player) -> None:
 def test_unescaped_text_is_noticed_and_still_not_executed(
     player: Player, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(page, "escape", lambda text: text)
+    monkeypatch.setattr(player_page, "escape", lambda text: text)
     player.open([at_rest()], text="<img src=x onerror=document.title=2>")
     assert player.driver.find_elements("css selector", "img")
     assert player.driver.title != "2"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from browser import UNIT, at_rest, track_of
 
-from solvers.player.page import Page
-from solvers.player.track import MOST_SAMPLES, Coordinate, Track
+from solvers.player.player_page import Page
+from solvers.player.track import MOST_SAMPLES, CoordinateTrack, Track
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,7 @@ def test_many_samples_are_reduced_evenly(tmp_path: Path) -> None:
 
 
 REST = at_rest()
-X = Coordinate("x", "m", REST.t, REST.t)
+X = CoordinateTrack("x", "m", REST.t, REST.t)
 HOLE = np.where(np.arange(501) == 7, np.nan, REST.t)
 
 

@@ -7,7 +7,7 @@ import pytest
 from derive.reading import formats
 from derive.reading.documents import kinds, read_document
 from derive.reading.programs import languages
-from derive.reading.programs.reader import known_languages, read_program
+from derive.reading.programs.program_reader import known_languages, read_program
 
 ORG = '''
 """Org mode: LaTeX between brackets with a backslash."""

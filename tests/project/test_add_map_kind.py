@@ -15,8 +15,8 @@ from solvers.io.toml_input import InputError
 from solvers.sweeps import maps
 from solvers.sweeps.definition import map_kinds
 from solvers.sweeps.definition.map_table import MapTable
-from solvers.sweeps.definition.reading import find
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.definition.sweep_reading import find
+from solvers.sweeps.execution.sweep_run import sweep
 
 KIND = '''
 """Mean speeds."""

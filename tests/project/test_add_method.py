@@ -10,8 +10,8 @@ import pytest
 import generated.single_pendulum as sp
 from solvers import integrate
 from solvers.app.readme_tables import methods_table
-from solvers.runge_kutta import catalogue, methods
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta import method_catalogue, methods
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper
 
@@ -34,7 +34,7 @@ def throwaway(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     (tmp_path / "throwaway.py").write_text(FILE)
     monkeypatch.setattr(methods, "__path__", [*methods.__path__, str(tmp_path)])
     yield "throwaway"
-    catalogue.load.cache_clear()
+    method_catalogue.load.cache_clear()
 
 
 def test_the_catalogue_finds_it_and_its_properties_follow(throwaway: str) -> None:

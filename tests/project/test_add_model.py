@@ -11,12 +11,12 @@ import pytest
 import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
-from solvers.integration.accuracy.motion import OutsideDomainError
+from solvers.integration.accuracy.checked_motion import OutsideDomainError
 from solvers.scenes import models
-from solvers.scenes.models import catalogue
-from solvers.scenes.reading import find
-from solvers.scenes.run import run_scene
+from solvers.scenes.models import model_catalogue
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_run import run_scene
 
 MODEL = '''
 """The first terms of a Taylor polynomial in time."""
@@ -27,7 +27,7 @@ from typing import ClassVar
 import numpy as np
 
 from solvers.scenes.models.model import ClosedForm
-from solvers.integration.accuracy.motion import OutsideDomainError
+from solvers.integration.accuracy.checked_motion import OutsideDomainError
 
 
 @dataclass(frozen=True)
@@ -106,12 +106,12 @@ def test_scene_files_name_it_and_messages_list_it(tmp_path: Path) -> None:
 
 
 def test_the_table_of_models_lists_it(extended: None) -> None:
-    rows = catalogue.markdown_table().splitlines()
+    rows = model_catalogue.markdown_table().splitlines()
     assert rows[3] == '| `"polynomial"` | motions of less than 10 ms | the next term |'
-    assert len(rows) == 2 + len(catalogue.load())
+    assert len(rows) == 2 + len(model_catalogue.load())
 
 
 def test_it_is_gone_without_its_file() -> None:
-    assert "polynomial" not in catalogue.load()
+    assert "polynomial" not in model_catalogue.load()
     with pytest.raises(ValueError, match="must be 'rest' or 'normal modes' or"):
         replace(SHORT, model="polynomial")

@@ -15,8 +15,8 @@ import holonomic
 import solvers
 from solvers import Final, Grid, Sweep, load_scene, load_sweep, run_scene, sweep
 from solvers.io.toml_input import InputError
-from solvers.scenes.reading import FILES
-from solvers.sweeps.definition import reading
+from solvers.scenes.scene_reading import FILES
+from solvers.sweeps.definition import sweep_reading
 
 HEAVY = ("sympy", "numpy", "scipy", "matplotlib")
 
@@ -121,7 +121,7 @@ def test_a_sweep_runs_by_file_and_as_an_object(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="did you mean 'flips'"):
         sweep("filps", tmp_path)
     path = tmp_path / "few.toml"
-    text = (reading.FILES / "flips.toml").read_text(encoding="utf-8")
+    text = (sweep_reading.FILES / "flips.toml").read_text(encoding="utf-8")
     path.write_text(text.replace("512", "8"), encoding="utf-8")
     by_file = sweep(path, tmp_path / "file")
     assert by_file.status.shape == (8, 8)

@@ -13,20 +13,20 @@ from folders import ROOT
 from snippets import assert_is_printed, run_snippet
 
 import generated.double_pendulum as dp
-from derive.codegen.generated_folder import Tree
-from derive.verification.documents.pages.table import document_record
+from derive.codegen.generated_folder import GeneratedFiles
+from derive.verification.documents.pages.verdict_table import document_record
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from derive.verification.hand import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.app.readme_tables import TABLES
-from solvers.scenes import reading as scenes
-from solvers.scenes.models import catalogue
-from solvers.scenes.reading import find as find_scene
-from solvers.scenes.run import run_scene
-from solvers.sweeps.definition import reading
-from solvers.sweeps.execution.run import sweep
+from solvers.scenes import scene_reading as scenes
+from solvers.scenes.models import model_catalogue
+from solvers.scenes.scene_reading import find as find_scene
+from solvers.scenes.scene_run import run_scene
+from solvers.sweeps.definition import sweep_reading
+from solvers.sweeps.execution.sweep_run import sweep
 
 READMES = [p for package in ("derive", "solvers") for p in sorted((ROOT / package).rglob("*.md"))]
 HOWTO = ROOT / "notebooks" / "docs" / "howto.md"
@@ -104,8 +104,8 @@ def copied_readmes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for path in READMES:
         (tmp_path / path.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, tmp_path / path.relative_to(ROOT))
-    generated = Tree(tmp_path, {}, complete=False)
-    monkeypatch.setattr("derive.commands.derive.planned", lambda *_: generated)
+    generated = GeneratedFiles(tmp_path, {}, complete=False)
+    monkeypatch.setattr("derive.commands.regenerate.planned", lambda *_: generated)
     monkeypatch.setattr("solvers.app.readme_tables.ROOT", tmp_path)
     return tmp_path
 
@@ -212,7 +212,7 @@ def test_the_keys_and_models_of_scenes_in_the_readme_are_those_of_the_code() -> 
     assert sorted(listed_keys(SCENES)) == sorted(scenes.KEYS)
     text = SCENES.read_text(encoding="utf-8").partition("| scene | model |\n|---|---|\n")[2]
     rows = re.findall(r"^\| (.*) \| (.*) \|$", text.partition("\n\n")[0], re.MULTILINE)
-    assert {model for _, model in rows} == {m.name for m in catalogue.load().values()}
+    assert {model for _, model in rows} == {m.name for m in model_catalogue.load().values()}
     for names, model in rows:
         for name in re.findall(r"`(\w+)`", names):
             assert run_scene(find_scene(name, load_module)).selection.model.name == model, name
@@ -231,17 +231,17 @@ def test_the_scene_file_of_the_readme_runs(tmp_path: Path) -> None:
 
 def test_the_keys_and_sweeps_of_the_readme_are_those_of_the_code() -> None:
     text = SWEEPS.read_text(encoding="utf-8")
-    assert sorted(listed_keys(SWEEPS)) == sorted(reading.KEYS)
+    assert sorted(listed_keys(SWEEPS)) == sorted(sweep_reading.KEYS)
     shipped = text.partition("sweeps ship: ")[2].partition(". Their")[0]
-    assert {*re.findall(r"`(\w+)`", shipped)} == {*reading.names()}
+    assert {*re.findall(r"`(\w+)`", shipped)} == {*sweep_reading.names()}
 
 
 def test_the_sweep_file_of_the_readme_runs(tmp_path: Path) -> None:
     file, *shipped = blocks(SWEEPS, "toml")
-    texts = {path.read_text(encoding="utf-8") for path in reading.FILES.iterdir()}
+    texts = {path.read_text(encoding="utf-8") for path in sweep_reading.FILES.iterdir()}
     assert texts.issuperset(shipped)
     (tmp_path / "my_sweep.toml").write_text(file)
-    definition = reading.find(str(tmp_path / "my_sweep.toml"), load_module)
+    definition = sweep_reading.find(str(tmp_path / "my_sweep.toml"), load_module)
     results = sweep(definition, tmp_path / "out")
     assert results.maps["highest"].shape == (50, 40, 1, 2)
     assert results.count == {"finished": 2000}

@@ -18,8 +18,8 @@ from solvers import load_sweep, sweep
 from solvers.app.cli import COMMANDS
 from solvers.app.modules import load as load_module
 from solvers.io.figures import png
-from solvers.scenes.reading import scene
-from solvers.scenes.run import run_scene
+from solvers.scenes.scene_reading import scene
+from solvers.scenes.scene_run import run_scene
 from solvers.sweeps.plots.figure import figure
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")

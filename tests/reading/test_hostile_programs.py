@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from derive.reading.programs.program import ProgramError
-from derive.reading.programs.reader import known_languages, read_program
+from derive.reading.programs.program_reader import known_languages, read_program
 from solvers.io.toml_input import InputError
 
 #: Text that can be slow in a grammar, and in what follows.

@@ -17,8 +17,8 @@ from latex_writing import written_trees
 from shared_documents import shared
 
 from derive.reading.documents import read_document
-from derive.reading.latex import reader
-from derive.reading.latex.reader import formulas, macros_of
+from derive.reading.latex import display_reader
+from derive.reading.latex.display_reader import formulas, macros_of
 from derive.reading.latex.tree import Node, Unreadable
 
 
@@ -231,7 +231,7 @@ def test_many_definitions_take_linear_work(piece: str) -> None:
 
 
 def test_without_the_parsing_library_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    reader._parser.cache_clear()
+    display_reader._parser.cache_clear()
     monkeypatch.setitem(sys.modules, "lark", None)
     with pytest.raises(OSError, match=r"pip install 'holonomic\[documents\]'"):
         formulas("x")

@@ -13,9 +13,9 @@ from derive import Derivation, load
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.reading.programs.findings.degrees import starts_in_degrees
 from derive.reading.programs.program import Finding, Program
-from derive.reading.programs.reader import read_program
-from derive.reading.programs.syntax.trees import Name, Number
-from derive.reading.programs.syntax.writing import cleaned
+from derive.reading.programs.program_reader import read_program
+from derive.reading.programs.syntax.formula_text import cleaned
+from derive.reading.programs.syntax.trees import Name, NumberLiteral
 
 
 @cache
@@ -388,7 +388,7 @@ def test_names_of_programs_become_identifiers(name: str, identifier: str) -> Non
 
 
 def test_a_start_in_degrees_is_found_through_names_of_names() -> None:
-    values = {"start": Name(2, "initial"), "initial": Number(1, "120")}
+    values = {"start": Name(2, "initial"), "initial": NumberLiteral(1, "120")}
     (found,) = starts_in_degrees("theta", Name(3, "start"), values, "main")
     assert "theta starts at 120" in found.text
     assert not [*starts_in_degrees("theta", Name(3, "other"), values, "main")]

@@ -24,7 +24,7 @@ from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.references.elliptic import jacobi, pendulum
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated
-from solvers.references.series import Series
+from solvers.references.power_series import PowerSeries
 from solvers.references.series_functions import series_functions
 from solvers.references.taylor import taylor
 
@@ -155,8 +155,8 @@ def test_a_reference_of_a_state_of_zeros_that_a_force_moves() -> None:
 
 @pytest.mark.parametrize("name", ELEMENTARY)
 def test_functions_of_series_have_the_coefficients_of_taylor(name: str) -> None:
-    tape: list[Series] = []
-    x = Series(tape, [])
+    tape: list[PowerSeries] = []
+    x = PowerSeries(tape, [])
     y = series_functions(tape)[name](1 + x * x / 3)
     order = 8
     with localcontext(prec=40), mp.workdps(40):

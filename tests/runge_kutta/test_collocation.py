@@ -6,7 +6,6 @@ from fractions import Fraction
 import pytest
 from numpy.polynomial.legendre import leggauss
 
-from solvers.runge_kutta.catalogue import load
 from solvers.runge_kutta.collocation import (
     collocation,
     gauss_nodes,
@@ -14,6 +13,7 @@ from solvers.runge_kutta.collocation import (
     quadrature_order,
     radau_nodes,
 )
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS, order
 from solvers.runge_kutta.tableau import Tableau
 

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from generated import coupled_pendulums
 from solvers import ensemble
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.step_control import GROW, SAFETY, SHRINK, Controller
 from solvers.runge_kutta.stepper import Stepper
 from solvers.runge_kutta.tableau import Tableau

@@ -16,7 +16,7 @@ from mpmath import log as mplog
 from mpmath import sin as mpsin
 
 from solvers.runge_kutta import methods
-from solvers.runge_kutta.catalogue import UnknownMethodError, load, names
+from solvers.runge_kutta.method_catalogue import UnknownMethodError, load, names
 from solvers.runge_kutta.order_conditions import density, order, trees
 from solvers.runge_kutta.stepper import Rhs, Stepper
 from solvers.runge_kutta.surd import Surd

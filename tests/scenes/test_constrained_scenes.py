@@ -10,13 +10,13 @@ import pytest
 from solvers.app.modules import load
 from solvers.integration.integrate import integrate
 from solvers.io.toml_input import InputError
-from solvers.scenes.reading import find
-from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
-from solvers.scenes.summary import figures, summary
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_run import run_scene
+from solvers.scenes.scene_summary import figures, summary
 from solvers.sweeps.definition.axes import Grid
-from solvers.sweeps.definition.checks import FROM_ENERGY
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.definition.sweep_checks import FROM_ENERGY
 from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.results import STATUSES

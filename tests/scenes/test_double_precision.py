@@ -16,10 +16,10 @@ from solvers.integration.accuracy.double_precision import sufficient
 from solvers.integration.accuracy.integration_run import IntegrationRun, NotAccurateError
 from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.references.taylor import taylor
-from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_summary import summary
 from solvers.scenes.selection import ModelSelection, motion_of, select_model
-from solvers.scenes.summary import summary
 
 #: The report's scene over 20 s, in which errors grow by seven orders of magnitude.
 LONG = Scene(dp, dp.DEFAULTS, (pi / 2, pi, 0, 0), 20.0, accuracy=1e-6)
@@ -122,7 +122,7 @@ def test_series_report_progress_and_stop_at_their_budget(monkeypatch: pytest.Mon
 
 
 def test_the_summary_names_compensated_sums() -> None:
-    from solvers.scenes.run import run_scene
+    from solvers.scenes.scene_run import run_scene
 
     result = run_scene(replace(find("report", load_module), accuracy=2e-13, beside=()))
     assert "verner98, rational form, rtol = 2e-15, compensated sums" in list(summary(result))[1]

@@ -10,16 +10,16 @@ import generated.driven_pendulum as driven
 import generated.single_pendulum as sp
 import generated.swinging_atwood as atwood
 from solvers.equations.energy import energy_unit, supplied_energy
+from solvers.integration.accuracy.checked_motion import Motion
 from solvers.integration.accuracy.integration_run import IntegrationRun
 from solvers.integration.accuracy.method_choice import SERIES, MethodChoice
-from solvers.integration.accuracy.motion import Motion
 from solvers.player.geometry import energy_errors, tracks
-from solvers.player.page import Page
-from solvers.player.plots import figure
+from solvers.player.motion_plots import figure
+from solvers.player.player_page import Page
 from solvers.scenes.output import write_files
-from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
-from solvers.scenes.summary import together
+from solvers.scenes.scene_run import run_scene
+from solvers.scenes.scene_summary import together
 
 DAMPED = driven.params(c=0.3)
 DRIVEN = Scene(driven, DAMPED, {"theta": 1.0}, 2.0, accuracy=1e-6)

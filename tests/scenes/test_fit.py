@@ -21,7 +21,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.scenes.fitting import least_squares as shooting_steps
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.measurement import Outputs
-from solvers.scenes.fitting.shooting import Shooting, segments
+from solvers.scenes.fitting.multiple_shooting import MultipleShooting, segments
 from solvers.scenes.fitting.statistics import leverages
 
 
@@ -159,7 +159,7 @@ def test_equations_that_depend_on_time_keep_their_clock() -> None:
 def test_arcs_have_the_derivatives_that_differences_have() -> None:
     params, node = np.array(dp.params(m2=0.6)), np.array([[0.4, 1.1, -0.3, 0.8]])
     parts = segments(0, np.linspace(0, 1, 5), [0])
-    shooting, h = Shooting(dp, [1, 4], parts), 1e-4
+    shooting, h = MultipleShooting(dp, [1, 4], parts), 1e-4
     arcs = shooting(node, params)
     for column in range(6):
         ends = []

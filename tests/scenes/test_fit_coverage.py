@@ -6,12 +6,12 @@ import pytest
 import generated.driven_pendulum as driven
 import generated.single_pendulum as single
 from solvers import fit, integrate
-from solvers.scenes.fitting.statistics import Interval
+from solvers.scenes.fitting.statistics import ConfidenceInterval
 
 T = np.arange(0, 3, 1 / 12)
 
 
-def fitted(t: np.ndarray, theta: np.ndarray) -> Interval:
+def fitted(t: np.ndarray, theta: np.ndarray) -> ConfidenceInterval:
     return fit(single, {"t": t, "theta": theta}, ["l"], params={"l": 0.65}).intervals["l"]
 
 

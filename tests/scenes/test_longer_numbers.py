@@ -20,11 +20,11 @@ from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended, kernel
 from solvers.references.taylor import taylor
-from solvers.scenes.reading import find
-from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_run import run_scene
+from solvers.scenes.scene_summary import figures, summary
 from solvers.scenes.selection import ModelSelection, motion_of, select_model
-from solvers.scenes.summary import figures, summary
 
 #: The report's start, and states of its motion by Taylor series of 70 digits.
 LONG = replace(find("long", load_module), beside=(), samples=201)

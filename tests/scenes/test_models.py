@@ -21,6 +21,7 @@ import generated.spherical_pendulum as spherical
 from solvers.app.modules import load as load_module
 from solvers.equations.linearisation.normal_modes import _generalized_eigh, mode_spread
 from solvers.integration.accuracy import checked_run, longer_numbers
+from solvers.integration.accuracy.checked_motion import Motion, OutsideDomainError
 from solvers.integration.accuracy.checked_run import estimated_error
 from solvers.integration.accuracy.double_precision import check_times
 from solvers.integration.accuracy.integration_run import (
@@ -29,21 +30,20 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import RECORD, MethodChoice, cheapest, usual_form
-from solvers.integration.accuracy.motion import Motion, OutsideDomainError
-from solvers.integration.accuracy.series import by_series
+from solvers.integration.accuracy.taylor_motion import by_series
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
-from solvers.scenes.models import equilibrium, normal_modes, quadrature
-from solvers.scenes.models.catalogue import closed_forms, load
+from solvers.scenes.models import equilibrium, modal_motion, quadrature
 from solvers.scenes.models.equilibrium import Equilibrium, _exponentials
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
-from solvers.scenes.models.normal_modes import NormalModes
+from solvers.scenes.models.modal_motion import NormalModes
+from solvers.scenes.models.model_catalogue import closed_forms, load
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 from solvers.scenes.models.pendulum import Pendulum
 from solvers.scenes.models.quadrature import Orbit, Quadrature, orbit
-from solvers.scenes.reading import find
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_reading import find
 from solvers.scenes.selection import ModelSelection, select_model
 
 Array = np.ndarray
@@ -426,7 +426,7 @@ def test_without_their_propagation_errors_would_be_underestimated(
 ) -> None:
     # without the propagation of the defect the normal modes would claim too much
     motion = motion_from(dp, (0.005, -0.002, 0, 0), 20.0)
-    monkeypatch.setattr(normal_modes, "MARGIN", 0.0)
+    monkeypatch.setattr(modal_motion, "MARGIN", 0.0)
     assert NormalModes.of(motion).error_estimate < largest_error(motion, NormalModes.of(motion))
     motion = motion_from(sp, (pi, 0.0), 14)
     monkeypatch.setattr(

@@ -21,21 +21,21 @@ import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.equations.energy import EnergyUnit
 from solvers.io.figures import panels
-from solvers.player import plots as scene_plots
+from solvers.player import motion_plots as scene_plots
 from solvers.player.geometry import mass_positions, projected
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
-from solvers.scenes.reading import find
-from solvers.scenes.run import SceneResult, run_scene
 from solvers.scenes.scene import Scene
-from solvers.scenes.summary import together
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_run import SceneResult, run_scene
+from solvers.scenes.scene_summary import together
 from solvers.studies.stability.critical_step import CriticalStep
-from solvers.studies.stability.plots import boundaries, regions
-from solvers.studies.work_precision import plots as chart_plots
-from solvers.studies.work_precision.curve import Curve, Point
+from solvers.studies.stability.stability_plots import boundaries, regions
+from solvers.studies.work_precision import work_precision_plots as chart_plots
+from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun
 from solvers.sweeps.definition.axes import Grid, Random
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.sweep_run import sweep
 from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
@@ -44,7 +44,7 @@ from solvers.sweeps.maps.samples import Samples
 from solvers.sweeps.maps.section import Section
 from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.plots.panels import CURVES, MARKED
-from solvers.sweeps.plots.quantity import add_colour_bar, wrapped
+from solvers.sweeps.plots.plot_quantity import add_colour_bar, wrapped
 
 PI = np.pi
 
@@ -310,10 +310,11 @@ def test_few_values_have_pixels_around_them(
     assert np.allclose(one_panel(chart).images[0].get_extent(), [0.05, 0.25, *extent])
 
 
-def curve(method: str, form: str, backend: str, name: str = "h") -> Curve:
+def curve(method: str, form: str, backend: str, name: str = "h") -> CostCurve:
     settings = (0.1, 0.01, 0.001)
-    return Curve("s", method, form, backend, [
-        Point({name: h}, 1 / h, int(100 / h), h**2 + len(method) * 1e-9, h**3) for h in settings
+    return CostCurve("s", method, form, backend, [
+        MeasuredRun({name: h}, 1 / h, int(100 / h), h**2 + len(method) * 1e-9, h**3)
+        for h in settings
     ])  # fmt: skip
 
 
@@ -332,7 +333,7 @@ def test_work_precision_diagrams_show_the_runs_of_each_curve() -> None:
     chart = chart_plots.work_precision("title", [fast, slow, ours, python, peer])
     seconds, calls, choices, peers = chart.axes
 
-    def costs(one: Curve, work: str) -> list[list[float]]:
+    def costs(one: CostCurve, work: str) -> list[list[float]]:
         return [[getattr(p, work), p.global_error] for p in one.points]
 
     fastest = {"rk4": fast, "verner853": ours}

@@ -11,7 +11,7 @@ import generated.swinging_atwood as atwood
 from derive import Coordinate, Parameter, PointMass, System
 from solvers.app.modules import build
 from solvers.app.modules import load as load_module
-from solvers.integration.accuracy.motion import Motion, OutsideDomainError
+from solvers.integration.accuracy.checked_motion import Motion, OutsideDomainError
 from solvers.references.taylor import taylor
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 from solvers.scenes.models.quadrature import Quadrature

@@ -22,14 +22,14 @@ from solvers.app.commands.options import selected_scenes
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.equations.module import equations_of_motion
-from solvers.io.notation import symbol
+from solvers.io.figure_names import symbol
 from solvers.player.geometry import ELEVATION, projected, tracks
-from solvers.player.plots import _labelled, default_pictures, figure
+from solvers.player.motion_plots import _labelled, default_pictures, figure
 from solvers.references.taylor import taylor
 from solvers.scenes.output import file_names
-from solvers.scenes.reading import find
-from solvers.scenes.run import run_scene
-from solvers.scenes.summary import summary, table, together
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_run import run_scene
+from solvers.scenes.scene_summary import summary, table, together
 
 KEYS = {"model", "method", "form", "final_state", "requested_accuracy", "error_estimate", "why"}
 

@@ -12,12 +12,12 @@ from random_motions import SYSTEMS, TIGHTER, error_of, random_scene
 import generated.chain_3 as chain
 import generated.double_pendulum as dp
 from solvers.equations.module import GeneratedModule
+from solvers.integration.accuracy.checked_motion import Motion
 from solvers.integration.accuracy.integration_run import (
     EndsEarlyError,
     NotAccurateError,
     TooLongError,
 )
-from solvers.integration.accuracy.motion import Motion
 from solvers.scenes.models.light_masses import PendulumAndLightMasses
 from solvers.scenes.selection import motion_of, select_model
 

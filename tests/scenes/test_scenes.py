@@ -16,9 +16,9 @@ from solvers.app.scenes import load_sweep
 from solvers.equations.singularities.mass_matrix import MassMatrixWarning
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.toml_input import InputError
-from solvers.scenes.reading import find, names, read, scene
-from solvers.scenes.run import run_scene
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_reading import find, names, read, scene
+from solvers.scenes.scene_run import run_scene
 
 PLAIN = {"system": "double_pendulum", "duration": 5, "initial": {"theta1": 1, "theta2": 2}}
 

@@ -23,19 +23,19 @@ from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form, fastest_form
 from solvers.integration.timing import TimedRun, timed_run, work_at
 from solvers.io.figures import save
-from solvers.runge_kutta.catalogue import SCIPY, load
-from solvers.scenes.reading import find
+from solvers.runge_kutta.method_catalogue import SCIPY, load
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_reading import find
 from solvers.studies import heyoka
-from solvers.studies.work_precision import measurement, peers, plots
-from solvers.studies.work_precision.curve import Curve, Point, frontier
-from solvers.studies.work_precision.findings import (
+from solvers.studies.work_precision import measured_curves, peers, work_precision_plots
+from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier
+from solvers.studies.work_precision.curve_findings import (
     RoundingLimit,
     misleading_energy,
     rounding_limits,
     wrong_above,
 )
-from solvers.studies.work_precision.measurement import combinations, curves
+from solvers.studies.work_precision.measured_curves import combinations, curves
 from solvers.studies.work_precision.reference import Reference
 from solvers.studies.work_precision.scene_curves import SceneCurves, record
 
@@ -44,11 +44,11 @@ REPORT = find("report", load_module)
 
 @pytest.fixture(autouse=True)
 def few_settings(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 9))
-    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(12))
+    monkeypatch.setattr(measured_curves, "TOLERANCES", 10.0 ** -np.arange(1, 9))
+    monkeypatch.setattr(measured_curves, "STEPS", 10 * 2 ** np.arange(12))
     # the runs must not depend on the speed of the machine
-    monkeypatch.setattr(measurement, "LONGEST", dict.fromkeys(measurement.LONGEST, inf))
-    monkeypatch.setattr(measurement, "LONGEST_REPORT", inf)
+    monkeypatch.setattr(measured_curves, "LONGEST", dict.fromkeys(measured_curves.LONGEST, inf))
+    monkeypatch.setattr(measured_curves, "LONGEST_REPORT", inf)
 
 
 @pytest.fixture(scope="module")
@@ -61,12 +61,12 @@ def long_truth(shared: Shared) -> Reference:
     return shared("reference_long", lambda: Reference.of(find("long", load_module)))
 
 
-def point(seconds: float, error: float, energy: float = 1.0) -> Point:
-    return Point({"rtol": error}, seconds, int(seconds * 100), error, energy)
+def point(seconds: float, error: float, energy: float = 1.0) -> MeasuredRun:
+    return MeasuredRun({"rtol": error}, seconds, int(seconds * 100), error, energy)
 
 
-def curve(method: str, form: str, backend: str, *points: Point) -> Curve:
-    return Curve("scene", method, form, backend, list(points))
+def curve(method: str, form: str, backend: str, *points: MeasuredRun) -> CostCurve:
+    return CostCurve("scene", method, form, backend, list(points))
 
 
 def agrees(found: Reference, least: float) -> bool:
@@ -159,7 +159,7 @@ def test_every_method_form_and_backend_is_charted() -> None:
 
 
 def test_runs_with_a_large_error_are_left_out(truth: Reference) -> None:
-    point_of = partial(measurement.point, find("report", load_module), truth)
+    point_of = partial(measured_curves.point, find("report", load_module), truth)
     options = {"method": "rk4", "form": "lagrangian", "backend": "compiled"}
     run = timed_run(dp, dp.DEFAULTS, REPORT.y0, 5.0, h=0.1, **options)
     assert run
@@ -210,8 +210,8 @@ def test_the_frontier_contains_the_cheapest_and_the_cost_of_alternatives() -> No
 
 
 def test_shorter_steps_are_better_until_rounding_dominates() -> None:
-    def rk4(h: float) -> Point:
-        return Point({"h": h}, 1 / h, int(1 / h), h**4 + 1e-16 / h, 1.0)
+    def rk4(h: float) -> MeasuredRun:
+        return MeasuredRun({"h": h}, 1 / h, int(1 / h), h**4 + 1e-16 / h, 1.0)
 
     steps = 2.0 ** -np.arange(2, 18)
     (found,) = rounding_limits([curve("rk4", "lagrangian", "compiled", *map(rk4, steps))])
@@ -219,7 +219,7 @@ def test_shorter_steps_are_better_until_rounding_dominates() -> None:
     assert found.h == pytest.approx((1e-16 / 4) ** (1 / 5), rel=0.5)
     assert found.finest_error > 10 * found.global_error
     # Euler's method, whose error does not fall yet
-    flat = [Point({"h": h}, 1 / h, int(1 / h), 1.0, 1.0) for h in steps]
+    flat = [MeasuredRun({"h": h}, 1 / h, int(1 / h), 1.0, 1.0) for h in steps]
     (none,) = rounding_limits([curve("rk1", "lagrangian", "compiled", *flat)])
     assert isnan(none.order)
 
@@ -235,7 +235,7 @@ def test_a_rounding_limit_says_where_rounding_begins() -> None:
 def test_in_the_report_s_scene_rounding_limits_rk4(
     truth: Reference, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(19))
+    monkeypatch.setattr(measured_curves, "STEPS", 10 * 2 ** np.arange(19))
     found = curves(find("report", load_module), truth, [("rk4", "lagrangian", "compiled")])
     (limit,) = rounding_limits(found)
     assert limit.order == pytest.approx(load("rk4").order, abs=0.3)
@@ -248,7 +248,7 @@ def test_in_the_report_s_scene_rounding_limits_rk4(
 def test_a_small_energy_error_can_be_misleading(
     long_truth: Reference, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(measurement, "TOLERANCES", 10.0 ** -np.arange(1, 14))
+    monkeypatch.setattr(measured_curves, "TOLERANCES", 10.0 ** -np.arange(1, 14))
     one = find("long", load_module)
     wanted = [("gauss2", "hamiltonian", "compiled"), ("verner98", "rational", "compiled")]
     found = curves(one, long_truth, wanted)
@@ -298,8 +298,8 @@ def test_installed_programs_have_curves(truth: Reference) -> None:
 def test_energy_that_a_force_changes_is_not_misleading() -> None:
     driven = load_module("driven_pendulum")
     scene = Scene(driven, driven.DEFAULTS, (1.0, 0.0), 1e-6)
-    assert measurement.unit_of_energy(scene).is_relative
-    wrong = Curve("s", "dop853", "lagrangian", "compiled", [point(1.0, 1e-3, 0.0)])
+    assert measured_curves.unit_of_energy(scene).is_relative
+    wrong = CostCurve("s", "dop853", "lagrangian", "compiled", [point(1.0, 1e-3, 0.0)])
     wrong = replace(wrong, points=[replace(wrong.points[0], global_error=1.0)])
     truth = Reference(np.array(scene.y0), 1e-15, {})
     assert misleading_energy([wrong], scene, truth) is None
@@ -355,13 +355,13 @@ def test_a_curve_ends_where_the_next_run_would_take_too_long(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     limits = {"compiled": 0.02, "python": 0.1, "scipy": 0.1}
-    monkeypatch.setattr(measurement, "LONGEST", limits)
-    monkeypatch.setattr(measurement, "LONGEST_REPORT", 0.5)
+    monkeypatch.setattr(measured_curves, "LONGEST", limits)
+    monkeypatch.setattr(measured_curves, "LONGEST_REPORT", 0.5)
 
     def run(*_: object, h: float, **__: object) -> TimedRun:
         return TimedRun(1e-3 / h, 1, 1, truth.end)  # proportional to the number of steps
 
-    monkeypatch.setattr(measurement, "timed_run", run)
+    monkeypatch.setattr(measured_curves, "timed_run", run)
     (one,) = curves(REPORT, truth, [combination])
     *_, before, last = (p.work_seconds for p in one.points)
     assert before == last / 2 <= longest / 2 < last <= longest
@@ -437,7 +437,7 @@ def test_a_program_that_fails_loses_no_other_curve(
 
     programs = {"broken": fails_at_once, "partly": fails_later, "good": right}
     monkeypatch.setattr(peers, "PEERS", programs)
-    monkeypatch.setattr("solvers.studies.work_precision.plots.PEERS", programs)
+    monkeypatch.setattr("solvers.studies.work_precision.work_precision_plots.PEERS", programs)
     one = find("report", load_module)
     broken, first, second, good = peers.curves(one, truth, ModuleType)
     assert broken.failure == "AttributeError: no attribute 'STATE_RATIONAL'"
@@ -468,7 +468,7 @@ def test_systems_of_every_kind_are_charted(
 ) -> None:
     # driven, without an angle, the state of the single pendulum, no known equilibrium
     wanted = [("dop853", "lagrangian", "compiled"), ("gauss2", "hamiltonian", "compiled")]
-    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(measured_curves, "combinations", lambda _: wanted)
     monkeypatch.setattr(peers, "PEERS", {})
     path = tmp_path / f"{system}.toml"
     path.write_text(f"system = '{system}'\nduration = '0.2 s'\n[initial]\n{SCENES[system]}\n")
@@ -486,7 +486,9 @@ def test_systems_of_every_kind_are_charted(
     unit = "J" if system in ("swinging_atwood", "rotating_hoop") else "energy above rest"
     assert found["energy_error_units"] == {system: unit}
     runs = [curve("dop853", "lagrangian", "compiled", point(1.0, 1e-3))]
-    figure = plots.energy("", runs, 0.1, measurement.unit_of_energy(find(str(path), load_module)))
+    figure = work_precision_plots.energy(
+        "", runs, 0.1, measured_curves.unit_of_energy(find(str(path), load_module))
+    )
     assert figure.axes[0].get_xlabel() == f"energy error at the end / {unit}"
 
 
@@ -527,8 +529,8 @@ def test_the_calls_of_numba_s_loop_are_no_finding(truth: Reference) -> None:
 def test_a_record_measures_compiled_loops_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     wanted = [("rk4", "lagrangian", backend) for backend in ("compiled", "python")]
     other = curve("taylor", "lagrangian", "heyoka", point(1.0, 1e-3))
-    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
-    monkeypatch.setattr(measurement, "STEPS", 10 * 2 ** np.arange(6))
+    monkeypatch.setattr(measured_curves, "combinations", lambda _: wanted)
+    monkeypatch.setattr(measured_curves, "STEPS", 10 * 2 ** np.arange(6))
     monkeypatch.setattr(peers, "curves", lambda *_: [other])
     single = load_module("single_pendulum")
     scene = Scene(single, single.DEFAULTS, (1.0, 0.0), 0.2)
@@ -546,7 +548,7 @@ def test_the_command_prints_curves_reference_and_frontier(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner853", "rational", "compiled")]
-    monkeypatch.setattr(measurement, "combinations", lambda _: wanted)
+    monkeypatch.setattr(measured_curves, "combinations", lambda _: wanted)
     monkeypatch.setattr(peers, "PEERS", {})
     assert main(["chart", "report", "single", "--json", "--output", str(tmp_path)]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -575,7 +577,9 @@ def test_the_command_prints_curves_reference_and_frontier(
 def test_a_scene_that_fails_loses_no_other(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(measurement, "combinations", lambda _: [("rk4", "lagrangian", "compiled")])
+    monkeypatch.setattr(
+        measured_curves, "combinations", lambda _: [("rk4", "lagrangian", "compiled")]
+    )
     monkeypatch.setattr(peers, "PEERS", {})
     reference = Reference.of
 

@@ -16,7 +16,7 @@ from solvers.studies.failure_modes import oscillation, separatrix, singular, sti
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, ChaosResults, statistics
 from solvers.studies.failure_modes.drift import CASES, EnergyDrift
 from solvers.studies.failure_modes.horizon import horizon, reference_motion
-from solvers.studies.failure_modes.lyapunov import INDEPENDENT, Mean, lyapunov
+from solvers.studies.failure_modes.largest_exponent import INDEPENDENT, Mean, lyapunov
 from solvers.studies.failure_modes.study import studies
 
 

@@ -18,7 +18,7 @@ from solvers.app.cli import main
 from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Stepper
 from solvers.runge_kutta.sturm import nonnegative_interval
@@ -27,7 +27,7 @@ from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability import critical_step as critical_step_module
 from solvers.studies.stability import scene_stability
 from solvers.studies.stability.critical_step import CriticalStep, critical_step, limit
-from solvers.studies.stability.plots import boundaries
+from solvers.studies.stability.stability_plots import boundaries
 
 F = Fraction
 

@@ -15,8 +15,8 @@ from solvers.app.modules import load as load_module
 from solvers.sweeps.attractors import Attractor, classify
 from solvers.sweeps.execution import worker
 from solvers.sweeps.plots.figure import figure
-from solvers.sweeps.plots.quantity import Quantity
-from solvers.sweeps.summary import summary
+from solvers.sweeps.plots.plot_quantity import Quantity
+from solvers.sweeps.sweep_summary import summary
 
 WELLS = """
 potential = "x**4/4 - x**2/2"

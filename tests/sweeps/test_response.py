@@ -13,7 +13,7 @@ import generated.duffing as duffing
 from solvers import Extremes, Grid, Pool, Random, Response, Results, Sweep, partial_results, sweep
 from solvers.sweeps.execution import worker
 from solvers.sweeps.plots.figure import figure
-from solvers.sweeps.summary import summary
+from solvers.sweeps.sweep_summary import summary
 
 PERIOD = "2*pi/Omega"
 ONE = Response(("x",), "Omega", PERIOD, 50)

@@ -15,7 +15,7 @@ import generated.single_pendulum as sp
 from solvers import Extremes, Final, Grid, Lyapunov, Samples, Section, Sweep, sweep
 from solvers.app.modules import load as load_module
 from solvers.io.quantity import QuantityError, formula
-from solvers.sweeps.definition.reading import find
+from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import worker
 from solvers.sweeps.maps.stroboscopic import Stroboscopic
 from solvers.sweeps.plots.figure import figure

@@ -22,10 +22,10 @@ from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.loops import compiled_loop
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution import arithmetic, worker
-from solvers.sweeps.execution.arithmetic import OtherArithmeticError
+from solvers.sweeps.execution import process_arithmetic, worker
 from solvers.sweeps.execution.pool import Pool
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.process_arithmetic import OtherArithmeticError
+from solvers.sweeps.execution.sweep_run import sweep
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 
@@ -44,13 +44,13 @@ def some_chunks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(worker, "COST", 1e-7)
     another_process(monkeypatch)
     yield
-    arithmetic._reproduced.clear()
+    process_arithmetic._reproduced.clear()
 
 
 def another_process(patch: pytest.MonkeyPatch) -> None:
     """Forget kernels and samples, as if this were another process."""
     patch.setattr(compiled_loop, "kernel", cache(Kernel))
-    arithmetic._reproduced.clear()
+    process_arithmetic._reproduced.clear()
 
 
 def in_python(patch: pytest.MonkeyPatch) -> None:
@@ -58,7 +58,7 @@ def in_python(patch: pytest.MonkeyPatch) -> None:
         raise NoCompilerError("no C compiler")
 
     patch.setattr(compiled_loop, "loop", no_loop)
-    arithmetic._reproduced.clear()
+    process_arithmetic._reproduced.clear()
 
 
 def for_processor(name: str) -> Change:
@@ -145,20 +145,20 @@ def test_a_worker_with_other_arithmetic_is_refused(
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="needs an x86 processor")
 def test_the_width_of_vectors_changes_no_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     sample = DEFINITION.axes.columns(0, DEFINITION.motions)
-    own = arithmetic.arithmetic(DEFINITION, sample)
+    own = process_arithmetic.arithmetic(DEFINITION, sample)
     if own["loop"] != "compiled with fused products":
         pytest.skip("needs a processor with fused products")
     for_processor("haswell")(monkeypatch)  # 256 bits; processors with AVX-512 have 512
-    assert arithmetic.arithmetic(DEFINITION, sample) == own
+    assert process_arithmetic.arithmetic(DEFINITION, sample) == own
     for_processor("x86-64")(monkeypatch)  # 128 bits, and no fused products
-    assert arithmetic.arithmetic(DEFINITION, sample)["digest"] != own["digest"]
+    assert process_arithmetic.arithmetic(DEFINITION, sample)["digest"] != own["digest"]
 
 
 def test_a_library_that_rounds_a_sine_differently_has_other_arithmetic() -> None:
     code = """if True:
         import hashlib, numpy as np
         import generated.henon_heiles as hh  # its motions need no sine
-        from solvers.sweeps.execution import arithmetic
+        from solvers.sweeps.execution import process_arithmetic
         from solvers.sweeps.definition.axes import Grid
         from solvers.sweeps.maps.final import Final
         from solvers.sweeps.definition.sweep import Sweep

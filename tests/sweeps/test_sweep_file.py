@@ -9,7 +9,7 @@ from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
 from solvers.sweeps.definition.axes import Random
-from solvers.sweeps.definition.reading import find
+from solvers.sweeps.definition.sweep_reading import find
 
 
 @pytest.mark.parametrize(("change", "words"), [

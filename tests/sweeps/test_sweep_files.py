@@ -16,11 +16,11 @@ import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
 from solvers.sweeps.definition.axes import Grid
-from solvers.sweeps.definition.reading import find
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import worker
 from solvers.sweeps.execution.folder import DIGITS, FORMAT, FolderError
-from solvers.sweeps.execution.run import partial_results, sweep
+from solvers.sweeps.execution.sweep_run import partial_results, sweep
 from solvers.sweeps.maps.final import Final
 
 ANGLES = np.linspace(-3, 3, 8)

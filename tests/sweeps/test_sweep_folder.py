@@ -26,12 +26,12 @@ from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.sweeps.definition.axes import Grid, Random
-from solvers.sweeps.definition.reading import find
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import pool, worker
 from solvers.sweeps.execution.folder import Folder, FolderError
 from solvers.sweeps.execution.pool import LostWorkersError, Pool
-from solvers.sweeps.execution.run import partial_results, sweep
+from solvers.sweeps.execution.sweep_run import partial_results, sweep
 from solvers.sweeps.execution.worker import run_chunk
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First

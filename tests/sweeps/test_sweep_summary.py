@@ -18,7 +18,7 @@ from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 from solvers.sweeps.results import STATUSES, Results
-from solvers.sweeps.summary import as_json, ranges, summary
+from solvers.sweeps.sweep_summary import as_json, ranges, summary
 
 PI = np.pi
 FLIP = {"theta1": (-PI, PI), "theta2": (-PI, PI)}

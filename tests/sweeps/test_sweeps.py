@@ -23,10 +23,10 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.sweeps.definition.axes import BLOCK, Grid, Random, Table
-from solvers.sweeps.definition.reading import find, names
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.definition.sweep_reading import find, names
 from solvers.sweeps.execution.pool import Pool
-from solvers.sweeps.execution.run import sweep
+from solvers.sweeps.execution.sweep_run import sweep
 from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final

@@ -27,7 +27,7 @@ from derive import (
     rotations,
     velocity,
 )
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
 from derive.mechanics.quasi_velocities import QuasiVelocities
 from derive.mechanics.reduced_coordinates import reduced
 from derive.system.parts import SystemDefinitionError

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from derive import Derivation, load
-from derive.codegen.functions import contents
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
+from derive.codegen.module_functions import contents
 
 
 @pytest.mark.parametrize(("n", "operations"), [(1, 5), (2, 32), (3, 91), (4, 170)])

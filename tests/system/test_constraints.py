@@ -39,7 +39,7 @@ from holonomic import build, ensemble, integrate
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.references.elliptic import pendulum
-from solvers.runge_kutta.catalogue import SCIPY
+from solvers.runge_kutta.method_catalogue import SCIPY
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from numpy.testing import assert_allclose
 import generated.double_pendulum as dp
 from derive import TIME, Derivation, PointMass, load
 from derive.codegen.elimination.factorisation import LARGE
-from derive.codegen.functions import contents
-from derive.codegen.writing import files
+from derive.codegen.module_files import files
+from derive.codegen.module_functions import contents
 from holonomic import build
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form

@@ -18,7 +18,7 @@ import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 import generated.swinging_atwood as atwood
 from derive import Derivation, load
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
 from solvers.integration.integrate import integrate
 
 G = 9.81

@@ -29,15 +29,15 @@ from derive import (
     rotations,
     with_inputs,
 )
-from derive.codegen.writing import texts
+from derive.codegen.module_files import texts
 from derive.system.links.link import Link
 from derive.system.parts import SystemDefinitionError
 from solvers import Scene, build, run_scene
 from solvers.equations.module import links
 from solvers.player.geometry import tracks
-from solvers.player.plots import figure
+from solvers.player.motion_plots import figure
 from solvers.player.shapes import outline
-from solvers.scenes.summary import together
+from solvers.scenes.scene_summary import together
 
 x, theta, s = symbols("x theta s", real=True)
 l, m, g = symbols("l m g", positive=True)  # noqa: E741

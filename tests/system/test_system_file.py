@@ -10,17 +10,17 @@ from counting import counted_calls
 from valid_files import BEAD
 
 from derive import Constraint, Coordinate, Derivation, Parameter, PointMass, RigidBody, System, load
-from derive.codegen.expression_graph.translation import NAMES
-from derive.commands.derive import main
+from derive.codegen.expression_graph.sympy_translation import NAMES
+from derive.commands.regenerate import main
 from derive.system.files.system_file import read_system
 from derive.system.parts import SystemDefinitionError
 from solvers.app.cli import main as holonomic
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.player.geometry import energy_errors
-from solvers.scenes.reading import find
-from solvers.scenes.run import run_scene
-from solvers.scenes.summary import together
+from solvers.scenes.scene_reading import find
+from solvers.scenes.scene_run import run_scene
+from solvers.scenes.scene_summary import together
 
 PENDULUM = """
 [coordinates]

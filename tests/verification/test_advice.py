@@ -18,14 +18,14 @@ from derive.reading.documents import read_document
 from derive.verification.corrections.advice import MAX_LENGTH
 from derive.verification.documents.judgement import judge_document
 from derive.verification.hand import judge
-from derive.verification.model import Model
-from derive.verification.quantities import judge_formula
+from derive.verification.quantity_verdicts import judge_formula
+from derive.verification.reference_system import ReferenceSystem
 from derive.verification.verdict import Verdict
 
 
 @cache
-def model(name: str) -> Model:
-    return Model(Derivation(load(name)), {})
+def model(name: str) -> ReferenceSystem:
+    return ReferenceSystem(Derivation(load(name)), {})
 
 
 def judged(system: str, kind: str, key: str, text: str) -> Verdict:

@@ -12,11 +12,11 @@ import pytest
 
 from derive.reading.document import Document
 from derive.reading.documents import read_document
-from derive.reading.latex.reader import macros_of
+from derive.reading.latex.display_reader import macros_of
 from derive.verification.documents.pages.annotation import annotate, check_annotation
 from derive.verification.documents.pages.latex_notes import latex_notes
 from derive.verification.documents.pages.latex_text import escaped, formula
-from derive.verification.documents.pages.page import page
+from derive.verification.documents.pages.verdict_page import page
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from solvers.io.toml_input import InputError
 

@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import pytest
 
-from derive.system.catalogue import load
-from derive.verification.documents.letters.candidates import Candidate, candidates, loads
+from derive.system.system_catalogue import load
+from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.numbers.matching import Match
 from derive.verification.documents.text import order, stem
 
-USUAL = Candidate(load("single_pendulum"), ("phi",), ((1,),), (0,), {"m": "m", "l": "l", "g": "g"})
+USUAL = SystemCandidate(
+    load("single_pendulum"), ("phi",), ((1,),), (0,), {"m": "m", "l": "l", "g": "g"}
+)
 UPRIGHT = replace(USUAL, offsets=(2,))
 MIRRORED = replace(USUAL, signs=((-1,),))
 LETTERS = Letters(("phi",), {}, {}, ("a", "g", "m", "F", "c"), ("phi",), {}, ("phi",))

@@ -6,7 +6,7 @@ import pytest
 
 from derive.reading.document import Document
 from derive.reading.documents import read_document
-from derive.reading.latex.reader import formulas
+from derive.reading.latex.display_reader import formulas
 from derive.verification.documents import judgement
 from derive.verification.documents.interpretation import Work
 from derive.verification.documents.judgement import judge_document

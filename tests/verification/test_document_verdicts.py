@@ -12,7 +12,7 @@ from shared_documents import shared
 
 from derive.reading.documents import read_document
 from derive.verification.documents.letters.hints import hints
-from derive.verification.documents.pages.page import page
+from derive.verification.documents.pages.verdict_page import page
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.files import judge_file
 from solvers.io.toml_input import InputError

@@ -15,12 +15,12 @@ from damage import toml
 from mutation import Mutation
 
 from derive import Derivation, load, names
-from derive.system.catalogue import published
 from derive.system.shipped import large_names
-from derive.verification import hand, quantities
+from derive.system.system_catalogue import published
+from derive.verification import hand, quantity_verdicts
 from derive.verification.hand import EQUATIONS, HEADER, judge
-from derive.verification.model import Model
-from derive.verification.quantities import judge_formula
+from derive.verification.quantity_verdicts import judge_formula
+from derive.verification.reference_system import ReferenceSystem
 from derive.verification.verdict import Verdict
 from solvers.app.cli import main
 from solvers.io.toml_input import InputError
@@ -51,7 +51,7 @@ QUICK = [name for name in names() if name not in SLOW]
 @pytest.fixture
 def without_advice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Verdicts without corrections, which have tests of their own; files share a derivation."""
-    monkeypatch.setattr(quantities, "advised", lambda verdict, *_: verdict)
+    monkeypatch.setattr(quantity_verdicts, "advised", lambda verdict, *_: verdict)
     for name in ("load", "Derivation"):
         monkeypatch.setattr(hand, name, cache(getattr(hand, name)))
 
@@ -93,7 +93,7 @@ def _alone(original: str, printed: str, changed: str) -> dict[str, Any]:
 
 def test_correct_accelerations_are_verified_in_any_form() -> None:
     system = load("double_pendulum")
-    model = Model(Derivation(system), {"D": system.q[0] - system.q[1]})
+    model = ReferenceSystem(Derivation(system), {"D": system.q[0] - system.q[1]})
     for text in (
         "(-g*(2*m1 + m2)*sin(theta1) - m2*g*sin(theta1 - 2*theta2) - 2*sin(D)*m2"
         "*(theta2_dot**2*l2 + theta1_dot**2*l1*cos(D)))/(l1*(2*m1 + m2 - m2*cos(2*D)))",
@@ -170,7 +170,7 @@ def test_invalid_files_are_rejected(text: str, words: str, tmp_path: Path) -> No
     ("hamiltonian", "m*l**2*theta_dot**2/2 - m*g*l*cos(theta)", "unreadable"),
 ])  # fmt: skip
 def test_misleading_equations_are_judged_correctly(kind: str, text: str, verdict: str) -> None:
-    model = Model(Derivation(load("single_pendulum")), {})
+    model = ReferenceSystem(Derivation(load("single_pendulum")), {})
     assert judge_formula(model, "", text, kind, "theta").verdict == verdict
 
 
@@ -186,7 +186,7 @@ def test_keys_can_use_the_names_of_the_source(tmp_path: Path) -> None:
 
 
 def test_the_sum_of_energies_is_accepted_as_energy_although_it_is_not_conserved() -> None:
-    model = Model(Derivation(load("rotating_hoop")), {})
+    model = ReferenceSystem(Derivation(load("rotating_hoop")), {})
     total = "m*R**2/2*(theta_dot**2 + Omega**2*sin(theta)**2) - m*g*R*cos(theta)"
     result = judge_formula(model, "", total, "energy")
     assert result.verdict == "verified"

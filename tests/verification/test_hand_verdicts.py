@@ -7,8 +7,8 @@ import pytest
 from derive import Derivation, load
 from derive.verification.engine import IN_NUMBERS, UNDECIDED
 from derive.verification.hand import judge
-from derive.verification.model import Model
-from derive.verification.quantities import judge_formula
+from derive.verification.quantity_verdicts import judge_formula
+from derive.verification.reference_system import ReferenceSystem
 from derive.verification.verdict import Verdict
 
 SYSTEMS = {
@@ -150,7 +150,7 @@ def test_roots_of_squares_are_wrong_where_the_sign_is_free(
     kind: str, text: str, tmp_path: Path
 ) -> None:
     (tmp_path / "unstable.toml").write_text(SYSTEMS["unstable"])
-    model = Model(Derivation(load(tmp_path / "unstable.toml")), {})
+    model = ReferenceSystem(Derivation(load(tmp_path / "unstable.toml")), {})
     result = judge_formula(model, "", text, kind, "x")
     assert result.verdict == "wrong"
     printed, derived = result.witness.split(" instead of ")
@@ -199,7 +199,7 @@ def test_formulas_that_switch_where_the_system_does_not_are_not_verified_in_numb
     ],
 )
 def test_the_witness_is_beyond_the_switch_of_the_printed_formula(kind: str, text: str) -> None:
-    result = judge_formula(Model(Derivation(load("single_pendulum")), {}), "", text, kind)
+    result = judge_formula(ReferenceSystem(Derivation(load("single_pendulum")), {}), "", text, kind)
     assert result.verdict == "wrong"
     printed, derived = result.witness.split(" instead of ")
     assert printed != derived
@@ -288,7 +288,7 @@ def test_quantities_can_follow_from_the_equivalent_lagrangian_of_the_source(
     ],
 )
 def test_a_lagrangian_can_be_divided_by_a_constant(text: str, verdict: str) -> None:
-    model = Model(Derivation(load("single_pendulum")), {})
+    model = ReferenceSystem(Derivation(load("single_pendulum")), {})
     assert judge_formula(model, "", text, "lagrangian").verdict == verdict
 
 
@@ -321,7 +321,7 @@ def test_a_lagrangian_can_contain_a_velocity_potential_of_applied_forces(
      " + (y_dot + a*theta_dot*cos(theta))**2)/2 + J*theta_dot**2/2"),
 ])  # fmt: skip
 def test_inputs_and_multipliers_are_no_constants(system: str, kind: str, text: str) -> None:
-    model = Model(Derivation(load(system)), {})
+    model = ReferenceSystem(Derivation(load(system)), {})
     varying = "tau1" if system == "two_link_arm" else "skate"
     constant, other = (
         judge_formula(model, "", f"{text} + {added}", kind)
@@ -455,14 +455,14 @@ def test_functions_of_coordinates_have_accelerations(tmp_path: Path) -> None:
     ],
 )
 def test_factors_can_contain_accelerations(text: str, verdict: str) -> None:
-    model = Model(Derivation(load("single_pendulum")), {})
+    model = ReferenceSystem(Derivation(load("single_pendulum")), {})
     result = judge_formula(model, "", text, "euler_lagrange")
     assert result.verdict == verdict
     assert result.note
 
 
 def test_a_product_of_two_equations_of_motion_is_neither() -> None:
-    model = Model(Derivation(load("double_pendulum")), {})
+    model = ReferenceSystem(Derivation(load("double_pendulum")), {})
     for text, verdict in (
         (f"({E1})*({E2})", "wrong"),
         (f"theta2_ddot*({E1})", "equivalent"),
@@ -527,7 +527,7 @@ def test_quantities_of_many_coordinates_are_verified(
 
 @pytest.mark.parametrize("sum_", ["(m + l + theta + theta_dot + g + 1)", "(sin(theta) + m - g)"])
 def test_high_powers_of_sums_are_judged(sum_: str) -> None:
-    model, power = Model(Derivation(load("single_pendulum")), {}), f"{sum_}**60"
+    model, power = ReferenceSystem(Derivation(load("single_pendulum")), {}), f"{sum_}**60"
     right = "m*l**2*theta_dot**2/2 + m*g*l*cos(theta)"
     for text, kind, verdict in (
         (f"{right} + {power}", "lagrangian", "wrong"),

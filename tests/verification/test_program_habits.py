@@ -1,6 +1,6 @@
 """Programs as people write them: measurements of a state, limits, inputs, callbacks of frames."""
 
-from derive.reading.programs.reader import read_program
+from derive.reading.programs.program_reader import read_program
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from derive.verification.documents.program_judgement import judge_program
 

@@ -13,10 +13,10 @@ import pytest
 
 from derive.formulas.syntax import ExpressionError
 from derive.verification.engine import RELATION
-from derive.verification.report.equation import Equation
-from derive.verification.report.judgement import EQUATIONS, check, equation_by_id, verdict
+from derive.verification.report.equation import ReportEquation
 from derive.verification.report.programs import programs
-from derive.verification.report.reading import STORED, read, translation
+from derive.verification.report.report_judgement import EQUATIONS, check, equation_by_id, verdict
+from derive.verification.report.report_latex import STORED, read, translation
 from derive.verification.report.translations import translations
 from solvers.runge_kutta.order_conditions import order
 
@@ -137,7 +137,7 @@ class Site:
 @pytest.mark.parametrize(
     "equation", [e for e in JUDGED if e.id not in MISPRINTS], ids=lambda equation: equation.id
 )
-def test_every_mutation_of_a_verified_equation_is_rejected(equation: Equation) -> None:
+def test_every_mutation_of_a_verified_equation_is_rejected(equation: ReportEquation) -> None:
     survivors, count = [], 0
     for text in mutants(equation.printed):
         count += 1
@@ -155,7 +155,7 @@ def squeezed(text: str) -> str:
     return text.replace(" ", "")
 
 
-def changes_of_text(equation: Equation) -> list[tuple[str, str]]:
+def changes_of_text(equation: ReportEquation) -> list[tuple[str, str]]:
     """The parts of the printed equation that its changes replace, each printed once."""
     texts = equation.printed, equation.corrected
     printed, correct = (re.findall(r"\w+|\*\*|\S", text) for text in texts)
@@ -207,7 +207,7 @@ def test_a_misprint_differs_from_its_correction_by_the_stated_changes_alone(name
 def test_a_part_to_change_must_be_printed_once() -> None:
     for printed, count in (("x_1 = l_1", 0), ("x_1 = l_2 + l_2", 2)):
         with pytest.raises(ValueError, match=f"eq47: .* 'l_2' is printed {count} times, not once"):
-            Equation("eq47", printed, changes=(("l_2", "l_1"),))
+            ReportEquation("eq47", printed, changes=(("l_2", "l_1"),))
 
 
 @pytest.mark.parametrize(

@@ -8,45 +8,45 @@ import pytest
 from shared_documents import shared
 
 from derive.reading.documents import read_document
-from derive.reading.latex.reader import formulas
+from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import Statement
+from derive.verification.documents.formula_translation import FormulaTranslator, LetterNotation
 from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
-from derive.verification.documents.translation import Notation, Translator
-from derive.verification.report.document import OTHER, judge_report
-from derive.verification.report.judgement import EQUATIONS, verdict
-from derive.verification.report.reading import read
-from derive.verification.report.table import FILE
+from derive.verification.report.report_document import OTHER, judge_report
+from derive.verification.report.report_equations import FILE
+from derive.verification.report.report_judgement import EQUATIONS, verdict
+from derive.verification.report.report_latex import read
 from solvers.app.cli import main
 from solvers.runge_kutta.order_conditions import order
 
 
-def translated(latex: str, notation: Notation) -> str:
+def translated(latex: str, notation: LetterNotation) -> str:
     (statement,) = formulas(latex)
     assert isinstance(statement, Statement)
-    return " = ".join(Translator(notation).text(side).text for side in statement.sides)
+    return " = ".join(FormulaTranslator(notation).text(side).text for side in statement.sides)
 
 
 @pytest.mark.parametrize(
     ("latex", "notation", "text"),
     [
-        (r"k = f(t, w)", Notation(), "k = f"),
+        (r"k = f(t, w)", LetterNotation(), "k = f"),
         (
             r"k = hf(t + \frac{h}{2}, w)",
-            Notation(calls=frozenset({"f"})),
+            LetterNotation(calls=frozenset({"f"})),
             "k = h*f(t + h/2, w)",
         ),
-        (r"y(0) = 1", Notation(calls=frozenset({"y"})), "y(0) = 1"),
+        (r"y(0) = 1", LetterNotation(calls=frozenset({"y"})), "y(0) = 1"),
         (
             r"r = l(\sin a, \cos a)",
-            Notation(factors=frozenset({"l"})),
+            LetterNotation(factors=frozenset({"l"})),
             "r = l*(sin(a), cos(a))",
         ),
-        (r"T = \frac{1}{2} m(x + y)", Notation(), "T = 1/2*m*(x + y)"),
-        (r"\begin{pmatrix} x \\ y \end{pmatrix} = z", Notation(), "(x, y) = z"),
+        (r"T = \frac{1}{2} m(x + y)", LetterNotation(), "T = 1/2*m*(x + y)"),
+        (r"\begin{pmatrix} x \\ y \end{pmatrix} = z", LetterNotation(), "(x, y) = z"),
     ],
 )
 def test_brackets_behind_letters_hold_arguments_columns_or_factors(
-    latex: str, notation: Notation, text: str
+    latex: str, notation: LetterNotation, text: str
 ) -> None:
     assert translated(latex, notation) == text
 

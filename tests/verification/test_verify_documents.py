@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.pages.table import document_lines, document_record
+from derive.verification.documents.pages.verdict_table import document_lines, document_record
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from solvers.app.cli import main
 

@@ -6,15 +6,15 @@ from textwrap import indent, wrap
 
 from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.expression_graph.node import Number
-from derive.codegen.functions import Contents, Function
+from derive.codegen.module_functions import Contents, Function
+from derive.codegen.module_summary import broken_sum, summary
 from derive.codegen.operations.assignments import (
-    Factorisation,
-    Notation,
-    Solution,
+    FactorisationAssignment,
+    LanguageNotation,
+    SolutionAssignment,
     Statement,
-    Value,
+    ValueAssignment,
 )
-from derive.codegen.summary import broken_sum, summary
 
 WIDTH = 92
 
@@ -220,7 +220,7 @@ SWITCH = """
 
 
 @dataclass(frozen=True)
-class CNotation(Notation):
+class CNotation(LanguageNotation):
     """Literals and calls of the number type of a system's header."""
 
     system: str
@@ -243,7 +243,7 @@ class CBackend(Backend):
 
     suffix = ".h"
 
-    def notation(self, function: Function) -> Notation:
+    def notation(self, function: Function) -> LanguageNotation:
         others = len(function.parameters) - len(function.constants) - len(function.system.params)
         return CNotation(function.system.name, others)
 
@@ -253,9 +253,9 @@ class CBackend(Backend):
     def statement(self, statement: Statement, function: Function) -> list[str]:
         system, name = function.system.name, statement.name
         match statement:
-            case Value(_, text):
+            case ValueAssignment(_, text):
                 return [_line(f"const {system}_real {name}", text)]
-            case Factorisation(_, n, entries):
+            case FactorisationAssignment(_, n, entries):
                 stride = _stride(n)
                 indices = [i * stride + j for i in range(n) for j in range(i, n)]
                 return [
@@ -264,7 +264,7 @@ class CBackend(Backend):
                     *_stores(name, indices, entries),
                     f"    {system}_factorise({name}, {n}, {stride});",
                 ]
-            case Solution(_, matrix, right):
+            case SolutionAssignment(_, matrix, right):
                 n = len(right)
                 return [
                     f"    {system}_real {name}[{n}];",

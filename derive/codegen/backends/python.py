@@ -6,9 +6,14 @@ from textwrap import indent, wrap
 
 from derive.codegen.backend import DIGEST, Backend
 from derive.codegen.function_specs import Form
-from derive.codegen.functions import Contents, Function, split
-from derive.codegen.operations.assignments import Factorisation, Solution, Statement, Value
-from derive.codegen.summary import broken_sum, states, summary, units
+from derive.codegen.module_functions import Contents, Function, split
+from derive.codegen.module_summary import broken_sum, states, summary, units
+from derive.codegen.operations.assignments import (
+    FactorisationAssignment,
+    SolutionAssignment,
+    Statement,
+    ValueAssignment,
+)
 from derive.mechanics.derivation import Derivation
 from derive.system.system import System
 
@@ -241,11 +246,11 @@ class PythonBackend(Backend):
 
     def statement(self, statement: Statement, function: Function) -> list[str]:
         match statement:
-            case Value(name, text):
+            case ValueAssignment(name, text):
                 return [_broken(text, 4, name)]
-            case Factorisation(name, size, entries):
+            case FactorisationAssignment(name, size, entries):
                 return [f"    {name} = _factorised({_tuple(entries, depth=1)}, {size})"]
-            case Solution(name, matrix, right):
+            case SolutionAssignment(name, matrix, right):
                 return [f"    {name} = _solved({matrix}, {_tuple(right, depth=1)})"]
 
     def file(self, contents: Contents) -> str:

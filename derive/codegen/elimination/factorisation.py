@@ -12,7 +12,7 @@ from functools import reduce
 from math import gcd, lcm
 
 from derive.codegen.expression_graph.graph import Graph
-from derive.codegen.expression_graph.node import Leaf, Let, Node
+from derive.codegen.expression_graph.node import LeafNode, LetNode, Node
 
 Rows = Sequence[Sequence[Node]]
 
@@ -66,7 +66,7 @@ class Factorisation:
         self._multipliers: dict[tuple[int, int], Node] = {}
         for k in reversed(range(n)):
             # products of parameters are not named, so that they are cancelled
-            is_short = all(isinstance(factor, Leaf) for factor in rows[k][k].exponents())
+            is_short = all(isinstance(factor, LeafNode) for factor in rows[k][k].exponents())
             self.pivots[k] = rows[k][k] if is_short else graph.let(rows[k][k])
             coupled = [i for i in range(k) if not rows[i][k].is_number(0)]
             self._inverses[k] = self._inverse(self.pivots[k], bool(coupled))
@@ -82,7 +82,7 @@ class Factorisation:
     def _inverse(self, pivot: Node, is_shared: bool) -> Node:
         inverse = self._graph.power(pivot, -1)
         # one division instead of several, if no factors cancel
-        return self._graph.let(inverse) if is_shared and isinstance(pivot, Let) else inverse
+        return self._graph.let(inverse) if is_shared and isinstance(pivot, LetNode) else inverse
 
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""

@@ -12,7 +12,14 @@ import sympy as sp
 from sympy.logic.boolalg import Boolean
 
 from derive.codegen.expression_graph.graph import Graph
-from derive.codegen.expression_graph.node import Call, Let, Node, Product, Rewritten, Sum
+from derive.codegen.expression_graph.node import (
+    CallNode,
+    LetNode,
+    Node,
+    ProductNode,
+    RewrittenNode,
+    SumNode,
+)
 
 #: Functions of generated code that some numbers have no value of, or none that is finite.
 PARTIAL = ("exp", "log", "sqrt", "sinh", "cosh", "pow")
@@ -123,19 +130,19 @@ class Choices:
         @cache
         def guarded(node: Node) -> Node:
             match node:
-                case Call(function, arguments):
+                case CallNode(function, arguments):
                     parts = [*map(guarded, arguments)]
                     if function in PARTIAL:
                         parts = [*map(guard, parts)]
                     return graph.call(function, *parts)
-                case Product(powers):
+                case ProductNode(powers):
                     pairs = [(guarded(factor), power) for factor, power in powers]
                     return graph.product([(guard(f) if p < 0 else f, p) for f, p in pairs])
-                case Sum(terms):
+                case SumNode(terms):
                     return graph.sum([(guarded(term), number) for term, number in terms])
-                case Let(inner):
+                case LetNode(inner):
                     return graph.let(guarded(inner))
-                case Rewritten(long, short):
+                case RewrittenNode(long, short):
                     return graph.rewritten(guarded(long), guarded(short))
             return node
 

@@ -7,19 +7,19 @@ import sympy as sp
 
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import (
-    Call,
-    Leaf,
-    Let,
+    CallNode,
+    LeafNode,
+    LetNode,
     Node,
     Number,
     Powers,
-    Product,
-    Rewritten,
-    Sum,
+    ProductNode,
+    RewrittenNode,
+    SumNode,
     operands,
 )
-from derive.codegen.expression_graph.translation import Translation
-from derive.formulas.functions import FUNCTIONS
+from derive.codegen.expression_graph.sympy_translation import Translation
+from derive.formulas.function_table import FUNCTIONS
 
 #: Arguments of the functions that are differentiated.
 X = sp.symbols("x y", real=True)
@@ -43,7 +43,7 @@ class Differentiation:
     def leaves(self, node: Node) -> frozenset[str]:
         """Names of the leaves that `node` depends on."""
         if node not in self._leaves:
-            own = {node.name} if isinstance(node, Leaf) else set()
+            own = {node.name} if isinstance(node, LeafNode) else set()
             self._leaves[node] = frozenset(own).union(*map(self.leaves, operands(node)))
         return self._leaves[node]
 
@@ -63,13 +63,13 @@ class Differentiation:
     def _derivative(self, node: Node, leaf: str) -> Node:
         graph = self._graph
         match node:
-            case Leaf(name):
+            case LeafNode(name):
                 return graph.node(self._directions.get(leaf, {leaf: 1})[name])
-            case Let(value) | Rewritten(short=value):
+            case LetNode(value) | RewrittenNode(short=value):
                 return self(value, leaf)
-            case Call("select", (s, a, b)):
+            case CallNode("select", (s, a, b)):
                 return graph.call("select", s, self(a, leaf), self(b, leaf))
-            case Call("pow", (base, exponent)):
+            case CallNode("pow", (base, exponent)):
                 by_base = exponent * graph.call("pow", base, exponent - 1) * self(base, leaf)
                 rate = self(exponent, leaf)
                 if rate.is_number(0):
@@ -77,7 +77,7 @@ class Differentiation:
                 # where the base is 0, so is the power
                 positive = graph.call("select", base, base, graph.one)
                 return by_base + node * graph.call("log", positive) * rate
-            case Call(function, arguments):
+            case CallNode(function, arguments):
                 variables = X[: len(arguments)]
                 known = {x.name: value for x, value in zip(variables, arguments, strict=True)}
                 translation, value = Translation(graph, known), FUNCTIONS[function](*variables)
@@ -85,9 +85,9 @@ class Differentiation:
                 return graph.sum(
                     [(translation(value.diff(x)) * self(a, leaf), 1) for x, a in pairs]
                 )
-            case Sum(terms):
+            case SumNode(terms):
                 return graph.sum([(self(term, leaf), number) for term, number in terms])
-            case Product(powers):
+            case ProductNode(powers):
                 changing = [(n, p) for n, p in powers if self._depends(n, leaf)]
                 return graph.sum([(self._changed(powers, n, leaf), p) for n, p in changing])
             case _:

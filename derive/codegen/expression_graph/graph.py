@@ -19,21 +19,21 @@ from typing import Any, TypeVar
 
 from derive.codegen.expression_graph.node import (
     ONE,
-    Call,
-    Component,
-    Constant,
-    Factorised,
-    Irrational,
-    Leaf,
-    Let,
+    CallNode,
+    ComponentNode,
+    ConstantNode,
+    FactorisedNode,
+    IrrationalNode,
+    LeafNode,
+    LetNode,
     Node,
     Number,
     Operand,
-    Product,
-    Rewritten,
-    Solution,
-    Sum,
-    Switch,
+    ProductNode,
+    RewrittenNode,
+    SolutionNode,
+    SumNode,
+    SwitchNode,
     Terms,
     operands,
 )
@@ -57,13 +57,13 @@ class Graph:
             self._nodes[key] = kind(*content, graph=self, rank=len(self._nodes))
         return self._nodes[key]
 
-    def _constant(self, value: Fraction) -> Constant:
+    def _constant(self, value: Fraction) -> ConstantNode:
         # identified by integers: to hash and compare fractions takes long
-        return self._intern(Constant, value, identity=(value.numerator, value.denominator))
+        return self._intern(ConstantNode, value, identity=(value.numerator, value.denominator))
 
-    def _sum(self, terms: Terms) -> Sum:
+    def _sum(self, terms: Terms) -> SumNode:
         identity = (x for node, c in terms for x in (node, c.numerator, c.denominator))
-        return self._intern(Sum, terms, identity=identity)
+        return self._intern(SumNode, terms, identity=identity)
 
     @cached_property
     def zero(self) -> Node:
@@ -77,7 +77,7 @@ class Graph:
 
     def leaf(self, name: str) -> Node:
         """The input of this name."""
-        return self._intern(Leaf, name)
+        return self._intern(LeafNode, name)
 
     def node(self, value: Operand) -> Node:
         """`value` as a node."""
@@ -85,18 +85,18 @@ class Graph:
 
     def irrational(self, value: Fraction) -> Node:
         """The irrational number that is `value` to some 50 digits."""
-        return self._intern(Irrational, value)
+        return self._intern(IrrationalNode, value)
 
     def let(self, value: Node) -> Node:
         """`value` with its own name: sums and products are not merged with it."""
         coefficient, rest = value.scaled()
-        if rest is None or isinstance(rest, Leaf | Let):
+        if rest is None or isinstance(rest, LeafNode | LetNode):
             return value
-        return self._scale(self._intern(Let, rest), coefficient)
+        return self._scale(self._intern(LetNode, rest), coefficient)
 
     def rewritten(self, value: Node, short: Node) -> Node:
         """`value`, differentiated by an equal formula that is `short`."""
-        return self._intern(Rewritten, value, short)
+        return self._intern(RewrittenNode, value, short)
 
     def call(self, function: str, *arguments: Node) -> Node:
         """``function(*arguments)``; the sign of the argument of a sine or cosine is moved outside.
@@ -106,34 +106,34 @@ class Graph:
         coefficient, rest = arguments[0].scaled()
         match function, arguments:
             case (("sin" | "cos"), (argument,)) if rest is not None and coefficient < 0:
-                positive = self._intern(Call, function, (-argument,))
+                positive = self._intern(CallNode, function, (-argument,))
                 return -positive if function == "sin" else positive
-            case "pow", (base, Constant(exponent)) if exponent.denominator == 1:
+            case "pow", (base, ConstantNode(exponent)) if exponent.denominator == 1:
                 return self.power(base, int(exponent))
             case "select", (_, a, b) if rest is None or a is b:
                 return a if coefficient > 0 else b
             case "select", (_, a, b) if rest is not None:  # its scale does not matter
                 s = rest if coefficient > 0 else -rest
                 match a, b:
-                    case Call("select", (number, inner, _)), _ if number is s:
+                    case CallNode("select", (number, inner, _)), _ if number is s:
                         return self.call(function, s, inner, b)
-                    case _, Call("select", (number, _, inner)) if number is s:
+                    case _, CallNode("select", (number, _, inner)) if number is s:
                         return self.call(function, s, a, inner)
                 arguments = (s, a, b)
-        return self._intern(Call, function, arguments)
+        return self._intern(CallNode, function, arguments)
 
     def switch(self, index: int, value: Node) -> Node:
         """The switching function of this index."""
-        return self._intern(Switch, index, value)
+        return self._intern(SwitchNode, index, value)
 
-    def factorised(self, upper: Iterable[Node]) -> Factorised:
+    def factorised(self, upper: Iterable[Node]) -> FactorisedNode:
         """The factorisation of a symmetric matrix, given by its upper triangle row by row."""
-        return self._intern(Factorised, tuple(upper))
+        return self._intern(FactorisedNode, tuple(upper))
 
     def solution(self, matrix: Node, right: Iterable[Node]) -> list[Node]:
         """The components of the solution x of M x = `right`, with M factorised."""
-        solution = self._intern(Solution, matrix, tuple(right))
-        return [self._intern(Component, solution, i) for i in range(len(solution.right))]
+        solution = self._intern(SolutionNode, matrix, tuple(right))
+        return [self._intern(ComponentNode, solution, i) for i in range(len(solution.right))]
 
     def power(self, base: Node, exponent: int) -> Node:
         """``base**exponent``."""
@@ -158,10 +158,10 @@ class Graph:
 
     def _cancel(self, powers: dict[Node, int]) -> None:
         """Replace named products of at most two factors by these where one is cancelled."""
-        for node in [one for one in powers if isinstance(one, Let)]:
+        for node in [one for one in powers if isinstance(one, LetNode)]:
             count = powers[node]
             parts = [
-                (part.value if isinstance(part, Let) and part.value in powers else part, power)
+                (part.value if isinstance(part, LetNode) and part.value in powers else part, power)
                 for part, power in node.value.factors()
             ]
             is_cancelled = (powers.get(part, 0) * power * count < 0 for part, power in parts)
@@ -176,10 +176,10 @@ class Graph:
             return self.one
         if len(nonzero) == 1 and nonzero[0][1] == 1:
             return nonzero[0][0]
-        return self._intern(Product, tuple(nonzero))
+        return self._intern(ProductNode, tuple(nonzero))
 
     def _scale(self, node: Node, coefficient: Fraction) -> Node:
-        if isinstance(node, Constant):
+        if isinstance(node, ConstantNode):
             return self.node(node.value * coefficient)
         if coefficient is ONE or coefficient == 1:
             return node
@@ -208,7 +208,7 @@ class Graph:
     def spread(self, node: Node, number: Fraction) -> Node:
         """`number` times `node`, multiplied into every term of a sum."""
         coefficient, rest = node.scaled()
-        if not isinstance(rest, Sum):
+        if not isinstance(rest, SumNode):
             return self.sum([(node, number)])
         return self.sum([(term, c * coefficient * number) for term, c in rest.terms])
 
@@ -245,12 +245,12 @@ class Graph:
         """Replace ``a - a*cos(x)**2`` by ``a*sin(x)**2``, and with sine and cosine exchanged."""
         for node, coefficient in terms.items():
             for factor, power in node.factors():
-                if power != 2 or not isinstance(factor, Call) or factor.function not in PARTNER:
+                if power != 2 or not isinstance(factor, CallNode) or factor.function not in PARTNER:
                     continue
                 rest = self.product([(node, 1), (factor, -2)])
                 expanded = self._expanded(terms, rest)
                 if expanded is not None and expanded.get(rest) == -coefficient:
-                    partner = self._intern(Call, PARTNER[factor.function], factor.arguments)
+                    partner = self._intern(CallNode, PARTNER[factor.function], factor.arguments)
                     replaced = self.product([(rest, 1), (partner, 2)])
                     expanded = {n: c for n, c in expanded.items() if n not in (rest, node)}
                     expanded[replaced] = expanded.get(replaced, Fraction(0)) - coefficient
@@ -262,7 +262,7 @@ class Graph:
         if term in terms:
             return dict(terms)
         for node, coefficient in terms.items():
-            if isinstance(node, Sum) and term in operands(node):
+            if isinstance(node, SumNode) and term in operands(node):
                 expanded = {n: c for n, c in terms.items() if n is not node}
                 for inner, c in node.terms:
                     expanded[inner] = expanded.get(inner, Fraction(0)) + c * coefficient

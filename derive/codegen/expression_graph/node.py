@@ -45,7 +45,7 @@ class Node:
 
     def is_number(self, value: Number) -> bool:
         """Whether this is the constant `value`."""
-        return isinstance(self, Constant) and self.value == value
+        return isinstance(self, ConstantNode) and self.value == value
 
     def scaled(self) -> tuple[Fraction, Node | None]:
         """Numeric factor and the rest: ``-2*x`` is ``(-2, x)``, ``3`` is ``(3, None)``."""
@@ -65,14 +65,14 @@ Operand = Node | Number
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Leaf(Node):
+class LeafNode(Node):
     """An input."""
 
     name: str
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Constant(Node):
+class ConstantNode(Node):
     """An exact number."""
 
     value: Fraction
@@ -82,14 +82,14 @@ class Constant(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Irrational(Node):
+class IrrationalNode(Node):
     """A number such as pi, which cancels as inputs do."""
 
     value: Fraction  # to some 50 digits
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Sum(Node):
+class SumNode(Node):
     """Σ coefficient · node; a single term is a multiple."""
 
     terms: Terms
@@ -102,7 +102,7 @@ class Sum(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Product(Node):
+class ProductNode(Node):
     """Π node^exponent, with integer exponents other than 0."""
 
     powers: Powers
@@ -112,7 +112,7 @@ class Product(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Call(Node):
+class CallNode(Node):
     """``function(*arguments)``, by the name of the function in C99.
 
     Beside those of C99 there is ``select(s, a, b)``: a where s > 0, b where s <= 0.
@@ -123,7 +123,7 @@ class Call(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Switch(Node):
+class SwitchNode(Node):
     """The switching function of this index, for which its sign may stand."""
 
     index: int
@@ -131,14 +131,14 @@ class Switch(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Let(Node):
+class LetNode(Node):
     """A named value: sums and products are not merged with it."""
 
     value: Node
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Rewritten(Node):
+class RewrittenNode(Node):
     """The same value by two formulas: an accurate one, and a short one for its derivatives."""
 
     value: Node
@@ -146,14 +146,14 @@ class Rewritten(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Factorised(Node):
+class FactorisedNode(Node):
     """The L D Lᵀ factorisation, by a loop, of a symmetric matrix."""
 
     upper: tuple[Node, ...]  # its upper triangle, row by row
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Solution(Node):
+class SolutionNode(Node):
     """The solution x of M x = `right`, with M factorised."""
 
     matrix: Node
@@ -161,28 +161,28 @@ class Solution(Node):
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Component(Node):
+class ComponentNode(Node):
     """One component of a solution."""
 
-    solution: Solution
+    solution: SolutionNode
     index: int
 
 
 def operands(node: Node) -> tuple[Node, ...]:
     """The nodes that a node is computed from."""
     match node:
-        case Sum(pairs) | Product(pairs):
+        case SumNode(pairs) | ProductNode(pairs):
             return tuple(part for part, _ in pairs)
-        case Call(_, arguments):
+        case CallNode(_, arguments):
             return arguments
-        case Let(value) | Switch(value=value):
+        case LetNode(value) | SwitchNode(value=value):
             return (value,)
-        case Rewritten(value, short):
+        case RewrittenNode(value, short):
             return (value, short)
-        case Factorised(upper):
+        case FactorisedNode(upper):
             return upper
-        case Solution(matrix, right):
+        case SolutionNode(matrix, right):
             return (matrix, *right)
-        case Component(solution):
+        case ComponentNode(solution):
             return (solution,)
     return ()

@@ -11,18 +11,18 @@ from types import MappingProxyType
 
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import (
-    Call,
-    Component,
-    Constant,
-    Factorised,
-    Irrational,
-    Leaf,
-    Let,
+    CallNode,
+    ComponentNode,
+    ConstantNode,
+    FactorisedNode,
+    IrrationalNode,
+    LeafNode,
+    LetNode,
     Node,
-    Product,
-    Rewritten,
-    Sum,
-    Switch,
+    ProductNode,
+    RewrittenNode,
+    SumNode,
+    SwitchNode,
     operands,
 )
 
@@ -69,7 +69,7 @@ def _calls(nodes: Sequence[Node]) -> int:
         if node not in visited:
             visited.add(node)
             waiting += operands(node)
-    return sum(isinstance(node, Call) for node in visited)
+    return sum(isinstance(node, CallNode) for node in visited)
 
 
 def _other_leaves(node: Node, names: frozenset[str], visited: set[Node]) -> Iterator[str]:
@@ -77,7 +77,7 @@ def _other_leaves(node: Node, names: frozenset[str], visited: set[Node]) -> Iter
     if node in visited:
         return
     visited.add(node)
-    if isinstance(node, Leaf):
+    if isinstance(node, LeafNode):
         yield node.name
     elif _multiples(node, names) is None:
         for operand in operands(node):
@@ -86,13 +86,13 @@ def _other_leaves(node: Node, names: frozenset[str], visited: set[Node]) -> Iter
 
 def _multiples(node: Node, names: Collection[str]) -> dict[str, int] | None:
     """The coefficients if `node` is the sine or cosine of a small combination of `names`."""
-    if not isinstance(node, Call) or node.function not in ("sin", "cos"):
+    if not isinstance(node, CallNode) or node.function not in ("sin", "cos"):
         return None
     coefficient, rest = node.arguments[0].scaled()
     multiples: dict[str, int] = {}
-    for term, number in rest.terms if isinstance(rest, Sum) else ((rest, 1),):
+    for term, number in rest.terms if isinstance(rest, SumNode) else ((rest, 1),):
         multiple = coefficient * number
-        if not isinstance(term, Leaf) or term.name not in names or multiple.denominator != 1:
+        if not isinstance(term, LeafNode) or term.name not in names or multiple.denominator != 1:
             return None
         multiples[term.name] = int(multiple)
     return multiples if sum(map(abs, multiples.values())) <= MAX_MULTIPLE else None
@@ -116,30 +116,30 @@ class _Rewriting:
     def _rewritten(self, node: Node) -> Node:
         graph = self._graph
         match node:
-            case Leaf(name):
+            case LeafNode(name):
                 return self._known.get(name) or graph.leaf(name)
-            case Constant(value):
+            case ConstantNode(value):
                 return graph.node(value)
-            case Irrational(value):
+            case IrrationalNode(value):
                 return graph.irrational(value)
-            case Let(value):
+            case LetNode(value):
                 return graph.let(self.node(value))
-            case Switch(index, value):
+            case SwitchNode(index, value):
                 return graph.switch(index, self.node(value))
-            case Rewritten(value, short):
+            case RewrittenNode(value, short):
                 return graph.rewritten(self.node(value), self.node(short))
-            case Call(function, arguments):
+            case CallNode(function, arguments):
                 multiples = _multiples(node, self._names)
                 if multiples is None:
                     return graph.call(function, *map(self.node, arguments))
                 return self._pair(tuple(multiples.items()))[function == "cos"]
-            case Sum(terms):
+            case SumNode(terms):
                 return graph.sum([(self.node(term), number) for term, number in terms])
-            case Product(powers):
+            case ProductNode(powers):
                 return graph.product([(self.node(factor), power) for factor, power in powers])
-            case Factorised(upper):
+            case FactorisedNode(upper):
                 return graph.factorised([self.node(entry) for entry in upper])
-            case Component(solution, index):
+            case ComponentNode(solution, index):
                 matrix, *right = (self.node(operand) for operand in operands(solution))
                 return graph.solution(matrix, right)[index]
             case _:

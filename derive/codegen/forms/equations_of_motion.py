@@ -15,7 +15,7 @@ from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import angles
-from derive.codegen.expression_graph.translation import Translation
+from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 
@@ -23,8 +23,8 @@ from derive.system.symbols import TIME
 class EquationsOfMotion:
     """Energies, positions and states as outputs of generated functions.
 
-    Each property has the name of a generated function in `derive.codegen.functions`, and gives
-    the function's outputs, flat in C order.
+    Each property has the name of a generated function in `derive.codegen.module_functions`, and
+    gives the function's outputs, flat in C order.
     """
 
     def __init__(self, derivation: Derivation) -> None:

@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.codegen.elimination.factorisation import Rows
 from derive.codegen.expression_graph.node import Node, Terms
-from derive.codegen.expression_graph.translation import Translation
+from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion
 
 HALF = Fraction(1, 2)

@@ -16,7 +16,7 @@ from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import substitution
-from derive.codegen.expression_graph.translation import Translation
+from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.lagrangian_form import HALF
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.mechanics.derivation import Derivation

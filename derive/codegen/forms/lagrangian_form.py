@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import rationalised
-from derive.codegen.expression_graph.translation import Translation
+from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion
 from derive.system.symbols import TIME
 

@@ -13,7 +13,7 @@ from functools import cache
 from itertools import count
 
 from derive.codegen.expression_graph.node import Number
-from derive.codegen.expression_graph.translation import UnsupportedFunctionError
+from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
 from derive.codegen.operations import operation as op
 from derive.codegen.operations.lowering import Lowering
 from derive.codegen.operations.operation import Operation, triangle_rows
@@ -47,7 +47,7 @@ def _digits(value: Number) -> str:
     return digits
 
 
-class Notation:
+class LanguageNotation:
     """How a target language writes names, numbers and calls; by default as Python and C do."""
 
     def name(self, name: str) -> str:
@@ -81,7 +81,7 @@ class Notation:
 
 
 @dataclass(frozen=True)
-class Value:
+class ValueAssignment:
     """``name = text``."""
 
     name: str
@@ -89,7 +89,7 @@ class Value:
 
 
 @dataclass(frozen=True)
-class Factorisation:
+class FactorisationAssignment:
     """The factorisation of a symmetric matrix, given by its upper triangle row by row."""
 
     name: str
@@ -98,7 +98,7 @@ class Factorisation:
 
 
 @dataclass(frozen=True)
-class Solution:
+class SolutionAssignment:
     """The solution of M x = right, with M factorised under the name `matrix`."""
 
     name: str
@@ -106,7 +106,7 @@ class Solution:
     right: tuple[str, ...]
 
 
-Statement = Value | Factorisation | Solution
+Statement = ValueAssignment | FactorisationAssignment | SolutionAssignment
 
 
 class Assignments:
@@ -116,7 +116,9 @@ class Assignments:
     expressions of the results. New names are none of those `reserved`.
     """
 
-    def __init__(self, lowering: Lowering, reserved: Collection[str], notation: Notation) -> None:
+    def __init__(
+        self, lowering: Lowering, reserved: Collection[str], notation: LanguageNotation
+    ) -> None:
         self._operations, self._notation = lowering.operations, notation
         self._reserved = set(reserved)
         self._texts: dict[int, tuple[str, int]] = {}
@@ -147,24 +149,30 @@ class Assignments:
     def _written(self, n: int) -> tuple[str, int]:
         operation = self._operations[n]
         match operation:
-            case op.Factorised(operands):
+            case op.FactorisedOperation(operands):
                 entries, name = tuple(map(self._text, operands)), self._numbered("factors")
-                return self._named(n, Factorisation(name, triangle_rows(len(entries)), entries))
-            case op.Solution(operands):
+                return self._named(
+                    n, FactorisationAssignment(name, triangle_rows(len(entries)), entries)
+                )
+            case op.SolutionOperation(operands):
                 matrix, *right = map(self._text, operands)
-                return self._named(n, Solution(self._numbered("solved"), matrix, tuple(right)))
+                return self._named(
+                    n, SolutionAssignment(self._numbered("solved"), matrix, tuple(right))
+                )
         text, precedence = self._expression(operation)
         in_place = self._uses[n] == 1 and n not in self._hoisted and len(text) <= IN_PLACE
-        if in_place or isinstance(operation, op.Leaf | op.Constant | op.Component):
+        if in_place or isinstance(
+            operation, op.LeafOperation | op.ConstantOperation | op.ComponentOperation
+        ):
             return text, precedence
-        return self._named(n, Value(self._name(operation), text))
+        return self._named(n, ValueAssignment(self._name(operation), text))
 
     def _named(self, n: int, statement: Statement) -> tuple[str, int]:
         (self.constants if self._operations[n].constant else self.terms).append(statement)
         return statement.name, ATOM
 
     def _name(self, operation: Operation) -> str:
-        if isinstance(operation, op.Call) and len(operation.operands) == 1:
+        if isinstance(operation, op.CallOperation) and len(operation.operands) == 1:
             argument = self._text(operation.operands[0])
             name = f"{operation.function}_{argument}"
             if argument.isidentifier() and name not in self._reserved:
@@ -179,24 +187,24 @@ class Assignments:
     def _expression(self, operation: Operation) -> tuple[str, int]:
         notation = self._notation
         match operation:
-            case op.Leaf(name=name):
+            case op.LeafOperation(name=name):
                 return notation.name(name), ATOM
-            case op.Constant(value=value):
+            case op.ConstantOperation(value=value):
                 return notation.literal(value), ATOM
-            case op.Call(operands, function=function):
+            case op.CallOperation(operands, function=function):
                 return notation.call(function, *map(self._text, operands)), ATOM
-            case op.Switch((value,), index=index):
+            case op.SwitchOperation((value,), index=index):
                 return notation.switch(index, self._text(value)), ATOM
-            case op.Component((solution,), index=index):
+            case op.ComponentOperation((solution,), index=index):
                 return notation.component(self._text(solution), index), ATOM
-            case op.Quotient((*above, below)):
+            case op.QuotientOperation((*above, below)):
                 top = self._text(above[0], PRODUCT) if above else notation.literal(Fraction(1))
                 return f"{top}/{self._text(below, ATOM)}", PRODUCT
-            case op.Product(operands):
+            case op.ProductOperation(operands):
                 first, *rest = self._constants_first(operands)
                 factors = [self._text(first, PRODUCT), *(self._text(n, ATOM) for n in rest)]
                 return "*".join(factors), PRODUCT
-            case op.Sum(operands, coefficients=coefficients):
+            case op.SumOperation(operands, coefficients=coefficients):
                 return self._sum(dict(zip(operands, coefficients, strict=True))), SUM
             case _:
                 raise NotImplementedError(f"no text of a {type(operation).__name__} operation")

@@ -13,19 +13,19 @@ from math import prod
 from typing import Any, TypeVar
 
 from derive.codegen.expression_graph.node import (
-    Call,
-    Component,
-    Constant,
-    Factorised,
-    Irrational,
-    Leaf,
-    Let,
+    CallNode,
+    ComponentNode,
+    ConstantNode,
+    FactorisedNode,
+    IrrationalNode,
+    LeafNode,
+    LetNode,
     Node,
-    Product,
-    Rewritten,
-    Solution,
-    Sum,
-    Switch,
+    ProductNode,
+    RewrittenNode,
+    SolutionNode,
+    SumNode,
+    SwitchNode,
     Terms,
     operands,
 )
@@ -61,12 +61,12 @@ class Lowering:
     @property
     def inputs(self) -> frozenset[str]:
         """Names of the leaves."""
-        return frozenset(o.name for o in self.used if isinstance(o, op.Leaf))
+        return frozenset(o.name for o in self.used if isinstance(o, op.LeafOperation))
 
     @property
     def functions(self) -> frozenset[str]:
         """Names of the functions that are called."""
-        return frozenset(o.function for o in self.used if isinstance(o, op.Call))
+        return frozenset(o.function for o in self.used if isinstance(o, op.CallOperation))
 
     @property
     def library_functions(self) -> frozenset[str]:
@@ -76,7 +76,7 @@ class Lowering:
     @property
     def has_switches(self) -> bool:
         """Whether a result depends on the signs of switching functions."""
-        return any(isinstance(o, op.Switch) for o in self.used)
+        return any(isinstance(o, op.SwitchOperation) for o in self.used)
 
     @property
     def cost(self) -> tuple[int, int]:
@@ -96,26 +96,26 @@ class Lowering:
 
     def _operation(self, node: Node) -> int:
         match node:
-            case Leaf(name):
-                return self._register(op.Leaf((), name in self._parameters, name))
-            case Constant(value) | Irrational(value):
+            case LeafNode(name):
+                return self._register(op.LeafOperation((), name in self._parameters, name))
+            case ConstantNode(value) | IrrationalNode(value):
                 return self._constant(value)
-            case Let(inner) | Rewritten(value=inner):
+            case LetNode(inner) | RewrittenNode(value=inner):
                 return self._lower(inner)
-            case Call(function, arguments):
-                return self._add(op.Call, map(self._lower, arguments), function)
-            case Switch(index, value):
-                return self._add(op.Switch, [self._lower(value)], index)
-            case Factorised(upper):
-                return self._add(op.Factorised, map(self._lower, upper))
-            case Solution():
-                return self._add(op.Solution, map(self._lower, operands(node)))
-            case Component(solution, index):
-                return self._add(op.Component, [self._lower(solution)], index)
-            case Sum(terms):
+            case CallNode(function, arguments):
+                return self._add(op.CallOperation, map(self._lower, arguments), function)
+            case SwitchNode(index, value):
+                return self._add(op.SwitchOperation, [self._lower(value)], index)
+            case FactorisedNode(upper):
+                return self._add(op.FactorisedOperation, map(self._lower, upper))
+            case SolutionNode():
+                return self._add(op.SolutionOperation, map(self._lower, operands(node)))
+            case ComponentNode(solution, index):
+                return self._add(op.ComponentOperation, [self._lower(solution)], index)
+            case SumNode(terms):
                 merged = [t for t in _merged(list(self._terms(terms))) if not self._is_zero(t[0])]
                 return self._sum(merged) if merged else self._constant(0)
-            case Product():
+            case ProductNode():
                 factors = _merged(list(self._powers(*_numeric(node))))
                 if any(self._is_zero(n) for n, _ in factors):
                     return self._constant(0)
@@ -124,12 +124,12 @@ class Lowering:
                 raise NotImplementedError(f"no operation for a {type(node).__name__} node")
 
     def _is_zero(self, n: int) -> bool:
-        """Whether an operation is 0, as a sum may be whose terms cancel without their `Let`."""
+        """Whether an operation is 0, as a sum may be whose terms cancel without their `LetNode`."""
         operation = self.operations[n]
-        return isinstance(operation, op.Constant) and operation.value == 0
+        return isinstance(operation, op.ConstantOperation) and operation.value == 0
 
     def _constant(self, value: Fraction | int) -> int:
-        return self._add(op.Constant, (), Fraction(value))
+        return self._add(op.ConstantOperation, (), Fraction(value))
 
     def _terms(self, terms: Terms) -> Iterator[Term]:
         """Terms of a sum; numbers are one term, and irrational factors include coefficients."""
@@ -163,7 +163,7 @@ class Lowering:
         operands, coefficients = zip(*sorted(terms), strict=True)
         if coefficients == (ONE,):
             return operands[0]
-        return self._add(op.Sum, operands, coefficients)
+        return self._add(op.SumOperation, operands, coefficients)
 
     def _parts(self, terms: list[Term]) -> Iterator[list[Term]]:
         """Terms to add first: the constants, then those with a common coefficient."""
@@ -191,20 +191,20 @@ class Lowering:
             factors = [self._factors(constant), *(n for n in factors if n not in constant)]
         if len(factors) == 1:
             return factors[0]
-        return self._add(op.Product, sorted(factors))
+        return self._add(op.ProductOperation, sorted(factors))
 
     def _quotient(self, above: int | None, below: int) -> int:
-        return self._add(op.Quotient, (below,) if above is None else (above, below))
+        return self._add(op.QuotientOperation, (below,) if above is None else (above, below))
 
 
 def _numeric(node: Node) -> tuple[Fraction, Node | None]:
     """The number among the factors of a node, and the rest; exact factors are coefficients."""
     match node:
-        case Constant(value) | Irrational(value):
+        case ConstantNode(value) | IrrationalNode(value):
             return value, None
-        case Product(powers):
-            numbers = [(n.value, p) for n, p in powers if isinstance(n, Irrational)]
-            others = [(n, p) for n, p in powers if not isinstance(n, Irrational)]
+        case ProductNode(powers):
+            numbers = [(n.value, p) for n, p in powers if isinstance(n, IrrationalNode)]
+            others = [(n, p) for n, p in powers if not isinstance(n, IrrationalNode)]
             if not numbers:
                 return ONE, node
             number = prod((value**power for value, power in numbers), start=ONE)
@@ -213,7 +213,7 @@ def _numeric(node: Node) -> tuple[Fraction, Node | None]:
 
 
 def _merged(parts: list[tuple[int, Count]]) -> list[tuple[int, Count]]:
-    """Terms or factors without repetitions, which a `Let` may have concealed."""
+    """Terms or factors without repetitions, which a `LetNode` may have concealed."""
     totals: dict[int, Count] = {}
     for number, count in parts:
         totals[number] = totals[number] + count if number in totals else count

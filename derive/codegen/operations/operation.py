@@ -14,58 +14,58 @@ class Operation:
 
 
 @dataclass(frozen=True, slots=True)
-class Leaf(Operation):
+class LeafOperation(Operation):
     """An input."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Constant(Operation):
+class ConstantOperation(Operation):
     """An exact number."""
 
     value: Fraction
 
 
 @dataclass(frozen=True, slots=True)
-class Sum(Operation):
+class SumOperation(Operation):
     """The sum of coefficient times operand."""
 
     coefficients: tuple[Fraction, ...]
 
 
-class Product(Operation):
+class ProductOperation(Operation):
     """The product of the operands."""
 
 
-class Quotient(Operation):
+class QuotientOperation(Operation):
     """The quotient of two operands, or the reciprocal of one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Call(Operation):
+class CallOperation(Operation):
     """A call of a function."""
 
     function: str
 
 
 @dataclass(frozen=True, slots=True)
-class Switch(Operation):
+class SwitchOperation(Operation):
     """A switching function, for which its sign may stand."""
 
     index: int
 
 
-class Factorised(Operation):
+class FactorisedOperation(Operation):
     """A factorised symmetric matrix; the operands are its upper triangle, row by row."""
 
 
-class Solution(Operation):
+class SolutionOperation(Operation):
     """The solution of M x = b; the operands are the factorised matrix M and the entries of b."""
 
 
 @dataclass(frozen=True, slots=True)
-class Component(Operation):
+class ComponentOperation(Operation):
     """One component of a solution."""
 
     index: int
@@ -75,17 +75,17 @@ def cost(operation: Operation) -> int:
     """Number of arithmetic operations and function calls."""
     n = len(operation.operands)
     match operation:
-        case Sum(coefficients=coefficients):
+        case SumOperation(coefficients=coefficients):
             scalings = sum(c not in (1, -1) for c in coefficients)
             return n - 1 + scalings + all(c == -1 for c in coefficients)
-        case Product():
+        case ProductOperation():
             return n - 1
-        case Quotient() | Call():
+        case QuotientOperation() | CallOperation():
             return 1
-        case Factorised():
+        case FactorisedOperation():
             # the reciprocal of every pivot, and for every row below it a multiple of its row
             return sum(1 + k + k * (k + 1) for k in range(triangle_rows(n)))
-        case Solution():
+        case SolutionOperation():
             return n - 1 + 2 * (n - 1) * (n - 2)
     return 0
 

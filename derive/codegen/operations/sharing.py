@@ -13,7 +13,12 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from math import gcd
 
-from derive.codegen.operations.operation import Constant, Operation, Product, Sum
+from derive.codegen.operations.operation import (
+    ConstantOperation,
+    Operation,
+    ProductOperation,
+    SumOperation,
+)
 
 #: Whether it is in a sum, two operands, and the ratio of their coefficients: its numerator and
 #: denominator, since fractions are compared and hashed slowly.
@@ -86,16 +91,17 @@ class _Queue:
 def _common_operands(operations: dict[int, Operation]) -> set[tuple[bool, int]]:
     """Whether it is in sums, and an operand of several of them or of several products."""
     counts = Counter(
-        (isinstance(operation, Sum), operand)
+        (isinstance(operation, SumOperation), operand)
         for operation in operations.values()
-        if isinstance(operation, Sum | Product)
+        if isinstance(operation, SumOperation | ProductOperation)
         for operand in {*operation.operands}
     )
     return {
         (is_sum, operand)
         for (is_sum, operand), count in counts.items()
         # a sum in a sum can turn out to be a pair of others
-        if count > 1 or isinstance(operations[operand], Sum if is_sum else Product)
+        if count > 1
+        or isinstance(operations[operand], SumOperation if is_sum else ProductOperation)
     }
 
 
@@ -104,17 +110,17 @@ def _pairs(
 ) -> set[Pair]:
     """The pairs of common operands of a sum or product, of which at least one has `changed`."""
     match operation:
-        case Product(operands):
+        case ProductOperation(operands):
             # of a power, two factors are sufficient
             factors = [n for n, count in Counter(operands).items() for _ in range(min(count, 2))]
             terms = [(n, 1, 1) for n in sorted(factors) if (False, n) in common]
-        case Sum(operands, _, coefficients):
+        case SumOperation(operands, _, coefficients):
             pairs = sorted(zip(operands, coefficients, strict=True))
             terms = [(n, *c.as_integer_ratio()) for n, c in pairs if (True, n) in common]
         case _:
             return set()
     return {
-        (isinstance(operation, Sum), a, b, *_ratio(above * lower, below * upper))
+        (isinstance(operation, SumOperation), a, b, *_ratio(above * lower, below * upper))
         for k, (b, above, below) in enumerate(terms)
         for a, upper, lower in (
             terms[:k] if b in changed else [t for t in terms[:k] if t[0] in changed]
@@ -131,13 +137,17 @@ def _ratio(numerator: int, denominator: int) -> tuple[int, int]:
 def _operation_of(pair: Pair, operations: dict[int, Operation]) -> Operation:
     in_sum, a, b, *ratio = pair
     constant = operations[a].constant and operations[b].constant
-    return Sum((a, b), constant, (ONE, Fraction(*ratio))) if in_sum else Product((a, b), constant)
+    return (
+        SumOperation((a, b), constant, (ONE, Fraction(*ratio)))
+        if in_sum
+        else ProductOperation((a, b), constant)
+    )
 
 
 def _without(operation: Operation, pair: Pair, number: int) -> Operation:
     """`operation` with the two operands of `pair` replaced by operation `number`."""
     _, a, b, *_ = pair
-    if not isinstance(operation, Sum):
+    if not isinstance(operation, SumOperation):
         factors = [*operation.operands, number]
         factors.remove(a)
         factors.remove(b)
@@ -149,6 +159,6 @@ def _without(operation: Operation, pair: Pair, number: int) -> Operation:
     if not terms[number]:  # the sum contained the pair's negative under the pair's own name
         del terms[number]
     if not terms:
-        return Constant((), True, Fraction(0))
+        return ConstantOperation((), True, Fraction(0))
     operands, coefficients = zip(*sorted(terms.items()), strict=True)
     return replace(operation, operands=operands, coefficients=coefficients)

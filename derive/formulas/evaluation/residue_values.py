@@ -12,7 +12,7 @@ from random import Random
 import numpy as np
 import sympy as sp
 
-from derive.formulas.evaluation.residues import PRIME, Series, inverse, product
+from derive.formulas.evaluation.residues import PRIME, ResidueSeries, inverse, product
 
 #: Functions with kinks or jumps.
 KINKED = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Piecewise)
@@ -25,23 +25,23 @@ class Evaluation:
     evaluation with longer series takes over.
     """
 
-    def __init__(self, known: Mapping[sp.Basic, Series], point: "Point") -> None:
+    def __init__(self, known: Mapping[sp.Basic, ResidueSeries], point: "RandomResidues") -> None:
         self._known, self._point = dict(known), point
         self._shape = next(iter(self._known.values())).rows.shape
 
-    def __call__(self, expression: sp.Basic) -> Series:
+    def __call__(self, expression: sp.Basic) -> ResidueSeries:
         """The series of an expression; `NotImplementedError` for an unknown function."""
         if expression not in self._known:
             self._known[expression] = self._value(expression)
         return self._known[expression]
 
-    def constant(self, number: int) -> Series:
+    def constant(self, number: int) -> ResidueSeries:
         """The series of a number."""
         rows = np.zeros(self._shape, np.int64)
         rows[0, 0] = number % PRIME
-        return Series(rows)
+        return ResidueSeries(rows)
 
-    def _value(self, expression: sp.Basic) -> Series:
+    def _value(self, expression: sp.Basic) -> ResidueSeries:
         match expression:
             case sp.Add() | sp.Mul():
                 first, *others = map(self, expression.args)
@@ -80,7 +80,7 @@ class Evaluation:
                 return self(self._point.choice(expression))
         raise NotImplementedError(f"{type(expression).__name__} has no series of residues")
 
-    def _exponential(self, exponent: sp.Expr) -> Series:
+    def _exponential(self, exponent: sp.Expr) -> ResidueSeries:
         result = self.constant(1)
         for term in sp.Add.make_args(sp.expand_mul(exponent)):
             number, rest = term.as_coeff_Mul()
@@ -97,7 +97,7 @@ class Evaluation:
             result = result * self._known[base].power(number.p)
         return result
 
-    def _waves(self, angle: sp.Expr) -> tuple[Series, Series]:
+    def _waves(self, angle: sp.Expr) -> tuple[ResidueSeries, ResidueSeries]:
         """Sine and cosine."""
         sine, cosine = self.constant(0), self.constant(1)
         for term in sp.Add.make_args(sp.expand_mul(angle)):
@@ -113,7 +113,7 @@ class Evaluation:
                 )
         return sine, cosine
 
-    def _half_waves(self, angle: sp.Expr) -> tuple[Series, Series]:
+    def _half_waves(self, angle: sp.Expr) -> tuple[ResidueSeries, ResidueSeries]:
         key = sp.sin(angle, evaluate=False), sp.cos(angle, evaluate=False)
         if key[0] not in self._known:
             argument, parameter = self(angle), self._point.residue(key[0])
@@ -130,7 +130,7 @@ class Evaluation:
             self._known[key[1]] = argument.composed(cosine, -sine % PRIME)
         return self._known[key[0]], self._known[key[1]]
 
-    def _integral(self, expression: sp.Expr) -> Series:
+    def _integral(self, expression: sp.Expr) -> ResidueSeries:
         """A function whose derivative is a rational function of its argument."""
         u = expression.args[0]
         slope = self(1 / u if isinstance(expression, sp.log) else 1 / (1 + u**2)).rows[0]
@@ -142,7 +142,7 @@ class Evaluation:
         return argument.composed(values, slope)
 
 
-class Point:
+class RandomResidues:
     """Random residues, the same for equal keys, and the `branches` of functions with kinks.
 
     A function that is not in `branches` has its first branch: the first argument, or a positive

@@ -31,29 +31,29 @@ def product(series: Residues, factor: Residues) -> Residues:
     return ((high @ toeplitz % PRIME << 16) + low @ toeplitz) % PRIME
 
 
-class Series:
+class ResidueSeries:
     """A power series in time and its derivatives by unknowns, the rows of `rows`."""
 
     def __init__(self, rows: Residues) -> None:
         self.rows = rows
 
-    def __add__(self, other: "Series") -> "Series":
-        return Series((self.rows + other.rows) % PRIME)
+    def __add__(self, other: "ResidueSeries") -> "ResidueSeries":
+        return ResidueSeries((self.rows + other.rows) % PRIME)
 
-    def __mul__(self, other: "Series") -> "Series":
+    def __mul__(self, other: "ResidueSeries") -> "ResidueSeries":
         rows = product(self.rows, other.rows[0])
         rows[1:] += product(other.rows[1:], self.rows[0])
-        return Series(rows % PRIME)
+        return ResidueSeries(rows % PRIME)
 
-    def scaled(self, number: int) -> "Series":
+    def scaled(self, number: int) -> "ResidueSeries":
         """A multiple."""
-        return Series(self.rows * (number % PRIME) % PRIME)
+        return ResidueSeries(self.rows * (number % PRIME) % PRIME)
 
-    def composed(self, values: Residues, slopes: Residues) -> "Series":
+    def composed(self, values: Residues, slopes: Residues) -> "ResidueSeries":
         """A function of this series, from its own series and that of its derivative."""
-        return Series(np.vstack([values, product(self.rows[1:], slopes)]))
+        return ResidueSeries(np.vstack([values, product(self.rows[1:], slopes)]))
 
-    def power(self, numerator: int, denominator: int = 1) -> "Series":
+    def power(self, numerator: int, denominator: int = 1) -> "ResidueSeries":
         """A rational power; `NoRootError` where there is none."""
         x, exponent = self.rows[0].tolist(), numerator * inverse(denominator) % PRIME
         own, values = inverse(x[0]), [pow(_root(x[0], denominator), numerator, PRIME)]
@@ -61,7 +61,9 @@ class Series:
             terms = ((exponent * j - (k - j)) * x[j] * values[k - j] for j in range(1, k + 1))
             values.append(sum(terms) * own * inverse(k) % PRIME)
         result = np.array(values)
-        reciprocal = result if exponent == PRIME - 1 else Series(self.rows[:1]).power(-1).rows[0]
+        reciprocal = (
+            result if exponent == PRIME - 1 else ResidueSeries(self.rows[:1]).power(-1).rows[0]
+        )
         return self.composed(result, product(result[np.newaxis], reciprocal)[0] * exponent % PRIME)
 
 
@@ -77,7 +79,7 @@ def _root(number: int, degree: int) -> int:
     return pow(number, pow(degree, -1, PRIME - 1), PRIME)
 
 
-def solved(matrix: list[list[Series]], right: list[Series]) -> list[Series]:
+def solved(matrix: list[list[ResidueSeries]], right: list[ResidueSeries]) -> list[ResidueSeries]:
     """The solution of a linear system of series by elimination."""
     n = len(right)
     for k in range(n):

@@ -5,7 +5,15 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from derive.formulas.typeset.latex import latex
-from derive.handout.document import Block, Code, Document, Equation, Paragraph, Table, pieces
+from derive.handout.document_model import (
+    Block,
+    Code,
+    HandoutDocument,
+    HandoutTable,
+    NumberedEquation,
+    Paragraph,
+    pieces,
+)
 from derive.handout.formats.tex import aligned
 
 METADATA = {
@@ -14,7 +22,7 @@ METADATA = {
 }
 
 
-def notebook(document: Document) -> str:
+def notebook(document: HandoutDocument) -> str:
     """The text of an ``.ipynb`` file: one cell a section, and one for each function in Python."""
     cells: list[dict[str, Any]] = []
     texts = [f"# {_escaped(document.title)}"]
@@ -52,9 +60,9 @@ def _block(block: Block) -> str:
     match block:
         case Paragraph(text):
             return _text(text)
-        case Equation(number=number):
+        case NumberedEquation(number=number):
             return f"$$\n{aligned(block)} \\tag{{{number}}}\n$$"
-        case Table(head, rows):
+        case HandoutTable(head, rows):
             return "\n".join(_rows([head, ["---"] * len(head), *rows]))
         case Code(language, text):
             return f"{language}:\n\n```{language.lower()}\n{text}\n```"

@@ -4,7 +4,15 @@ from html import escape
 from pathlib import Path
 
 from derive.formulas.typeset.typesetting import elements
-from derive.handout.document import Block, Code, Document, Equation, Paragraph, Table, pieces
+from derive.handout.document_model import (
+    Block,
+    Code,
+    HandoutDocument,
+    HandoutTable,
+    NumberedEquation,
+    Paragraph,
+    pieces,
+)
 from derive.handout.formats.tex import aligned
 
 STYLE = Path(__file__).with_name("page.css")
@@ -32,7 +40,7 @@ SOURCE = (
 BLANK = '<span class="blank"></span>'
 
 
-def page(document: Document) -> str:
+def page(document: HandoutDocument) -> str:
     """The text of an ``.html`` file."""
     parts = []
     for number, section in enumerate(document.sections, 1):
@@ -46,12 +54,12 @@ def _block(block: Block) -> str:
     match block:
         case Paragraph(text):
             return f"<p>{_text(text)}</p>"
-        case Equation(number=number):
+        case NumberedEquation(number=number):
             formula = f'<div class="formula">{_formula(block)}</div>'
             label = f'<span class="number">({number})</span>'
             source = "" if block.is_blank else SOURCE.format(escape(aligned(block)))
             return f'<div class="equation" id="formula-{number}">{formula}{label}{source}</div>'
-        case Table(head, rows):
+        case HandoutTable(head, rows):
             titles = "".join(f"<th>{_text(cell)}</th>" for cell in head)
             lines = ("".join(f"<td>{_text(cell)}</td>" for cell in row) for row in rows)
             body = "".join(f"<tr>{line}</tr>\n" for line in lines)
@@ -63,7 +71,7 @@ def _block(block: Block) -> str:
             return f"<p>{escape(language)}:</p>\n<pre><code>{escape(text)}</code></pre>"
 
 
-def _formula(equation: Equation) -> str:
+def _formula(equation: NumberedEquation) -> str:
     if not equation.is_blank:
         sides = equation.sides
         return " ".join(elements(sides, ["="] * (len(sides) - 1)))

@@ -5,7 +5,16 @@ from textwrap import TextWrapper
 
 from derive.formulas.typeset.latex import latex
 from derive.formulas.typeset.line_breaks import latex_rows
-from derive.handout.document import WIDTH, Block, Code, Document, Equation, Paragraph, Table, pieces
+from derive.handout.document_model import (
+    WIDTH,
+    Block,
+    Code,
+    HandoutDocument,
+    HandoutTable,
+    NumberedEquation,
+    Paragraph,
+    pieces,
+)
 from derive.handout.formats.characters import declarations, escaped
 
 DOCUMENT = r"""\documentclass[11pt,a4paper,fleqn]{article}
@@ -35,7 +44,7 @@ CODE_WIDTH = 96
 WIDE = 50
 
 
-def tex(document: Document) -> str:
+def tex(document: HandoutDocument) -> str:
     """The text of a ``.tex`` file."""
     parts: list[str] = []
     for section in document.sections:
@@ -47,7 +56,7 @@ def tex(document: Document) -> str:
     return filled.replace("@title@", escaped(document.title)).replace("@body@", body)
 
 
-def equation_rows(equation: Equation) -> list[str]:
+def equation_rows(equation: NumberedEquation) -> list[str]:
     """The rows of a formula for ``aligned``; a blank takes the place of the derived side."""
     if not equation.is_blank:
         return latex_rows(equation.sides, WIDTH)
@@ -56,7 +65,7 @@ def equation_rows(equation: Equation) -> list[str]:
     return [" = ".join([f"{first} & ", *others, BLANK, *map(latex, after)])]
 
 
-def aligned(equation: Equation) -> str:
+def aligned(equation: NumberedEquation) -> str:
     """A formula in one environment, for a display without numbers of its own."""
     rows = " \\\\\n".join(equation_rows(equation))
     return f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"
@@ -66,11 +75,11 @@ def _block(block: Block) -> str:
     match block:
         case Paragraph(text):
             return f"\n{_text(text)}"
-        case Equation(number=number):
+        case NumberedEquation(number=number):
             text = " \\notag \\\\\n".join(f"  {row}" for row in equation_rows(block))
             display = f"\\begin{{align}}\n{text} \\tag{{{number}}}\n\\end{{align}}"
             return display + rf"\vspace{{{LINE}}}" * block.is_blank
-        case Table(head, rows):
+        case HandoutTable(head, rows):
             return _table(head, rows)
         case Code(language, text):
             code = "\n".join(map(_wrapped, text.splitlines()))

@@ -17,7 +17,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.mechanics.constraints.constraints import Constraints
+from derive.mechanics.constraints.differentiated_constraints import Constraints
 from derive.system.constraints import Constraint
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.derivative import derivative
-from derive.formulas.proofs.expansion import is_expandable
+from derive.formulas.proofs.expansion_size import is_expandable
 from derive.mechanics.energies.reduction import reduced
 
 Vector: TypeAlias = tuple[sp.Expr, ...]
@@ -32,7 +32,7 @@ MOST_TERMS = 1000
 
 
 @dataclass(frozen=True)
-class Branch:
+class TreeBranch:
     """The increment from one point to another, and the inertia of the masses at its end."""
 
     parent: int | None  # the branch at whose end it begins; None at a fixed point
@@ -67,7 +67,7 @@ class KinematicTree:
         Integers, n × n, regular; the identity if no sums of angles occur.
     """
 
-    branches: tuple[Branch, ...]
+    branches: tuple[TreeBranch, ...]
     coordinates: tuple[sp.Symbol, ...]
     variables: tuple[sp.Symbol, ...]
     sums: sp.ImmutableDenseMatrix
@@ -214,7 +214,7 @@ def _tree(
     # those of many masses are near the root
     counts = Counter(moving for _, increments in parts for moving, _ in increments)
     places: dict[tuple[int | None, Increment], int] = {}
-    branches: list[Branch] = []
+    branches: list[TreeBranch] = []
     masses: list[list[sp.Expr]] = []
     for inertia, increments in parts:
         parent: int | None = None
@@ -222,13 +222,13 @@ def _tree(
             place = (parent, increment)
             if place not in places:
                 places[place] = len(branches)
-                branches.append(Branch(parent, *increment, sp.S.Zero))
+                branches.append(TreeBranch(parent, *increment, sp.S.Zero))
                 masses.append([])
             parent = places[place]
         if parent is not None:
             masses[parent].append(inertia)
     loaded = (
-        Branch(branch.parent, branch.variables, branch.increment, sp.Add(*own))
+        TreeBranch(branch.parent, branch.variables, branch.increment, sp.Add(*own))
         for branch, own in zip(branches, masses, strict=True)
     )
     return KinematicTree(tuple(loaded), q, variables, sums)
@@ -246,7 +246,7 @@ def _increments(position: Sequence[sp.Expr], variables: Sequence[sp.Symbol]) -> 
     return [(moving, tuple(sp.Add(*terms) for terms in own)) for moving, own in parts.items()]
 
 
-def _steps(branches: Sequence[Branch]) -> Iterator[Step]:
+def _steps(branches: Sequence[TreeBranch]) -> Iterator[Step]:
     """Branches from the ends, and each variable when at most one point depends on it."""
     remaining = {i for branch in branches for i in branch.variables}
     waiting = {i: {k for k, one in enumerate(branches) if i in one.variables} for i in remaining}

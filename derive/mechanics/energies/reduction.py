@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion import LARGEST, is_expandable
+from derive.formulas.proofs.expansion_size import LARGEST, is_expandable
 from derive.mechanics.energies.harmonics import Harmonics
 
 Square = Callable[[sp.Expr], sp.Expr]

@@ -5,8 +5,8 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.evaluation.generic_values import sample
 from derive.formulas.evaluation.numeric import Evaluator, NoValueError
-from derive.formulas.evaluation.sampling import sample
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.system.parts import SystemDefinitionError

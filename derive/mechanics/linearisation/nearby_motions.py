@@ -9,14 +9,14 @@ import sympy as sp
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.equations import Equations
 from derive.mechanics.linearisation.free_changes import FreeChanges, solved
-from derive.mechanics.linearisation.point import Point
+from derive.mechanics.linearisation.point import OperatingPoint
 
 
 @dataclass(frozen=True)
 class NearbyMotions:
     """The motion at a point, and the changes of state and accelerations near it."""
 
-    point: Point
+    point: OperatingPoint
     equations: Equations
     mass_matrix: Matrix
     velocities: FreeChanges  # of velocities and accelerations
@@ -24,7 +24,7 @@ class NearbyMotions:
     independent: list[int]
 
     @classmethod
-    def at(cls, point: Point, equations: Equations) -> "NearbyMotions":
+    def at(cls, point: OperatingPoint, equations: Equations) -> "NearbyMotions":
         """The motions near a point that satisfies the constraints."""
         system, n = point.system, len(point.system.q)
         point.check_constraints(equations)

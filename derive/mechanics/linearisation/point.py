@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.sampling import is_small
+from derive.formulas.evaluation.generic_values import is_small
 from derive.formulas.expression import FUNCTIONS, number
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Matrix
@@ -22,14 +22,14 @@ Formula: TypeAlias = sp.Expr | float | str
 
 
 @dataclass(frozen=True)
-class Point:
+class OperatingPoint:
     """A point of a system: values of coordinates, velocities, inputs and time."""
 
     system: System
     values: dict[sp.Symbol, sp.Expr]
 
     @classmethod
-    def of(cls, system: System, given: Mapping[str, Formula]) -> "Point":
+    def of(cls, system: System, given: Mapping[str, Formula]) -> "OperatingPoint":
         """A point by names; others are at the equilibrium, or zeros, at rest and without inputs."""
         rest = system.equilibrium or (sp.S.Zero,) * len(system.q)
         values = dict(zip(system.q, rest, strict=True))

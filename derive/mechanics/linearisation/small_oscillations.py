@@ -6,12 +6,12 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.sampling import is_small
+from derive.formulas.evaluation.generic_values import is_small
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations
 from derive.mechanics.linearisation.free_changes import FreeChanges, tidied
-from derive.mechanics.linearisation.point import Point
+from derive.mechanics.linearisation.point import OperatingPoint
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 
@@ -108,7 +108,7 @@ class SmallOscillations:
         still = dict.fromkeys(system.qdot, sp.S.Zero)
         reactions = sp.zeros(len(system.q), 1)
         if system.conditions:
-            Point(system, values | still).check_constraints(d)
+            OperatingPoint(system, values | still).check_constraints(d)
             reactions = d.constraint_jacobian.xreplace(values).T * self._multipliers(values)
         for i, q in enumerate(system.q):
             gradient = d.effective_potential.diff(q) + d.drift[i].diff(TIME)

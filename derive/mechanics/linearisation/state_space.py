@@ -11,7 +11,7 @@ from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.equations import Equations
 from derive.mechanics.linearisation.free_changes import tidied
 from derive.mechanics.linearisation.nearby_motions import NearbyMotions
-from derive.mechanics.linearisation.point import Formula, Point, expression, named
+from derive.mechanics.linearisation.point import Formula, OperatingPoint, expression, named
 from derive.system.parts import SystemDefinitionError, formula, items
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -91,7 +91,7 @@ class StateSpace:
 
 
 def state_space(
-    point: Point, equations: Equations, outputs: Sequence[Formula] | None
+    point: OperatingPoint, equations: Equations, outputs: Sequence[Formula] | None
 ) -> StateSpace:
     """The state space of M q̈ - Gᵀ λ = f and G q̈ = γ at a point, by their differentials.
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from html import unescape
 
 from derive.reading.formats.tex import environments
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
+from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "html", (".html", ".htm")
 #: Elements whose text is shown as it stands, or not at all.
@@ -26,22 +26,22 @@ def raw_end(opening: re.Match[str]) -> str:
 
 #: Formulas in MathML.
 MATH = (
-    Token(r"(?i:<math\b[^<>]{0,300}?display=[\"']?block[^<>]*+>)", MATHML, "math", inner=LATEX),
-    Token(r"(?i:<math\b[^<>]*+>)", MATHML, "math", is_inline=True, inner=LATEX),
+    Delimiter(r"(?i:<math\b[^<>]{0,300}?display=[\"']?block[^<>]*+>)", MATHML, "math", inner=LATEX),
+    Delimiter(r"(?i:<math\b[^<>]*+>)", MATHML, "math", is_inline=True, inner=LATEX),
 )
 
 TOKENS = (
-    Token(COMMENT, r"(?P<end>-->)"),
-    Token(SCRIPT + r";\s*mode=display[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex"),
-    Token(SCRIPT + r"[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex", is_inline=True),
+    Delimiter(COMMENT, r"(?P<end>-->)"),
+    Delimiter(SCRIPT + r";\s*mode=display[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex"),
+    Delimiter(SCRIPT + r"[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex", is_inline=True),
     *MATH,
-    Token(RAW, raw_end),
-    Token(TAG),
-    Token(r"\\[\\$]"),
-    Token(r"\$\$", rf"\\[\\$]|(?P<end>\$\$)|(?P<stop>{BLOCK_END})", "$$"),
-    Token(r"\\\[", rf"\\\\|(?P<end>\\\])|(?P<stop>\\\[|{BLOCK_END})", r"\["),
-    Token(r"\\\(", rf"\\\\|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE}|{BLOCK_END})", r"\(", True),
-    Token(
+    Delimiter(RAW, raw_end),
+    Delimiter(TAG),
+    Delimiter(r"\\[\\$]"),
+    Delimiter(r"\$\$", rf"\\[\\$]|(?P<end>\$\$)|(?P<stop>{BLOCK_END})", "$$"),
+    Delimiter(r"\\\[", rf"\\\\|(?P<end>\\\])|(?P<stop>\\\[|{BLOCK_END})", r"\["),
+    Delimiter(r"\\\(", rf"\\\\|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE}|{BLOCK_END})", r"\(", True),
+    Delimiter(
         r"\$(?![\s$])",
         rf"\\.|(?P<end>(?<!\s)\$(?![\d$]))|(?P<stop>\$|{BLANK_LINE}|<(?!br)[A-Za-z/!])",
         "$",
@@ -51,7 +51,7 @@ TOKENS = (
 )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unread]:
+def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a page."""
     return scanned(text, TOKENS)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
+from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
 #: The start of a line in a list or a quotation; an item of a list up to its text.
@@ -46,45 +46,49 @@ def _span_end(opening: re.Match[str]) -> str:
 
 
 TOKENS = (
-    Token(MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"),
-    Token(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end),
-    Token("<!--", "(?P<end>-->)"),
-    Token(rf"(?i:<img\b[^<>\n]{{0,200}}?src=\"){SERVICE}", r"(?P<end>\")|(?P<stop>\n)", IMAGE),
-    Token(
+    Delimiter(MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"),
+    Delimiter(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end),
+    Delimiter("<!--", "(?P<end>-->)"),
+    Delimiter(rf"(?i:<img\b[^<>\n]{{0,200}}?src=\"){SERVICE}", r"(?P<end>\")|(?P<stop>\n)", IMAGE),
+    Delimiter(
         rf"!\[[^\]\n]{{0,200}}\]\({SERVICE}", r"(?P<end>\)(?=[\s.,;:!?|]|\Z))|(?P<stop>\s)", IMAGE
     ),
     *html.MATH,
-    Token(html.RAW, html.raw_end),
-    Token(TAG),
+    Delimiter(html.RAW, html.raw_end),
+    Delimiter(TAG),
     # inline formulas of GitHub and of Documenter.jl; code
-    Token(r"\$`", rf"(?P<end>`\$)|(?P<stop>{BLANK_LINE})", "$`", is_inline=True),
-    Token(r"(?<!`)``(?!`)(?=[^`\n]*\\[A-Za-z])", _span_end, "``", is_inline=True),
-    Token(r"(?<!`)`{1,3}(?!`)", _span_end),
+    Delimiter(r"\$`", rf"(?P<end>`\$)|(?P<stop>{BLANK_LINE})", "$`", is_inline=True),
+    Delimiter(r"(?<!`)``(?!`)(?=[^`\n]*\\[A-Za-z])", _span_end, "``", is_inline=True),
+    Delimiter(r"(?<!`)`{1,3}(?!`)", _span_end),
     # brackets whose backslash is escaped
-    Token(r"\\\\\[", r"\\{4}|(?P<end>\\\\\])|(?P<stop>\\\\\[)", r"\\["),
-    Token(r"\\\\\(", rf"\\{{4}}|(?P<end>\\\\\))|(?P<stop>\\\\\(|{BLANK_LINE})", r"\\(", True),
-    Token(r"\\[\\$`]"),
-    Token(r"\$\$", r"\\.|(?P<end>\$\$)", "$$"),
-    Token(r"\\\[", r"\\\\|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
-    Token(r"\\\(", rf"\\\\|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE})", r"\(", is_inline=True),
+    Delimiter(r"\\\\\[", r"\\{4}|(?P<end>\\\\\])|(?P<stop>\\\\\[)", r"\\["),
+    Delimiter(r"\\\\\(", rf"\\{{4}}|(?P<end>\\\\\))|(?P<stop>\\\\\(|{BLANK_LINE})", r"\\(", True),
+    Delimiter(r"\\[\\$`]"),
+    Delimiter(r"\$\$", r"\\.|(?P<end>\$\$)", "$$"),
+    Delimiter(r"\\\[", r"\\\\|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
+    Delimiter(r"\\\(", rf"\\\\|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE})", r"\(", is_inline=True),
     # a price ends with a space or before a digit, and so does no formula
-    Token(
+    Delimiter(
         r"\$(?=[^\s$])",
         rf"\\.|(?P<end>(?<!\s)\$(?![\d$]))|(?P<stop>\$|{BLANK_LINE})",
         "$",
         is_inline=True,
     ),
-    Token(r"\$(?=[ \t])", r"\\.|(?P<end>(?<=[ \t])\$(?!\d))|(?P<stop>\$|\n)", "$", is_inline=True),
+    Delimiter(
+        r"\$(?=[ \t])", r"\\.|(?P<end>(?<=[ \t])\$(?!\d))|(?P<stop>\$|\n)", "$", is_inline=True
+    ),
     *environments(r"\\\\"),
 )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unread]:
+def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text."""
     code = _indented_code(text)
-    indented = Token("^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code)
+    indented = Delimiter(
+        "^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code
+    )
     for found in scanned(text, (indented, *TOKENS)):
-        if isinstance(found, Unread):
+        if isinstance(found, UnreadDisplay):
             yield found
         elif found.delimiter in ("$$", IMAGE):
             yield replace(found, is_inline=_is_in_sentence(text, found))

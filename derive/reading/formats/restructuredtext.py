@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, scanned
+from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "restructuredtext", (".rst",)
 CODE = (
@@ -21,18 +21,18 @@ def _block_end(opening: re.Match[str]) -> str:
 
 
 TOKENS = (
-    Token(r"^[ \t]*+\.\.[ \t]++math::", _block_end, ".. math::"),
-    Token(rf"^[ \t]*+\.\.[ \t]++(?:{CODE})::[^\n]*+\n", _block_end),
+    Delimiter(r"^[ \t]*+\.\.[ \t]++math::", _block_end, ".. math::"),
+    Delimiter(rf"^[ \t]*+\.\.[ \t]++(?:{CODE})::[^\n]*+\n", _block_end),
     # a comment: no directive, target, footnote or substitution
-    Token(r"^[ \t]*+\.\.(?![^ \t\n])(?![ \t]++(?:[\w:-]+::|[\[_|]))[^\n]*+\n", _block_end),
+    Delimiter(r"^[ \t]*+\.\.(?![^ \t\n])(?![ \t]++(?:[\w:-]+::|[\[_|]))[^\n]*+\n", _block_end),
     # a paragraph that introduces a literal block
-    Token(r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end),
-    Token(r":math:`", rf"(?P<end>`)|(?P<stop>{BLANK_LINE})", ":math:", is_inline=True),
-    Token(r"``", rf"(?P<end>``)|(?P<stop>{BLANK_LINE})"),
+    Delimiter(r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end),
+    Delimiter(r":math:`", rf"(?P<end>`)|(?P<stop>{BLANK_LINE})", ":math:", is_inline=True),
+    Delimiter(r"``", rf"(?P<end>``)|(?P<stop>{BLANK_LINE})"),
 )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unread]:
+def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text."""
     return scanned(text, TOKENS)
 

@@ -6,7 +6,14 @@ Comments and verbatim text are skipped. ``\input`` and ``\include`` are not foll
 import re
 from collections.abc import Iterator
 
-from derive.reading.scanning import BLANK_LINE, Excerpt, Token, Unread, environment, scanned
+from derive.reading.scanning import (
+    BLANK_LINE,
+    Delimiter,
+    Excerpt,
+    UnreadDisplay,
+    environment,
+    scanned,
+)
 
 KIND, SUFFIXES = "latex", (".tex",)
 #: Escaped characters, which are no delimiters; comments, up to the end of the line.
@@ -37,7 +44,7 @@ def definitions(text: str, comment: str = COMMENT) -> tuple[str, ...]:
     return tuple(one["definition"] for one in found if one["definition"])
 
 
-def environments(passed: str) -> tuple[Token, ...]:
+def environments(passed: str) -> tuple[Delimiter, ...]:
     """Environments of formulas, at whose end `passed` is passed over."""
 
     def closing(opening: re.Match[str]) -> str:
@@ -45,25 +52,25 @@ def environments(passed: str) -> tuple[Token, ...]:
 
     inline = r"\\begin[ \t]*+\{math\}"
     return (
-        Token(DISPLAYS, closing, r"\begin", is_environment=True),
-        Token(inline, closing, r"\begin", is_inline=True, is_environment=True),
+        Delimiter(DISPLAYS, closing, r"\begin", is_environment=True),
+        Delimiter(inline, closing, r"\begin", is_inline=True, is_environment=True),
     )
 
 
-def excerpts(text: str) -> Iterator[Excerpt | Unread]:
+def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text in LaTeX: between the document's begin and end if it has them."""
     passed = rf"{ESCAPED}|{COMMENT}"
     tokens = (
-        Token(ESCAPED),
-        Token(COMMENT),
-        Token(DEFINITION),
-        Token(r"\\(?:verb|lstinline)\*?[^\w\s*]", _verb),
-        Token(VERBATIM, lambda one: rf"(?P<end>\\end\{{{re.escape(environment(one))}\}})"),
-        Token(r"\\iffalse\b", r"(?P<end>\\fi\b)"),
-        Token(r"\$\$", rf"{passed}|(?P<end>\$\$)", "$$"),
-        Token(r"\$", rf"{passed}|(?P<end>\$)|(?P<stop>{BLANK_LINE})", "$", is_inline=True),
-        Token(r"\\\[", rf"{passed}|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
-        Token(
+        Delimiter(ESCAPED),
+        Delimiter(COMMENT),
+        Delimiter(DEFINITION),
+        Delimiter(r"\\(?:verb|lstinline)\*?[^\w\s*]", _verb),
+        Delimiter(VERBATIM, lambda one: rf"(?P<end>\\end\{{{re.escape(environment(one))}\}})"),
+        Delimiter(r"\\iffalse\b", r"(?P<end>\\fi\b)"),
+        Delimiter(r"\$\$", rf"{passed}|(?P<end>\$\$)", "$$"),
+        Delimiter(r"\$", rf"{passed}|(?P<end>\$)|(?P<stop>{BLANK_LINE})", "$", is_inline=True),
+        Delimiter(r"\\\[", rf"{passed}|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
+        Delimiter(
             r"\\\(", rf"{passed}|(?P<end>\\\))|(?P<stop>\\\(|{BLANK_LINE})", r"\(", is_inline=True
         ),
         *environments(passed),
@@ -85,7 +92,7 @@ def _verb(opening: re.Match[str]) -> str:
     return rf"(?P<end>{re.escape(opening.group()[-1])}|$)"
 
 
-def _shorthands(text: str, passed: str) -> Iterator[Token]:
+def _shorthands(text: str, passed: str) -> Iterator[Delimiter]:
     r"""Delimiters such as ``\be`` and ``\ee`` that the document defines for environments."""
     macros: dict[tuple[str, str], list[str]] = {}
     for definition in definitions(text):
@@ -94,7 +101,7 @@ def _shorthands(text: str, passed: str) -> Iterator[Token]:
     for (word, name), opening in macros.items():
         if word == "begin" and (end := macros.get(("end", name))):
             closing = rf"{passed}|(?P<end>(?:{'|'.join(end)})(?![A-Za-z]))"
-            yield Token(rf"(?:{'|'.join(opening)})(?![A-Za-z])", closing, name)
+            yield Delimiter(rf"(?:{'|'.join(opening)})(?![A-Za-z])", closing, name)
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:

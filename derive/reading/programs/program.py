@@ -33,7 +33,7 @@ class Origin:
 
 
 @dataclass(frozen=True)
-class Equation:
+class ProgramEquation:
     """An equation of motion, in the syntax of `derive.formulas.expression`.
 
     The rate of the coordinate theta is written theta_dot, its acceleration theta_ddot,
@@ -49,18 +49,18 @@ class Equation:
 
 
 @dataclass(frozen=True)
-class Function:
+class RateFunction:
     """A function, or a loop in it, that computes rates or changes coordinates step by step."""
 
     name: str  # empty for the statements outside all functions
     line: int
-    equations: tuple[Equation, ...]
+    equations: tuple[ProgramEquation, ...]
     #: Names of the program, such as "y[1]" or "self.m1", and those of the equations.
     names: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class Constant:
+class NumericConstant:
     """A name with one numeric value in the whole program."""
 
     name: str  # in the program, such as "self.m1"
@@ -80,7 +80,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Unread:
+class UnreadPart:
     """A part that cannot be followed, and why."""
 
     line: int
@@ -94,12 +94,12 @@ class Program:
 
     file: str
     language: str
-    functions: tuple[Function, ...]
-    constants: tuple[Constant, ...]
+    functions: tuple[RateFunction, ...]
+    constants: tuple[NumericConstant, ...]
     findings: tuple[Finding, ...]
-    unread: tuple[Unread, ...]
+    unread: tuple[UnreadPart, ...]
 
     @property
-    def equations(self) -> tuple[Equation, ...]:
+    def equations(self) -> tuple[ProgramEquation, ...]:
         """The equations of all functions."""
         return tuple(equation for one in self.functions for equation in one.equations)

@@ -5,7 +5,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.system.files.tables import Table
+from derive.system.files.tables import TomlTable
 from derive.system.orientation import Orientation, quaternion, rotation_matrix, rotations
 from derive.system.rigid_body import RigidBody
 from solvers.io.suggestion import shortened
@@ -16,7 +16,9 @@ Value = Callable[[str, str], sp.Expr]
 KINDS = 'rotations = "zxz" with angles, quaternion, or matrix'
 
 
-def rigid_body(row: Table, value: Value, mass: sp.Expr, position: tuple[sp.Expr, ...]) -> RigidBody:
+def rigid_body(
+    row: TomlTable, value: Value, mass: sp.Expr, position: tuple[sp.Expr, ...]
+) -> RigidBody:
     """The body of a table with ``inertia`` and ``angle``, or in space ``orientation``."""
     if "orientation" not in row.values:
         if isinstance(row.values.get("inertia"), list):
@@ -32,10 +34,10 @@ def rigid_body(row: Table, value: Value, mass: sp.Expr, position: tuple[sp.Expr,
     return RigidBody(mass, position, _formulas(row, "inertia", value), axes)
 
 
-def orientation(row: Table, key: str, value: Value) -> Orientation:
+def orientation(row: TomlTable, key: str, value: Value) -> Orientation:
     """The orientation of a table at a key of a row."""
     known = ("rotations", "angles", "quaternion", "matrix")
-    table = Table(f"{key} of {row.name}", row.values[key], known)
+    table = TomlTable(f"{key} of {row.name}", row.values[key], known)
     kinds = [key for key in table.values if key != "angles"]
     if len(kinds) != 1 or ("angles" in table.values) != (kinds == ["rotations"]):
         raise InputError(f"{table.name} has the keys {', '.join(table.values)}: give {KINDS}")
@@ -49,12 +51,12 @@ def orientation(row: Table, key: str, value: Value) -> Orientation:
     return quaternion(*parts)
 
 
-def _formulas(table: Table, key: str, value: Value) -> Any:
+def _formulas(table: TomlTable, key: str, value: Value) -> Any:
     """Formulas of a list, or of a list of lists."""
     rows = table.values.get(key)
     if not isinstance(rows, list):
         raise InputError(f"{key} = {shortened(rows)} in {table.name} must be a list in brackets")
-    inner = [Table(table.name, {key: row}, (key,)) for row in rows]
+    inner = [TomlTable(table.name, {key: row}, (key,)) for row in rows]
     return [
         [value(table.name, text) for text in row.formulas(key)]
         if isinstance(row.values[key], list)

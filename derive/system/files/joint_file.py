@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.system.constraints import Constraint
 from derive.system.files.body_tables import Value, orientation
-from derive.system.files.tables import Table
+from derive.system.files.tables import TomlTable
 from derive.system.joints.body_joints import hinge, prismatic
 from derive.system.joints.point_joints import ball, fixed_distance, pin, slider
 from derive.system.joints.rolling_joints import rolling_on_line, rolling_on_plane
@@ -36,7 +36,7 @@ def _arguments(kind: str) -> dict[str, Parameter]:
 KEYS = (*JOINTS, *dict.fromkeys(key for kind in JOINTS for key in _arguments(kind)))
 
 
-def read_joints(table: Table, value: Value, q: Sequence[sp.Symbol]) -> Iterator[Constraint]:
+def read_joints(table: TomlTable, value: Value, q: Sequence[sp.Symbol]) -> Iterator[Constraint]:
     """The constraints of the joints of a file."""
     for row in table.listed("joints", KEYS):
         kinds = [kind for kind in JOINTS if kind in row.values]
@@ -51,7 +51,7 @@ def read_joints(table: Table, value: Value, q: Sequence[sp.Symbol]) -> Iterator[
             raise InputError(f"{row.name}: {error}") from error
 
 
-def _values(row: Table, kind: str, value: Value) -> dict[str, Any]:
+def _values(row: TomlTable, kind: str, value: Value) -> dict[str, Any]:
     known, formula = _arguments(kind), partial(value, row.name)
     values: dict[str, Any] = {}
     for key, argument in known.items():

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from derive.system.files.tables import Table
+from derive.system.files.tables import TomlTable
 from derive.system.links.centred_links import Block, Box, Cart, Wheel
 from derive.system.links.line_links import Line, Plate, Rail, Rod, Spring, Thread
 from derive.system.links.link import Link
@@ -32,7 +32,7 @@ KINDS = (*LINES, *CENTRED)
 KEYS = (*KINDS, "radius", "length", "width", "height", "angle", "plane")
 
 
-def read_links(table: Table, value: Callable[[str, str], object]) -> Iterator[Link]:
+def read_links(table: TomlTable, value: Callable[[str, str], object]) -> Iterator[Link]:
     """The links of a file; ``value(key, text)`` is the value of a formula."""
     for row in table.listed("links", KEYS):
         kinds = [kind for kind in KINDS if kind in row.values]
@@ -44,7 +44,7 @@ def read_links(table: Table, value: Callable[[str, str], object]) -> Iterator[Li
             raise InputError(f"{row.name}: {error}") from error
 
 
-def _link(row: Table, kind: str, value: Callable[[str], object]) -> Link:
+def _link(row: TomlTable, kind: str, value: Callable[[str], object]) -> Link:
     if kind in LINES:
         known: tuple[str, ...] = (kind,)
         points = row.values[kind]
@@ -71,8 +71,8 @@ def _link(row: Table, kind: str, value: Callable[[str], object]) -> Link:
     return build(places[0], **values)
 
 
-def _place(row: Table, key: str, point: object, value: Callable[[str], object]) -> object:
+def _place(row: TomlTable, key: str, point: object, value: Callable[[str], object]) -> object:
     """A point: the number of a mass, or formulas of its components."""
     if isinstance(point, list):
-        return tuple(map(value, Table(row.name, {key: point}, (key,)).formulas(key)))
+        return tuple(map(value, TomlTable(row.name, {key: point}, (key,)).formulas(key)))
     return point

@@ -18,7 +18,7 @@ from derive.system.constraints import Constraint
 from derive.system.files.body_tables import rigid_body
 from derive.system.files.joint_file import read_joints
 from derive.system.files.link_file import read_links
-from derive.system.files.tables import Table, read
+from derive.system.files.tables import TomlTable, read
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import (
     Coordinate,
@@ -59,14 +59,14 @@ def read_system(file: str | PathLike[str]) -> System:
     """The system in a TOML file; its default name is the file's name without ``.toml``."""
     path = Path(file)
     try:
-        return _system(path.stem, Table(str(path), read(path), KEYS))
+        return _system(path.stem, TomlTable(str(path), read(path), KEYS))
     except (InputError, ExpressionError, SystemDefinitionError) as error:
         message = str(error)
         prefix = "" if message.startswith(str(path)) else f"{path}: "
         raise SystemDefinitionError(f"{prefix}{message}") from error
 
 
-def _system(stem: str, table: Table) -> System:
+def _system(stem: str, table: TomlTable) -> System:
     name = table.text("name", stem)
     if not IDENTIFIER.match(name):
         raise InputError(f'{name[:50]!r} cannot be the name of a system: give another, name = "…"')
@@ -109,7 +109,7 @@ def _system(stem: str, table: Table) -> System:
     )
 
 
-def _definitions(table: Table, system: str, formulas: Formulas) -> dict[str, Any]:
+def _definitions(table: TomlTable, system: str, formulas: Formulas) -> dict[str, Any]:
     definitions: dict[str, Any] = {}
     known = {**formulas.scope}
     own = replace(formulas, scope=ChainMap(definitions, known))  # which grows with the definitions
@@ -124,20 +124,20 @@ def _definitions(table: Table, system: str, formulas: Formulas) -> dict[str, Any
     return definitions
 
 
-def _outputs(table: Table, formulas: Formulas) -> dict[str, sp.Expr]:
+def _outputs(table: TomlTable, formulas: Formulas) -> dict[str, sp.Expr]:
     entries = table.entries("outputs").items()
     return {key: formulas.value(f"outputs.{key}", text) for key, text in entries}
 
 
-def _formula(table: Table, formulas: Formulas, key: str) -> sp.Expr | None:
+def _formula(table: TomlTable, formulas: Formulas, key: str) -> sp.Expr | None:
     return formulas.value(key, table.formula(key)) if key in table.values else None
 
 
-def _list(table: Table, formulas: Formulas, key: str) -> list[sp.Expr]:
+def _list(table: TomlTable, formulas: Formulas, key: str) -> list[sp.Expr]:
     return [formulas.value(key, text) for text in table.formulas(key)]
 
 
-def _lengths(table: Table, formulas: Formulas, key: str) -> Iterator[sp.Symbol]:
+def _lengths(table: TomlTable, formulas: Formulas, key: str) -> Iterator[sp.Symbol]:
     for text in table.formulas(key):
         value = formulas.value(key, text)
         if not isinstance(value, sp.Symbol):
@@ -145,7 +145,7 @@ def _lengths(table: Table, formulas: Formulas, key: str) -> Iterator[sp.Symbol]:
         yield value
 
 
-def _constraints(table: Table, formulas: Formulas) -> Iterator[Constraint]:
+def _constraints(table: TomlTable, formulas: Formulas) -> Iterator[Constraint]:
     known = ("formula", "name", "unit", "meaning")
     for k, row in enumerate(table.listed("constraints", known, short="formula"), 1):
         formula = formulas.value(row.name, row.formula("formula"))
@@ -153,7 +153,7 @@ def _constraints(table: Table, formulas: Formulas) -> Iterator[Constraint]:
         yield Constraint(formula, name, row.text("unit", "1"), meaning)
 
 
-def _pairs(table: Table, formulas: Formulas) -> Iterator[tuple[Any, ...]]:
+def _pairs(table: TomlTable, formulas: Formulas) -> Iterator[tuple[Any, ...]]:
     for row in table.rows("coincide", ("first", "second")):
         first, second = (
             [formulas.value(row.name, text) for text in row.formulas(key)] for key in row.values
@@ -162,7 +162,7 @@ def _pairs(table: Table, formulas: Formulas) -> Iterator[tuple[Any, ...]]:
 
 
 def _by_coordinate(
-    table: Table, formulas: Formulas, q: Sequence[sp.Symbol], key: str
+    table: TomlTable, formulas: Formulas, q: Sequence[sp.Symbol], key: str
 ) -> list[sp.Expr] | None:
     """One formula for each coordinate, by default 0; None if there are none."""
     texts = table.entries(key)
@@ -172,7 +172,7 @@ def _by_coordinate(
     return [formulas.value(key, texts.get(name, "0")) for name in names] if texts else None
 
 
-def _masses(table: Table, formulas: Formulas) -> Iterator[PointMass]:
+def _masses(table: TomlTable, formulas: Formulas) -> Iterator[PointMass]:
     for row in table.listed("masses", ("mass", "position", "inertia", "angle", "orientation")):
         mass, *position = (
             formulas.value(row.name, text)
@@ -184,18 +184,18 @@ def _masses(table: Table, formulas: Formulas) -> Iterator[PointMass]:
             yield PointMass(mass, tuple(position))
 
 
-def _coordinate(key: str, system: str, row: Table) -> Coordinate:
+def _coordinate(key: str, system: str, row: TomlTable) -> Coordinate:
     symbol = _symbol(key, system, positive=row.flag("positive", default=False))
     return Coordinate(symbol, row.text("unit", "rad"), row.text("meaning", key))
 
 
-def _input(key: str, system: str, row: Table) -> Input:
+def _input(key: str, system: str, row: TomlTable) -> Input:
     symbol = _symbol(key, system, positive=False)
     is_motion = row.flag("motion", default=False)
     return Input(symbol, row.text("unit", "1"), row.text("meaning", key), is_motion)
 
 
-def _parameter(key: str, system: str, row: Table, numbers: Formulas) -> Parameter:
+def _parameter(key: str, system: str, row: TomlTable, numbers: Formulas) -> Parameter:
     unit = row.text("unit", "1")
     try:
         value = float(numbers.value(row.name, row.formula("value")))

@@ -20,7 +20,7 @@ def read(path: Path) -> dict[str, Any]:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
 
 
-class Table:
+class TomlTable:
     """A table with a name for messages, whose keys are among those that are `known`."""
 
     def __init__(self, name: str, values: object, known: Collection[str]) -> None:
@@ -55,12 +55,12 @@ class Table:
             raise InputError(
                 f"{key} = {shortened(value)} in {self.name} must be a list in square brackets"
             )
-        return [Table(self.name, {key: item}, (key,)).formula(key) for item in value]
+        return [TomlTable(self.name, {key: item}, (key,)).formula(key) for item in value]
 
     def entries(self, key: str) -> dict[str, str]:
         """Names and formulas of a table in this one; none if it is missing."""
         values = self.values.get(key, {})
-        row = Table(key, values, values if isinstance(values, Mapping) else ())
+        row = TomlTable(key, values, values if isinstance(values, Mapping) else ())
         return {name: row.formula(name) for name in row.values}
 
     def flag(self, key: str, *, default: bool) -> bool:
@@ -70,14 +70,14 @@ class Table:
             raise InputError(f"{key} = {shortened(value)} in {self.name} must be true or false")
         return value
 
-    def tables(self, key: str, known: Collection[str]) -> "dict[str, Table]":
+    def tables(self, key: str, known: Collection[str]) -> "dict[str, TomlTable]":
         """The tables of a table, by name."""
         inner = self.values.get(key, {})
         if not isinstance(inner, Mapping):
             raise InputError(f"{key} = {shortened(inner)} must be a table: write [{key}]")
-        return {name: Table(f"{key}.{name}", values, known) for name, values in inner.items()}
+        return {name: TomlTable(f"{key}.{name}", values, known) for name, values in inner.items()}
 
-    def listed(self, key: str, known: Collection[str], short: str = "") -> "list[Table]":
+    def listed(self, key: str, known: Collection[str], short: str = "") -> "list[TomlTable]":
         """The tables of a list, in which a text or number may be short for one key's value."""
         inner = self.values.get(key, [])
         if not isinstance(inner, list):
@@ -85,9 +85,9 @@ class Table:
             raise InputError(f"{key} = {shortened(inner)} must be {form}")
         if short:
             inner = [one if isinstance(one, Mapping) else {short: one} for one in inner]
-        return [Table(f"{key} {k}", values, known) for k, values in enumerate(inner, 1)]
+        return [TomlTable(f"{key} {k}", values, known) for k, values in enumerate(inner, 1)]
 
-    def rows(self, key: str, columns: Sequence[str]) -> "list[Table]":
+    def rows(self, key: str, columns: Sequence[str]) -> "list[TomlTable]":
         """The lists of a list as tables, with these names of their entries."""
         inner = self.values.get(key, [])
         form = f"[{', '.join(columns)}]"
@@ -98,5 +98,5 @@ class Table:
             if not isinstance(entries, list) or len(entries) != len(columns):
                 raise InputError(f"{key} {k} = {shortened(entries)} must be a list {form}")
             values = dict(zip(columns, entries, strict=True))
-            tables.append(Table(f"{key} {k}", values, columns))
+            tables.append(TomlTable(f"{key} {k}", values, columns))
         return tables

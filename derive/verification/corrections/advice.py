@@ -12,7 +12,7 @@ from itertools import islice
 import sympy as sp
 
 from derive.formulas.expression import parse
-from derive.formulas.proofs.expansion import is_expandable
+from derive.formulas.proofs.expansion_size import is_expandable
 from derive.mechanics.energies.reduction import reduced
 from derive.verification.corrections.goals import Goal, goals
 from derive.verification.corrections.replacement import (
@@ -25,8 +25,8 @@ from derive.verification.corrections.replacement import (
 from derive.verification.corrections.search import Search
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.derived import printed_formula
-from derive.verification.equations_of_motion import fits
-from derive.verification.model import Model, variables
+from derive.verification.motion_verdicts import fits
+from derive.verification.reference_system import ReferenceSystem, variables
 from derive.verification.terms import (
     Term,
     closest_factor,
@@ -47,7 +47,7 @@ MAX_OPERATIONS = 500
 
 def advised(
     verdict: Verdict,
-    model: Model,
+    model: ReferenceSystem,
     kind: str,
     name: str,
     holds: Callable[[str], bool],
@@ -107,7 +107,7 @@ def shortest(expression: sp.Expr) -> sp.Expr:
 def _mending(
     text: str,
     names: SourceNames,
-    model: Model,
+    model: ReferenceSystem,
     searches: Sequence[Search],
     value: sp.Expr,
     correct: sp.Expr | None,
@@ -140,7 +140,7 @@ def _mending(
         yield from _all_terms(searches[0], text, names, model, correct)
 
 
-def _is_multiple(model: Model, text: str, correct: sp.Expr | None) -> bool:
+def _is_multiple(model: ReferenceSystem, text: str, correct: sp.Expr | None) -> bool:
     """Whether an equation is the correct one times a factor."""
     value = difference(text, model.context.scope)
     accelerations = model.derivation.system.qddot
@@ -148,7 +148,7 @@ def _is_multiple(model: Model, text: str, correct: sp.Expr | None) -> bool:
 
 
 def _all_terms(
-    search: Search, text: str, names: SourceNames, model: Model, correct: sp.Expr
+    search: Search, text: str, names: SourceNames, model: ReferenceSystem, correct: sp.Expr
 ) -> Iterator[tuple[tuple[Correction, ...], str]]:
     """Yield corrections of all wrong terms of a sum."""
     pieces, scope = search.terms, model.context.scope
@@ -171,7 +171,7 @@ def _all_terms(
         yield tuple(corrections), mended
 
 
-def _correct_form(model: Model, kind: str, name: str, value: sp.Expr) -> sp.Expr | None:
+def _correct_form(model: ReferenceSystem, kind: str, name: str, value: sp.Expr) -> sp.Expr | None:
     """The correct form of a formula; None if it requires a large inverse."""
     if kind == "euler_lagrange":
         return _closest_equation(value, model)
@@ -179,7 +179,7 @@ def _correct_form(model: Model, kind: str, name: str, value: sp.Expr) -> sp.Expr
 
 
 def _state(
-    model: Model, names: SourceNames, value: sp.Expr, goal: Goal, correct: sp.Expr | None
+    model: ReferenceSystem, names: SourceNames, value: sp.Expr, goal: Goal, correct: sp.Expr | None
 ) -> str:
     """The state of the witness: all numbers with which both values can be computed again."""
     context = model.motions if goal.along_motions else model.context
@@ -189,7 +189,7 @@ def _state(
     return ", ".join(f"{name} = {number}" for name, number in numbers.items())
 
 
-def _closest_equation(value: sp.Expr, model: Model) -> sp.Expr:
+def _closest_equation(value: sp.Expr, model: ReferenceSystem) -> sp.Expr:
     """The derived equation of motion, times a factor, from which a wrong one differs least."""
     system, equations = model.derivation.system, model.derivation.euler_lagrange
     state = variables(system)

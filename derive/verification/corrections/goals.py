@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion import is_expandable
+from derive.formulas.proofs.expansion_size import is_expandable
 from derive.system.symbols import TIME
 from derive.verification.derived import QUANTITIES, foreign_symbols
-from derive.verification.model import Model, depends_on, variables
+from derive.verification.reference_system import ReferenceSystem, depends_on, variables
 
 #: Quantities with an arbitrary constant.
 UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
@@ -24,7 +24,7 @@ class Goal:
     is_equation: bool = False  # then the value is 0 along motions only
 
 
-def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
+def goals(model: ReferenceSystem, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
     """Yield the derived values, and those with the constant or the factor of the formula."""
     system = model.derivation.system
     if kind == "euler_lagrange":
@@ -49,7 +49,7 @@ def goals(model: Model, kind: str, name: str, value: sp.Expr) -> Iterator[Goal]:
             yield Goal(factor * derived, False, foreign)
 
 
-def _constant(value: sp.Expr, model: Model) -> sp.Expr:
+def _constant(value: sp.Expr, model: ReferenceSystem) -> sp.Expr:
     """The terms of a sum that depend on parameters alone."""
     state = variables(model.derivation.system)
     terms = sp.Add.make_args(sp.expand(value))

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derive.verification.corrections.samples import Numbers, power, quotient
+from derive.verification.corrections.state_samples import Numbers, power, quotient
 
 #: Largest relative difference of equal numbers, and largest exponent and denominator.
 CLOSE, MAX_EXPONENT, MAX_DENOMINATOR = 1e-7, 8, 360

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 from derive.formulas.expression import Scope, parse
 from derive.formulas.syntax import is_sum, python_source, summands, syntax_tree
-from derive.verification.corrections.samples import (
+from derive.verification.corrections.state_samples import (
     FUNCTIONS,
     Numbers,
-    Samples,
+    StateSamples,
     applied,
     power,
     quotient,
@@ -31,7 +31,7 @@ OPERATIONS: dict[type[ast.operator], Callable[[float, float], float]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class FormulaPart:
     """A part of a formula, with its values and the required ones."""
 
     node: ast.expr
@@ -43,7 +43,7 @@ class Piece:
     required: Numbers
     states: Sequence[int]  # at which the required values are reliable
     sign: int = 1  # -1 where a minus sign precedes it in a sum
-    parent: "Piece | None" = None  # the smallest larger term
+    parent: "FormulaPart | None" = None  # the smallest larger term
     # a reader sees it as a unit: a term of a sum, a denominator, a factor beside a bracket
     is_term: bool = True
     is_summand: bool = False
@@ -53,22 +53,22 @@ class Piece:
 class Pieces:
     """The pieces of one side of a formula, which begins at `offset` in the text."""
 
-    def __init__(self, text: str, offset: int, scope: Scope, samples: Samples) -> None:
+    def __init__(self, text: str, offset: int, scope: Scope, samples: StateSamples) -> None:
         self._text, self._offset, self._scope, self._samples = text, offset, scope, samples
         self._values: dict[ast.expr, Numbers] = {}
         self.tree = syntax_tree(text)
         self.value = self._value(self.tree)
 
-    def walk(self, required: Numbers, states: Sequence[int]) -> Iterator[Piece]:
+    def walk(self, required: Numbers, states: Sequence[int]) -> Iterator[FormulaPart]:
         """Yield all pieces, the whole first, with the values required of them."""
         end = self._offset + len(self._text.rstrip())
         start = self._offset + len(self._text) - len(self._text.lstrip())
-        whole = Piece(
+        whole = FormulaPart(
             self.tree, self._text.strip(), (start, end), start, end, self.value, required, states
         )
         yield from self._walk(whole)
 
-    def _walk(self, piece: Piece) -> Iterator[Piece]:
+    def _walk(self, piece: FormulaPart) -> Iterator[FormulaPart]:
         yield piece
         for part in self._parts(piece):
             yield from self._walk(part)
@@ -94,7 +94,7 @@ class Pieces:
                 return self._samples(parse(self._text[slice(*self._span(node))], self._scope))
         raise NotImplementedError(ast.unparse(node))
 
-    def _parts(self, whole: Piece) -> Iterator[Piece]:
+    def _parts(self, whole: FormulaPart) -> Iterator[FormulaPart]:
         required = whole.required
         if is_sum(whole.node):
             yield from self._summands(whole)
@@ -125,14 +125,14 @@ class Pieces:
                 yield self._part(whole, argument, logarithms, is_term=True)
 
     def _factor(
-        self, whole: Piece, node: ast.expr, required: Numbers, other: ast.expr | None = None
-    ) -> Piece:
+        self, whole: FormulaPart, node: ast.expr, required: Numbers, other: ast.expr | None = None
+    ) -> FormulaPart:
         # a factor beside a bracket is seen, one of several names in a row is not
         beside = other is not None and has_bracket(other)
         seen = beside or is_sum(node)
         return self._part(whole, node, required, is_term=seen, is_squared=whole.is_squared)
 
-    def _summands(self, whole: Piece) -> Iterator[Piece]:
+    def _summands(self, whole: FormulaPart) -> Iterator[FormulaPart]:
         total = self._value(whole.node)
         for node, sign in summands(whole.node):
             value, states = self._value(node), whole.states
@@ -148,7 +148,7 @@ class Pieces:
 
     def _part(
         self,
-        whole: Piece,
+        whole: FormulaPart,
         node: ast.expr,
         required: Numbers,
         *,
@@ -157,14 +157,14 @@ class Pieces:
         is_term: bool = False,
         is_summand: bool = False,
         is_squared: bool = False,
-    ) -> Piece:
+    ) -> FormulaPart:
         start, end = self._span(node)
         source, span = self._text[start:end], (start + self._offset, end + self._offset)
         if sign < 0:
             bracketed, start = start, self._text.rindex("-", 0, start)
             for _ in range(self._text.count("(", start, bracketed)):
                 end = self._text.index(")", end) + 1
-        return Piece(
+        return FormulaPart(
             node,
             source,
             span,

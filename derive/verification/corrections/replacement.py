@@ -4,7 +4,7 @@ import ast
 import re
 
 from derive.formulas.syntax import is_sum, syntax_tree
-from derive.verification.corrections.pieces import Piece
+from derive.verification.corrections.pieces import FormulaPart
 from derive.verification.corrections.search import Change
 from derive.verification.verdict import Correction
 
@@ -26,14 +26,14 @@ def applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:
     return (Correction(shown(text, piece), new),), replaced(text, piece, new)
 
 
-def replaced(text: str, piece: Piece, new: str) -> str:
+def replaced(text: str, piece: FormulaPart, new: str) -> str:
     """The formula with `new` in place of a piece and of the sign before it."""
     before = text[: piece.start]
     is_first = before.rstrip()[-1:] in ("", "=", "(", ",")
     return f"{before}{'+' * (piece.sign < 0 and not is_first)}({new}){text[piece.end :]}"
 
 
-def shown(text: str, piece: Piece) -> str:
+def shown(text: str, piece: FormulaPart) -> str:
     """A piece as written, without space after its sign."""
     return re.sub(r"^-\s+", "-", text[piece.start : piece.end])
 
@@ -44,7 +44,7 @@ def extended(text: str, missing: str) -> str:
     return f"{left} + ({missing}) {equals}{right}"
 
 
-def _inserted(before: str, new: str, after: str, piece: Piece) -> str:
+def _inserted(before: str, new: str, after: str, piece: FormulaPart) -> str:
     """Put `new` in place of a piece, in brackets where they are necessary."""
     in_brackets = before[-1:] == "(" and after[:1] == ")"
     sign = before.rstrip()[-1:]
@@ -69,7 +69,7 @@ def _negative(text: str) -> str:
     return text[1:] if text[0] == "-" else f"-{text}"
 
 
-def is_unique(text: str, piece: Piece) -> bool:
+def is_unique(text: str, piece: FormulaPart) -> bool:
     """Whether a reader finds one term that is written like the piece."""
     tokens = re.findall(r"\w+|\*\*|\S", text[piece.start : piece.end])
     pattern = re.compile(r"(?<![\w.])" + r"\s*".join(map(re.escape, tokens)) + r"(?![\w.(])")

@@ -16,11 +16,11 @@ import sympy as sp
 from derive.formulas.syntax import ExpressionError, is_sum
 from derive.verification.corrections.goals import Goal
 from derive.verification.corrections.monomials import CLOSE, Monomial, Monomials
-from derive.verification.corrections.pieces import Piece, Pieces
-from derive.verification.corrections.samples import Numbers, Samples, quotient
+from derive.verification.corrections.pieces import FormulaPart, Pieces
 from derive.verification.corrections.source_names import SourceNames
+from derive.verification.corrections.state_samples import Numbers, StateSamples, quotient
 from derive.verification.corrections.vocabulary import Vocabulary
-from derive.verification.model import Model, depends_on
+from derive.verification.reference_system import ReferenceSystem, depends_on
 from derive.verification.terms import difference
 
 #: States in all, and those at which required values are compared.
@@ -31,7 +31,7 @@ STATES, COMPARED = 320, 64
 class Change:
     """A piece and its replacement; with `is_added`, a term to add to the piece."""
 
-    piece: Piece
+    piece: FormulaPart
     replacement: str
     cost: float
     is_added: bool = False
@@ -41,13 +41,18 @@ class Search:
     """The changes of a formula that give it the values of a goal."""
 
     def __init__(
-        self, text: str, names: SourceNames, model: Model, goal: Goal, correct: sp.Expr | None
+        self,
+        text: str,
+        names: SourceNames,
+        model: ReferenceSystem,
+        goal: Goal,
+        correct: sp.Expr | None,
     ) -> None:
         self._names, self._goal = names, goal
         self._scope, derivation = model.context.scope, model.derivation
         self._qddot = derivation.system.qddot
-        self._samples = Samples(model, STATES, along_motions=goal.along_motions)
-        self._elsewhere = Samples(model, COMPARED, along_motions=False)
+        self._samples = StateSamples(model, STATES, along_motions=goal.along_motions)
+        self._elsewhere = StateSamples(model, COMPARED, along_motions=False)
         left, equals, right = text.partition("=")
         self._sides = [Pieces(left, 0, self._scope, self._samples)]
         if equals:
@@ -71,7 +76,7 @@ class Search:
         return sorted(self._changes(), key=lambda change: change.cost)
 
     @property
-    def terms(self) -> list[tuple[Piece, int]]:
+    def terms(self) -> list[tuple[FormulaPart, int]]:
         """The terms of the formula, and the signs of their sides in an equation."""
         terms = []
         for whole, side in zip(self._wholes, (1, -1), strict=False):
@@ -103,7 +108,7 @@ class Search:
             if isinstance(piece.node, ast.Call):
                 yield from self._waves(piece)
 
-    def _required(self) -> Iterator[Piece]:
+    def _required(self) -> Iterator[FormulaPart]:
         """All pieces, with the values that are required of them."""
         sides = self._sides
         other = sides[1].value if len(sides) > 1 else self._samples(self._goal.value)
@@ -114,7 +119,7 @@ class Search:
         if len(sides) > 1:
             yield from sides[1].walk(sides[0].value, states[:COMPARED])
 
-    def _products(self, piece: Piece) -> Iterator[Change]:
+    def _products(self, piece: FormulaPart) -> Iterator[Change]:
         """The piece times a monomial, or 0."""
         pairs = [(piece.required[k], piece.value[k]) for k in piece.states]
         if all(abs(required) <= CLOSE * abs(value) for required, value in pairs):
@@ -136,7 +141,7 @@ class Search:
             longer = max(0, len(new) - len(source))
             yield Change(piece, new, ratio.change + 0.1 * longer + self._size(piece))
 
-    def _additions(self, piece: Piece) -> Iterator[Change]:
+    def _additions(self, piece: FormulaPart) -> Iterator[Change]:
         """A monomial that is missing in the piece."""
         lacking = [r - v for r, v in zip(piece.required, piece.value, strict=True)]
         for missing in self._identified(piece, lacking):
@@ -144,7 +149,7 @@ class Search:
             size = self._size(piece) if piece.parent else 0
             yield Change(piece, new, 1.5 + 0.4 * missing.length + size, is_added=True)
 
-    def _waves(self, piece: Piece) -> Iterator[Change]:
+    def _waves(self, piece: FormulaPart) -> Iterator[Change]:
         """Another sine or cosine in place of the piece."""
         for factor in self._vocabulary.waves_like(piece.source):
             for sign in (1, -1):
@@ -155,14 +160,14 @@ class Search:
                     new = sp.sstr(sign * factor.expression)
                     yield Change(piece, new, 1.5 - sign / 2 + self._size(piece))
 
-    def _size(self, piece: Piece) -> float:
+    def _size(self, piece: FormulaPart) -> float:
         """A small cost of long pieces, and of those with accelerations."""
         names = (node.id for node in ast.walk(piece.node) if isinstance(node, ast.Name))
         values = [self._scope.get(name) for name in names]  # True is none in a condition
         accelerated = any(depends_on(x, self._qddot) for x in values if isinstance(x, sp.Expr))
         return 0.01 * (piece.end - piece.start) + accelerated
 
-    def _identified(self, piece: Piece, values: Numbers) -> Iterator[Monomial]:
+    def _identified(self, piece: FormulaPart, values: Numbers) -> Iterator[Monomial]:
         """The monomials with these values: along motions, accelerations depend on the rest."""
         key = tuple(piece.states)
         if key not in self._fits:

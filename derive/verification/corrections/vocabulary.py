@@ -7,9 +7,9 @@ from functools import cached_property
 import sympy as sp
 
 from derive.verification.corrections.monomials import Factor
-from derive.verification.corrections.samples import Samples
 from derive.verification.corrections.source_names import SourceNames
-from derive.verification.model import depends_on
+from derive.verification.corrections.state_samples import StateSamples
+from derive.verification.reference_system import depends_on
 
 #: The number and the most operations of derived sums that are tried as factors.
 SUMS, SHORT = 12, 8
@@ -24,7 +24,7 @@ class Vocabulary:
     def __init__(
         self,
         names: SourceNames,
-        samples: Samples,
+        samples: StateSamples,
         brackets: Iterable[str],
         derived: sp.Basic,
         foreign: Collection[sp.Symbol],

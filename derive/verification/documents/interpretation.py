@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from derive.verification.documents.letters.candidates import Candidate, candidates
+from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
 from derive.verification.documents.letters.document_system import meaning
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
@@ -15,11 +15,11 @@ from derive.verification.documents.letters.positions import stated_candidates, s
 from derive.verification.documents.letters.templates import templates
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.numbers.resolution import resolved
-from derive.verification.documents.pages.verdicts_in_place import Alternative, Difference
+from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.corrections import corrected
+from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentScope
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
-from derive.verification.documents.rules.verdicts import Judge
 from derive.verification.documents.statements import DocumentFormula, Translated
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
@@ -43,7 +43,10 @@ class Work:
     left: int = MAX_WORK
 
     def take(
-        self, tried: Sequence[Candidate], letters: Letters, formulas: Sequence[DocumentFormula]
+        self,
+        tried: Sequence[SystemCandidate],
+        letters: Letters,
+        formulas: Sequence[DocumentFormula],
     ) -> bool:
         """Take the work of a comparison of candidates; False where none is left."""
         size = sum(len(formula.text) for formula in formulas)
@@ -85,7 +88,7 @@ def interpretation(
 def _best(
     letters: Letters,
     statements: Translated,
-    groups: Iterable[Sequence[Candidate]],
+    groups: Iterable[Sequence[SystemCandidate]],
     work: Work,
     least: float = LEAST,
 ) -> Interpretation:
@@ -104,9 +107,9 @@ def _best(
     return Interpretation(letters, best, tuple(_rivals(best, matches)))
 
 
-def _alike(group: Sequence[Candidate]) -> Iterator[Sequence[Candidate]]:
+def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidate]]:
     """Candidates of one system with the same constraints."""
-    found: dict[frozenset[int], list[Candidate]] = {}
+    found: dict[frozenset[int], list[SystemCandidate]] = {}
     for one in group:
         found.setdefault(one.given, []).append(one)
     yield from found.values()
@@ -141,14 +144,14 @@ def _is_slip(match: Match, best: Match) -> bool:
     return is_usual and match.is_nearly and len(match.failed) <= MAX_SLIPS
 
 
-def _is_plausible(rival: Candidate, best: Candidate) -> bool:
+def _is_plausible(rival: SystemCandidate, best: SystemCandidate) -> bool:
     """Whether a rival lacks no more parameters, has no crossed indices and no further loads."""
     loads, own = ({*one.forces, *one.friction} for one in (rival, best))
     is_simple = rival.lacking <= best.lacking and not own < loads
     return is_simple and (is_crossed(best) or not is_crossed(rival))
 
 
-def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[Candidate]]:
+def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[SystemCandidate]]:
     """Candidates of one system after another: of those that the document states first."""
     for system in stated_systems(letters, statements.formulas):
         if letters.constraints and has_rotations(system, letters, statements.formulas):
@@ -163,7 +166,7 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[C
 
 def _of_templates(
     letters: Letters, statements: Translated, numbers: Mapping[str, str] | None = None
-) -> Iterator[Sequence[Candidate]]:
+) -> Iterator[Sequence[SystemCandidate]]:
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
         for system in templates(count, has_rods, bool(letters.constraints)):
@@ -177,7 +180,7 @@ def _gravity(statements: Translated) -> str:
     return found[0] if found else "1"
 
 
-def judge_of(statements: Translated, letters: Letters, candidate: Candidate) -> Judge:
+def judge_of(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Judge:
     """The judge of a document's formulas with the meanings of a candidate."""
     letters = _with_order(statements, letters, candidate)
     meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
@@ -186,7 +189,7 @@ def judge_of(statements: Translated, letters: Letters, candidate: Candidate) -> 
     return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings), given)
 
 
-def _with_order(statements: Translated, letters: Letters, candidate: Candidate) -> Letters:
+def _with_order(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Letters:
     """The letters in the order of the rows of M with which most formulas hold."""
     if "mass_matrix" not in letters.quantities.values():
         return letters
@@ -240,7 +243,7 @@ def _rejudged(
 
 def _differences(
     pairs: Sequence[tuple[DocumentFormula, SideVerdict, SideVerdict]], written: Mapping[str, str]
-) -> Iterator[Difference]:
+) -> Iterator[VerdictDifference]:
     for formula, own, other in pairs:
         names = [one.verdict.verdict for one in (own, other)]
         if any(name not in JUDGED for name in names):
@@ -248,12 +251,12 @@ def _differences(
         first, second = (corrected(formula, one, written).correction for one in (own, other))
         if (names[0] == "wrong") != (names[1] == "wrong") or first != second:
             place = formula.occurrence
-            yield Difference(
+            yield VerdictDifference(
                 place.line, place.display, place.source, names[1], names[0], second, place.cell
             )
 
 
-def _alternative(match: Match, rival: Match, changed: tuple[Difference, ...]) -> Alternative:
+def _alternative(match: Match, rival: Match, changed: tuple[VerdictDifference, ...]) -> Alternative:
     system, own = rival.candidate.system, match.candidate
     meaning = difference(rival.candidate, own) if system is own.system else ""
     return Alternative(system.title, system.name, names_of(rival.candidate), meaning, changed)

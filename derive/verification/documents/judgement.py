@@ -5,19 +5,20 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from derive.reading.document import Display, Document
-from derive.reading.latex.reader import formulas, macros_of
+from derive.reading.latex.display_reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
 from derive.reading.latex.walking import nodes
+from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.interpretation import (
     Work,
     alternatives,
     interpretation,
     judge_of,
 )
-from derive.verification.documents.letters.constraints import WAY_OUT
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.pages.verdicts_in_place import (
     Alternative,
     JudgedDocument,
@@ -32,7 +33,6 @@ from derive.verification.documents.statements import (
     translated,
 )
 from derive.verification.documents.text import RATES, stem
-from derive.verification.documents.translation import Translator
 from solvers.io.suggestion import did_you_mean
 
 #: Most systems of a document.
@@ -162,7 +162,7 @@ def _is_graver(one: SideVerdict, other: SideVerdict) -> bool:
 
 def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
     """The letters' names, and the LaTeX that stands for each where it is first used."""
-    translator, found = Translator(), dict[str, str]()
+    translator, found = FormulaTranslator(), dict[str, str]()
     for occurrence in occurrences:
         for node in nodes(occurrence.sides):
             if isinstance(node, Letter | Derivative):

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
-from derive.reading.programs.program import Equation, Finding, Program
+from derive.reading.programs.program import Finding, Program, ProgramEquation
 from derive.verification.documents.interpretation import alternatives, interpretation, judge_of
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
@@ -15,7 +15,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
 from derive.verification.documents.rules.corrections import inserted, places
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
-from derive.verification.documents.text import Text
+from derive.verification.documents.text import FormulaText
 from derive.verification.verdict import VerdictName
 
 #: The note on equations for which no system is found.
@@ -49,16 +49,16 @@ def judge_program(program: Program, hints: Hints | None = None) -> JudgedDocumen
     )
 
 
-def _formula(equation: Equation) -> DocumentFormula:
+def _formula(equation: ProgramEquation) -> DocumentFormula:
     """An equation as a formula of a document; it has no LaTeX."""
     text = equation.text
     tree = Statement((Letter(text, (0, len(text))),), (), (0, len(text)))
     occurrence = Occurrence(0, equation.line, 1, 0, 0, text, tree)
     left, _, right = text.partition(" = ")
-    return DocumentFormula(occurrence, (Text(left), Text(right)), ("=",))
+    return DocumentFormula(occurrence, (FormulaText(left), FormulaText(right)), ("=",))
 
 
-def _judged(equation: Equation, result: SideVerdict) -> JudgedFormula:
+def _judged(equation: ProgramEquation, result: SideVerdict) -> JudgedFormula:
     verdict, text = result.verdict, equation.text
     terms, line = list[str](), equation.line
     for one in verdict.corrections:
@@ -78,13 +78,13 @@ def _judged(equation: Equation, result: SideVerdict) -> JudgedFormula:
     )  # fmt: skip
 
 
-def _line(equation: Equation, start: int, end: int) -> int:
+def _line(equation: ProgramEquation, start: int, end: int) -> int:
     """The line of the smallest part of an equation that contains a term."""
     around = [one for one in equation.origins if one.start <= start and end <= one.end]
     return min(around, key=lambda one: one.end - one.start).line if around else equation.line
 
 
-def _plain(equation: Equation, note: str) -> JudgedFormula:
+def _plain(equation: ProgramEquation, note: str) -> JudgedFormula:
     return JudgedFormula(equation.line, 1, 0, equation.text, "context", note=note)
 
 

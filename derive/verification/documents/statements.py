@@ -17,8 +17,12 @@ from derive.reading.latex.tree import (
     Unreadable,
 )
 from derive.reading.latex.walking import has_index, indexed, letters, nodes
-from derive.verification.documents.text import Text, stem
-from derive.verification.documents.translation import Notation, Translator, UntranslatableError
+from derive.verification.documents.formula_translation import (
+    FormulaTranslator,
+    LetterNotation,
+    UntranslatableError,
+)
+from derive.verification.documents.text import FormulaText, stem
 
 WORD = re.compile(r"[A-Za-z_]\w*")
 #: Words for quantities that do not change.
@@ -67,7 +71,7 @@ class DocumentFormula:
     """A statement with its sides in our syntax; `index` is the number that an index stands for."""
 
     occurrence: Occurrence
-    sides: tuple[Text, ...]
+    sides: tuple[FormulaText, ...]
     relations: tuple[str, ...]
     index: int = 0
 
@@ -111,7 +115,7 @@ class Translated:
 
 def translated(occurrences: Sequence[Occurrence]) -> Translated:
     """Translate the statements of a document."""
-    translator = Translator(notation(occurrences))
+    translator = FormulaTranslator(notation(occurrences))
     formulas, failures = list[DocumentFormula](), list[tuple[Occurrence, str]]()
     for occurrence in occurrences:
         try:
@@ -121,7 +125,7 @@ def translated(occurrences: Sequence[Occurrence]) -> Translated:
     return Translated(tuple(formulas), tuple(failures), translator.derivatives)
 
 
-def _formulas(occurrence: Occurrence, translator: Translator) -> Iterator[DocumentFormula]:
+def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
     sides, relations = occurrence.sides, occurrence.relations
     index = next((one for one in INDICES if has_index(sides, one)), "")
     numbers = range(1, translator.notation.count + 1) if index else (0,)
@@ -133,10 +137,10 @@ def _formulas(occurrence: Occurrence, translator: Translator) -> Iterator[Docume
         yield DocumentFormula(occurrence, tuple(texts), relations[: len(texts) - 1], number)
 
 
-def notation(occurrences: Iterable[Occurrence]) -> Notation:
+def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     """What letters are, from all statements."""
     trees = [side for occurrence in occurrences for side in occurrence.sides]
-    plain = Translator()
+    plain = FormulaTranslator()
     everything = [letter for tree in trees for letter in letters(tree)]
     dotted = {letter.name for letter in everything if letter.dots}
     primed = any(letter.primes for letter in everything)
@@ -162,7 +166,7 @@ def notation(occurrences: Iterable[Occurrence]) -> Notation:
             if isinstance(first, Letter) and any(_is_matrix(side, matrices) for side in others):
                 matrices.add(plain.name(first))
     count = max(indices, default=1)
-    return Notation(
+    return LetterNotation(
         frozenset(functions),
         frozenset(functions - of_letters),
         frozenset(matrices),
@@ -187,7 +191,7 @@ def _is_matrix(node: Node, matrices: set[str]) -> bool:
         case Matrix() | Tuple():
             return True
         case Letter():
-            return Translator().name(node) in matrices
+            return FormulaTranslator().name(node) in matrices
         case Product(factors=factors):
             columns = [_is_matrix(one, matrices) for one in factors]
             return sum(columns) == 1

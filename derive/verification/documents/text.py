@@ -11,24 +11,24 @@ SUM, PRODUCT, POWER, ATOM = range(4)
 
 
 @dataclass(frozen=True)
-class Text:
+class FormulaText:
     """A formula in our syntax, and the spans of its parts: start and end here, and in LaTeX."""
 
     text: str
     binding: int = ATOM
     parts: tuple[tuple[int, int, Span], ...] = ()
-    entries: tuple["Text", ...] = ()  # of a column or matrix that is written out, row by row
+    entries: tuple["FormulaText", ...] = ()  # of a column or matrix that is written out, row by row
 
     def shifted(self, offset: int) -> Iterator[tuple[int, int, Span]]:
         """The parts, `offset` characters later."""
         return ((start + offset, end + offset, span) for start, end, span in self.parts)
 
-    def part(self, start: int, end: int) -> "Text":
+    def part(self, start: int, end: int) -> "FormulaText":
         """The characters from `start` to `end`."""
         inner = tuple(
             (a - start, b - start, span) for a, b, span in self.parts if start <= a and b <= end
         )
-        return Text(self.text[start:end], SUM, inner)
+        return FormulaText(self.text[start:end], SUM, inner)
 
     def source(self, start: int, end: int) -> Span | None:
         """The LaTeX of the characters from `start` to `end`: of all parts within them."""
@@ -36,16 +36,16 @@ class Text:
         return (min(s for s, _ in spans), max(e for _, e in spans)) if spans else None
 
 
-def joined_text(binding: int, *pieces: Text | str) -> Text:
+def joined_text(binding: int, *pieces: FormulaText | str) -> FormulaText:
     """A formula from pieces, with the places of their parts."""
     text, parts = "", list[tuple[int, int, Span]]()
     for piece in pieces:
-        if isinstance(piece, Text):
+        if isinstance(piece, FormulaText):
             parts += piece.shifted(len(text))
             text += piece.text
         else:
             text += piece
-    return Text(text, binding, tuple(parts))
+    return FormulaText(text, binding, tuple(parts))
 
 
 #: Endings of the names of a quantity and of its rates.

@@ -13,9 +13,9 @@ import sympy as sp
 from derive.formulas import expression
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.reduction import reduced
-from derive.system.catalogue import load
+from derive.system.system_catalogue import load
 from derive.verification.engine import Context
-from derive.verification.model import depends_on, time_derivative
+from derive.verification.reference_system import depends_on, time_derivative
 
 Vector: TypeAlias = sp.ImmutableDenseMatrix
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 from derive.reading.latex.tree import Node, Product, Span, Statement, Sum
-from derive.verification.report.reading import text
+from derive.verification.report.report_latex import text
 
 #: Trees and their signs.
 Parts: TypeAlias = list[tuple[Node, int]]

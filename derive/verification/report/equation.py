@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
-from derive.verification.report.reading import translation
+from derive.verification.report.report_latex import translation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +30,7 @@ class Details:
 
 
 @dataclass(frozen=True)
-class Equation(Details):
+class ReportEquation(Details):
     """An equation of the report."""
 
     id: str  # eq33 for equation (33), A9 for the ninth unnumbered display

@@ -17,7 +17,7 @@ OPENING = {"]": "[", "}": "{", ")": "("}
 
 
 @dataclass(frozen=True)
-class Scene:
+class ReportScene:
     """A motion; by default that of chapters 3 to 5, with the velocities of program 1."""
 
     masses: tuple[sp.Expr, ...] = (sp.S(1), sp.S(1))  # kg
@@ -36,27 +36,27 @@ class Scene:
 
 
 #: The values that the chapters state for all programs.
-PROSE = Scene()
+PROSE = ReportScene()
 
 
 @dataclass(frozen=True)
-class Program:
+class ReportProgram:
     """A program, the equations that it solves, and its errors."""
 
     id: str
     title: str
     solves: str
-    scene: Scene
+    scene: ReportScene
     stops: tuple[str, ...]  # errors that prevent it from running as printed
     differs: tuple[str, ...]  # contradictions to the prose, or within the program
 
 
-def programs() -> list[Program]:
+def programs() -> list[ReportProgram]:
     """Analyse all three programs."""
     return [_first(), _second(), _third()]
 
 
-def _first() -> Program:
+def _first() -> ReportProgram:
     equations = (
         "2*theta1_ddot + theta2_ddot*cos(theta1 - theta2)"
         " + theta2_dot**2*sin(theta1 - theta2) + 2*9.81*sin(theta1)",
@@ -65,17 +65,17 @@ def _first() -> Program:
     )
     call = "NDSolve[ { ..., theta2'[0] == 0, {theta1[t], theta2[t], t}, {t, 0, 5} ]"
     length = _length_solved(equations)
-    scene = Scene(lengths=(length, length))
+    scene = ReportScene(lengths=(length, length))
     stops = [_bracket_fault(call)]
     *_, unknowns, interval = re.findall(r"{([^{}]*)}", call)
     if interval.split(",")[0] in unknowns.split(", "):
         stops.append("it passes the time itself to NDSolve as an unknown")
     title = "Appendix B, figure 1: Lagrangian"
     solves = f"the Euler-Lagrange equations of equal masses on rods of {length} m"
-    return Program("program1", title, solves, scene, tuple(stops), scene.differences)
+    return ReportProgram("program1", title, solves, scene, tuple(stops), scene.differences)
 
 
-def _second() -> Program:
+def _second() -> ReportProgram:
     # the Lagrangian from the program's positions
     x1, y1 = "(l1*sin(phi1))", "(-l1*cos(phi1))"
     x2, y2 = f"({x1} + l2*sin(phi2))", f"({y1} - l2*cos(phi2))"
@@ -85,7 +85,7 @@ def _second() -> Program:
     )
     correct = double_pendulum(moving=False).check(f"L = {lagrangian}").holds
     text = "sol = First[NDSolve[...]]; x1[t] := Sin[phi1[t]] /. sol2; ... Plot[... /. sol, ...]"
-    scene = Scene(velocities=(sp.pi, 2 * sp.pi))
+    scene = ReportScene(velocities=(sp.pi, 2 * sp.pi))
     differs = list(scene.differences)
     for name in sorted(set(re.findall(r"/\. (\w+)", text))):  # solutions that are used
         if not re.search(rf"\b{name} =", text):
@@ -95,10 +95,10 @@ def _second() -> Program:
     differs.append("its last plot shows phi2 over phi1, not a path of the bobs")
     title = "Appendix B, figure 2: Euler-Lagrangian"
     solves = f"the Euler-Lagrange equations of {'the correct' if correct else 'a wrong'} Lagrangian"
-    return Program("program2", title, solves, scene, (), tuple(differs))
+    return ReportProgram("program2", title, solves, scene, (), tuple(differs))
 
 
-def _third() -> Program:
+def _third() -> ReportProgram:
     f3 = (
         "(-g*(2*m1 + m1)*sin(theta1) - m2*g*sin(theta1 - 2*theta2)"
         " - 2*sin(theta1 - theta2)*m2*(theta2_dot**2*l2"
@@ -121,7 +121,7 @@ def _third() -> Program:
     assigned = re.findall(r"\{(\w+), \w+, \w+, \w+\} =", loop)
     functions = set(re.findall(r"(\w+)\[t_", loop))
     needed = sorted(set(re.findall(r"\bj\d", loop)) - set(assigned))
-    scene = Scene(angles=(sp.S(0), -sp.pi / 4), duration=50)
+    scene = ReportScene(angles=(sp.S(0), -sp.pi / 4), duration=50)
     title = "Appendix B, figures 3 and 4: Runge-Kutta"
     solves = (
         f"accelerations: the first {_agreement('theta1_ddot', f3)}, the second "
@@ -137,7 +137,7 @@ def _third() -> Program:
         "it has the fourth-order method only, and eight plots of this one run: if the figures "
         "RK1 to RK4 show methods of these orders, no program computes three of them"
     )
-    return Program("program3", title, solves, scene, stops, (*scene.differences, orders))
+    return ReportProgram("program3", title, solves, scene, stops, (*scene.differences, orders))
 
 
 def _length_solved(equations: tuple[str, ...]) -> sp.Expr:

@@ -6,8 +6,8 @@ the LaTeX.
 
 import json
 
-from derive.verification.report.reading import STORED, read
-from derive.verification.report.table import equations
+from derive.verification.report.report_equations import equations
+from derive.verification.report.report_latex import STORED, read
 from solvers.io.atomic_write import write_text
 
 

@@ -9,7 +9,7 @@ from solvers.app.commands import options
 
 if TYPE_CHECKING:
     from solvers.scenes.scene import Scene
-    from solvers.studies.work_precision.curve import Combination
+    from solvers.studies.work_precision.cost_curve import Combination
     from solvers.studies.work_precision.scene_curves import SceneCurves
 
 SUMMARY = "chart speed against accuracy"
@@ -61,7 +61,7 @@ def run(arguments: Namespace) -> int:
 def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
     from solvers.io.progress import Progress
     from solvers.studies.work_precision import peers
-    from solvers.studies.work_precision.measurement import combinations, curves
+    from solvers.studies.work_precision.measured_curves import combinations, curves
     from solvers.studies.work_precision.reference import Reference
     from solvers.studies.work_precision.scene_curves import SceneCurves
 
@@ -85,7 +85,7 @@ def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
 
 
 def _as_json(results: "Sequence[SceneCurves]", plots: Sequence[str]) -> dict[str, Any]:
-    from solvers.studies.work_precision.measurement import unit_of_energy
+    from solvers.studies.work_precision.measured_curves import unit_of_energy
     from solvers.studies.work_precision.reference import Reference
 
     return {

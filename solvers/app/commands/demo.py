@@ -25,7 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Run every stage once, print its results and write the page."""
-    from solvers.app.demo.page import write_page
+    from solvers.app.demo.demo_page import write_page
     from solvers.app.demo.stages import stages, versions
     from solvers.io.progress import Progress
 

@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 
-from derive.commands import arguments as derive_arguments
+from derive.commands import derive_options as derive_arguments
 from derive.system.shipped import large_names, names
 from solvers.app.commands.options import complete_with
 
@@ -17,7 +17,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Write or check the files; with the whole package, also the tables of READMEs beside it."""
-    from derive.commands.derive import run
+    from derive.commands.regenerate import run
 
     if arguments.systems or arguments.output or arguments.document:
         return run(arguments)

@@ -11,9 +11,9 @@ from solvers.app.commands import options
 
 if TYPE_CHECKING:
     from solvers.app.fitting import Model
-    from solvers.scenes.fitting.fit import Fit
+    from solvers.scenes.fitting.fitted_model import Fit
     from solvers.scenes.fitting.measurement import Measurement
-    from solvers.scenes.fitting.prediction import Comparison
+    from solvers.scenes.fitting.prediction import ModelComparison
 
 SUMMARY = "fit parameters to measured motions"
 #: Part of each run that is kept back to compare models if no run is.
@@ -55,7 +55,7 @@ def run(arguments: Namespace) -> int:
     """Fit, print a summary and write files."""
     from solvers.app.fitting import fit, named_model, read_measurement
     from solvers.io.progress import Progress
-    from solvers.scenes.fitting import prediction, summary
+    from solvers.scenes.fitting import fit_summary, prediction
     from solvers.scenes.scene import Scene
 
     model = named_model(arguments.scene)
@@ -85,14 +85,14 @@ def run(arguments: Namespace) -> int:
         report("plots")
         files = _write(arguments, selected, comparison)
     if arguments.json:
-        results: dict[str, Any] = summary.figures(selected)
+        results: dict[str, Any] = fit_summary.figures(selected)
         if comparison:
-            results["comparison"] = summary.comparison_figures(comparison)
+            results["comparison"] = fit_summary.comparison_figures(comparison)
         options.print_json(results | {"files": files})
         return 0
-    print(*summary.summary(selected), sep="\n")
+    print(*fit_summary.summary(selected), sep="\n")
     if comparison:
-        print("", *summary.comparison_lines(comparison), sep="\n")
+        print("", *fit_summary.comparison_lines(comparison), sep="\n")
     print(f"\nfiles: {', '.join(files.values())}")
     return 0
 
@@ -130,26 +130,28 @@ def _other(text: str, model: "Model", first: "Fit") -> "Fit":
     return replace(other, held={**first.held} | dict.fromkeys(held, "as compared"))
 
 
-def _write(arguments: Namespace, fit: "Fit", comparison: "Comparison | None") -> dict[str, str]:
+def _write(
+    arguments: Namespace, fit: "Fit", comparison: "ModelComparison | None"
+) -> dict[str, str]:
     from solvers.io.atomic_write import write_text
     from solvers.io.figures import save
-    from solvers.scenes.fitting import plots, summary
+    from solvers.scenes.fitting import fit_plots, fit_summary
 
     folder, name = arguments.output, f"{Path(arguments.scene).stem}_fit"
     folder.mkdir(parents=True, exist_ok=True)
     data = ", ".join(path.name for path in arguments.data)
     title = f"{Path(arguments.scene).stem} fitted to {data}"
     files = {kind: folder / f"{name}{end}" for kind, end in _endings(comparison)}
-    save(plots.figure(fit, title), files["plot"])
-    write_text(files["table"], summary.table(fit))
+    save(fit_plots.figure(fit, title), files["plot"])
+    write_text(files["table"], fit_summary.table(fit))
     comments = [title, *(f"{k} = {v.value:.6g} ± {v.error:.2g}" for k, v in fit.intervals.items())]
-    write_text(files["scene"], summary.scene_text(fit, _system(arguments, fit), comments))
+    write_text(files["scene"], fit_summary.scene_text(fit, _system(arguments, fit), comments))
     if comparison:
-        save(plots.prediction_figure(comparison, title), files["predictions"])
+        save(fit_plots.prediction_figure(comparison, title), files["predictions"])
     return {kind: str(path) for kind, path in files.items()}
 
 
-def _endings(comparison: "Comparison | None") -> Iterator[tuple[str, str]]:
+def _endings(comparison: "ModelComparison | None") -> Iterator[tuple[str, str]]:
     yield from (("scene", ".toml"), ("table", ".csv"), ("plot", ".png"))
     if comparison:
         yield "predictions", "_predictions.png"

@@ -102,7 +102,7 @@ def selected_scenes(
     `ValueError` where two of them would write the same one of their `files`.
     """
     from solvers.app.modules import load
-    from solvers.scenes.reading import find
+    from solvers.scenes.scene_reading import find
 
     scenes = [find(name, load) for name in dict.fromkeys(arguments.scenes or default)]
     writers: dict[str, Scene] = {}

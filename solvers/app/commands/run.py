@@ -39,8 +39,8 @@ def run(arguments: Namespace) -> int:
     from solvers.app.typesetting import equations
     from solvers.io.progress import Progress
     from solvers.scenes.output import write_files
-    from solvers.scenes.run import run_scene
-    from solvers.scenes.summary import figures, summary, together
+    from solvers.scenes.scene_run import run_scene
+    from solvers.scenes.scene_summary import figures, summary, together
 
     names = partial(_files, plot=arguments.plot)
     scenes, results = options.selected_scenes(arguments, DEFAULT, names), []

@@ -45,12 +45,12 @@ def run(arguments: Namespace) -> int:
     from solvers.app.modules import load
     from solvers.io.figures import save
     from solvers.io.progress import Progress
-    from solvers.sweeps.definition.reading import find
+    from solvers.sweeps.definition.sweep_reading import find
     from solvers.sweeps.execution.convergence import convergence
-    from solvers.sweeps.execution.run import partial_results, sweep
+    from solvers.sweeps.execution.sweep_run import partial_results, sweep
     from solvers.sweeps.plots.figure import figure
     from solvers.sweeps.results import GOOD
-    from solvers.sweeps.summary import as_json, summary
+    from solvers.sweeps.sweep_summary import as_json, summary
 
     definition = find(arguments.sweep, load)
     folder = arguments.output or Path("out") / definition.name

@@ -40,7 +40,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Print the verdicts; return 1 if an equation is wrong, otherwise 2 if one is unreadable."""
     if arguments.equations or arguments.annotate or arguments.system or arguments.names:
-        from derive.commands.verify import verify
+        from derive.commands.verify_sources import verify
         from derive.verification.documents.letters.hints import hints
         from solvers.runge_kutta.order_conditions import order
 

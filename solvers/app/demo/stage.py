@@ -14,7 +14,7 @@ from solvers.io.figures import darken, png, svg
 STACKED = 4
 
 
-class Number(NamedTuple):
+class ReportedNumber(NamedTuple):
     """A reported number and its origin: a proof, a computation or a measurement."""
 
     quantity: str
@@ -29,7 +29,7 @@ class Stage:
 
     lines: tuple[str, ...]
     html: str = ""
-    numbers: tuple[Number, ...] = ()
+    numbers: tuple[ReportedNumber, ...] = ()
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -6,15 +6,15 @@ from datetime import date
 from importlib.metadata import version
 from pathlib import Path
 
-from solvers.app.demo.equations import derivation, generation
-from solvers.app.demo.methods import cost, limits
-from solvers.app.demo.motions import flips, motion
+from solvers.app.demo.equations_stage import derivation, generation
+from solvers.app.demo.methods_stage import cost, limits
+from solvers.app.demo.motions_stage import flips, motion
 from solvers.app.demo.stage import Stage
-from solvers.app.demo.verdicts import verification
+from solvers.app.demo.verdicts_stage import verification
 from solvers.app.modules import load
 from solvers.integration.prepare import no_compiler
-from solvers.scenes.reading import find
-from solvers.sweeps.definition import reading
+from solvers.scenes.scene_reading import find
+from solvers.sweeps.definition import sweep_reading
 
 #: Packages whose versions the page states.
 PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
@@ -27,7 +27,7 @@ def stages(folder: Path) -> dict[str, Callable[[], Stage]]:
     def flip_map() -> Stage:
         if missing := no_compiler(scene.module):
             return Stage((f"left out: {missing}",))
-        return flips(reading.find("flips", load), folder / "flips")
+        return flips(sweep_reading.find("flips", load), folder / "flips")
 
     return {
         "derive": derivation,

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from solvers.app.verdict.evidence import Evidence
-from solvers.studies.work_precision.measurement import REPORT_METHODS
+from solvers.studies.work_precision.measured_curves import REPORT_METHODS
 
 #: Plots, each after the command that writes it.
 CHART = "holonomic chart: work_precision_report.png"

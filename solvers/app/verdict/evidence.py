@@ -15,10 +15,10 @@ from solvers.integration.integrate import integrate
 from solvers.integration.results.solution import Solution
 from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.scenes.scene import Scene
-from solvers.studies.failure_modes.lyapunov import Mean, lyapunov
-from solvers.studies.work_precision.measurement import REPORT_METHODS
+from solvers.studies.failure_modes.largest_exponent import Mean, lyapunov
+from solvers.studies.work_precision.measured_curves import REPORT_METHODS
 
 Array = NDArray[np.float64]
 Times = Sequence[float] | Array | None

@@ -6,9 +6,9 @@ from dataclasses import asdict
 from typing import Any
 
 from derive.verification.report.contexts import NUMBERS
-from derive.verification.report.judgement import verdicts
 from derive.verification.report.programs import PROSE, programs
-from derive.verification.report.programs import Scene as ReportScene
+from derive.verification.report.programs import ReportScene as ReportScene
+from derive.verification.report.report_judgement import verdicts
 from derive.verification.verdict import Verdict, table_row, table_width, verdict_rows, wrapped
 from solvers.app.modules import load
 from solvers.app.verdict.claims import claims, objectives, recommendations

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.arguments import checked
 from solvers.equations.linearisation.intervals import FUNCTIONS, Interval, bounds_of, select
 from solvers.equations.linearisation.linear_system import LinearSystem, linearise, with_inputs
 from solvers.equations.module import (
@@ -19,7 +18,8 @@ from solvers.equations.module import (
     has_constraints,
     with_functions,
 )
-from solvers.equations.quantities import Values, real_numbers
+from solvers.equations.number_checks import Values, real_numbers
+from solvers.equations.signature_checks import checked
 from solvers.io.suggestion import did_you_mean, shortened
 
 Array = NDArray[np.float64]

@@ -9,7 +9,6 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import (
     GeneratedModule,
     function,
@@ -18,10 +17,11 @@ from solvers.equations.module import (
 )
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module import outputs as output_names
-from solvers.equations.quantities import Values, quantities, real_number
+from solvers.equations.number_checks import Values, quantities, real_number
+from solvers.equations.signature_checks import checked
 from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import consistent
-from solvers.io.arguments import check_type
+from solvers.io.argument_types import check_type
 from solvers.io.suggestion import did_you_mean
 
 Array = NDArray[np.float64]

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, function, has_constraints, has_function
-from solvers.equations.quantities import Values, quantities, real_number
+from solvers.equations.number_checks import Values, quantities, real_number
+from solvers.equations.signature_checks import checked
 from solvers.equations.starts.assembly import (
     CLOSED,
     EXACT,

@@ -8,9 +8,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import Values, positive
+from solvers.equations.number_checks import Values, positive
 from solvers.equations.singularities.mass_matrix import checked_before
 from solvers.integration.accuracy.accurate_motion import accurate_motion, check_options
+from solvers.integration.accuracy.checked_motion import Array
 from solvers.integration.accuracy.checked_run import CHECKS, FINEST, MARGIN, RESERVE, TIGHTER, TRIES
 from solvers.integration.accuracy.integration_run import (
     SMALL_STATE,
@@ -18,9 +19,8 @@ from solvers.integration.accuracy.integration_run import (
     NotAccurateError,
     TooLongError,
 )
-from solvers.integration.accuracy.motion import Array
 from solvers.integration.checks.predictability import ignore_predictability
-from solvers.integration.many_motions import Motions
+from solvers.integration.many_motions import MotionBatch
 from solvers.integration.problem.problem import Options
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.io.suggestion import counted, warn_caller
@@ -45,7 +45,7 @@ def accurate_ensemble(
     """The motions of `ensemble` with this accuracy, whose arguments it describes."""
     accuracy = positive("accuracy", accuracy)
     check_options(module, options)
-    motions = Motions.of(module, t_span, y0, params, options)
+    motions = MotionBatch.of(module, t_span, y0, params, options)
     rows, tolerance = np.arange(len(motions.states)), max(accuracy * RESERVE, FINEST * TIGHTER)
     result, estimates = None, np.full(len(rows), np.inf)
     with ignore_predictability(), checked_before():
@@ -75,7 +75,7 @@ def accurate_ensemble(
 
 
 def _checked(
-    motions: Motions, rows: NDArray[np.int64], options: Options, tolerance: float, run: Run
+    motions: MotionBatch, rows: NDArray[np.int64], options: Options, tolerance: float, run: Run
 ) -> tuple[Ensemble, Array]:
     """Some of the motions with a tolerance, and their errors by two methods in another form."""
     module = motions.problem.form.module
@@ -94,7 +94,7 @@ def _checked(
 
 
 def _run(
-    motions: Motions, rows: NDArray[np.int64], options: Options, tolerance: float, run: Run
+    motions: MotionBatch, rows: NDArray[np.int64], options: Options, tolerance: float, run: Run
 ) -> Ensemble:
     """Some of the motions with a tolerance."""
     times, constants = motions.times, motions.constants
@@ -127,7 +127,12 @@ def _put(result: Ensemble, rows: NDArray[np.int64], part: Ensemble) -> None:
 
 
 def _integrate_alone(
-    result: Ensemble, estimates: Array, motions: Motions, k: int, options: Options, accuracy: float
+    result: Ensemble,
+    estimates: Array,
+    motions: MotionBatch,
+    k: int,
+    options: Options,
+    accuracy: float,
 ) -> None:
     """Replace a motion by that with other methods or longer numbers, where these suffice."""
     times, constants = motions.times, motions.constants

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule, has_perturbation, inputs
-from solvers.equations.quantities import Values, positive
+from solvers.equations.number_checks import Values, positive
+from solvers.integration.accuracy.checked_motion import Array, Motion
 from solvers.integration.accuracy.checked_run import FINEST, RESERVE, CheckedRun
 from solvers.integration.accuracy.integration_run import FINE, SMOOTH, IntegrationRun
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest, usual_form
-from solvers.integration.accuracy.motion import Array, Motion
 from solvers.integration.accuracy.sufficient_run import sufficient_run
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.problem import validation

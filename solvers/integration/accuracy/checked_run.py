@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solvers.equations.forms import fastest_form
+from solvers.integration.accuracy.checked_motion import Array, Motion
 from solvers.integration.accuracy.double_precision import check_times, sufficient
 from solvers.integration.accuracy.integration_run import (
     MAX_STEPS,
@@ -14,8 +15,7 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import MethodChoice
-from solvers.integration.accuracy.motion import Array, Motion
-from solvers.runge_kutta.catalogue import SCIPY, load
+from solvers.runge_kutta.method_catalogue import SCIPY, load
 
 #: Methods of the check, how much finer its tolerance is, and the finest tolerance.
 CHECKS, TIGHTER, FINEST = ("dop853", "verner98"), 100.0, 1e-14

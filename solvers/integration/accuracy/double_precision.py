@@ -11,13 +11,13 @@ from itertools import product
 import numpy as np
 
 from solvers.equations.forms import fastest_form
+from solvers.integration.accuracy.checked_motion import Array, Motion, golden_points
 from solvers.integration.accuracy.integration_run import (
     IntegrationRun,
     NotAccurateError,
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import MethodChoice
-from solvers.integration.accuracy.motion import Array, Motion, golden_points
 
 #: The fastest method, run in every form, and others, run in one.
 BEST, OTHERS = "verner98", ("tsit54", "dop853")

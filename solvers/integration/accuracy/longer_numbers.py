@@ -10,6 +10,7 @@ import numpy as np
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import named, operations_on_state
+from solvers.integration.accuracy.checked_motion import Array, Motion, golden_points
 from solvers.integration.accuracy.checked_run import CheckedRun, check_length
 from solvers.integration.accuracy.double_precision import MARGIN
 from solvers.integration.accuracy.integration_run import (
@@ -18,7 +19,6 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import MethodChoice
-from solvers.integration.accuracy.motion import Array, Motion, golden_points
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, kernel
 

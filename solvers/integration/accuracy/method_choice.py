@@ -12,7 +12,7 @@ from typing import Any
 from solvers.equations.forms import fastest_form
 from solvers.equations.linearisation.normal_modes import mode_spread
 from solvers.equations.module import GeneratedModule
-from solvers.runge_kutta.catalogue import SCIPY, load, names
+from solvers.runge_kutta.method_catalogue import SCIPY, load, names
 
 RECORD = Path(__file__).with_name("measured.json")
 SERIES = "taylor"

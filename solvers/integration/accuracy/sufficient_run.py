@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
+from solvers.integration.accuracy.checked_motion import Array, Motion
 from solvers.integration.accuracy.checked_run import CheckedRun, checked_run
 from solvers.integration.accuracy.integration_run import NotAccurateError
 from solvers.integration.accuracy.longer_numbers import by_longer_numbers
 from solvers.integration.accuracy.method_choice import SERIES, MethodChoice, usual_form
-from solvers.integration.accuracy.motion import Array, Motion
-from solvers.integration.accuracy.series import by_series
+from solvers.integration.accuracy.taylor_motion import by_series
 from solvers.integration.compiled.extended import PRECISIONS
 from solvers.references.taylor import SeriesError
 

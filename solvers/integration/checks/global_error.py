@@ -9,7 +9,7 @@ from solvers.equations.module import has_perturbation
 from solvers.integration.loops import compiled_loop, passage
 from solvers.integration.problem.problem import Problem
 from solvers.integration.results.outcome import Outcome
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stepper import Array
 
 #: Methods of the comparison, how much tighter its tolerances are, and the tightest.

@@ -12,12 +12,12 @@ import numpy as np
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops.compiled_loop import compile_ahead, loop, obstacle
 from solvers.integration.loops.passage import rerun
 from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stepper import Array
 
 #: Method and tolerance for linear perturbations, most steps, and steps per call.

@@ -111,7 +111,7 @@ class Compilation:
         return True
 
 
-class Attempts:
+class FailedCompilations:
     """The failed compilations of this process and its forks, none of which is repeated.
 
     A compiler that hangs is noted for other processes.

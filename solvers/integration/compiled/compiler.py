@@ -12,7 +12,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from solvers.integration.compiled.command import CommandError
-from solvers.integration.compiled.compilation import LIBRARY, Attempts, Compilation, identity
+from solvers.integration.compiled.compilation import (
+    LIBRARY,
+    Compilation,
+    FailedCompilations,
+    identity,
+)
 from solvers.io.build_cache import NoPlaceError, built_folder
 from solvers.io.suggestion import warn_caller
 
@@ -22,7 +27,7 @@ FLAGS = (
     *("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fPIC"),
     *("-fno-tree-vectorize", "-Wno-psabi"),
 )
-_attempts = Attempts()
+_attempts = FailedCompilations()
 
 
 class NoCompilerError(OSError):

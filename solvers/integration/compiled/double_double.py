@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal, localcontext
 from functools import singledispatchmethod
 
-from solvers.integration.compiled.equations_source import Equations
+from solvers.integration.compiled.equations_source import EquationsSource
 from solvers.integration.compiled.extended_source import (
     NotArithmeticError,
     Precision,
     coefficients_of,
 )
-from solvers.integration.compiled.layout import source
+from solvers.integration.compiled.memory_layout import source
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS
 
 FUNCTION = """\
@@ -39,7 +39,7 @@ class DoubleDouble(Precision):
     files = "double_double_stages.h", "double_double_refinement.h"
     correction = "double_double_correction.h"
 
-    def numbers(self, equations: Equations) -> str:
+    def numbers(self, equations: EquationsSource) -> str:
         """The operations, and the right-hand side in calls of them and in lanes of doubles."""
         functions = {"RHS": equations.rhs, "CORRECTION": equations.correction}
         functions["EVALUATE"] = equations.integrals
@@ -90,7 +90,7 @@ def _pairs(values: Sequence[Decimal]) -> str:
     return _list([_doubles(values), _doubles(rest)])
 
 
-def in_calls(equations: Equations, name: str, function: str) -> str:
+def in_calls(equations: EquationsSource, name: str, function: str) -> str:
     """A function of the header in C under a new name, as calls of functions for sums and products.
 
     Names in it have the prefix ``v_``, so that they hide none of these functions.

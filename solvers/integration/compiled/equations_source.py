@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from solvers.equations.forms import CORRECTIONS
-from solvers.integration.compiled.layout import MAX_EVENTS, source
+from solvers.integration.compiled.memory_layout import MAX_EVENTS, source
 from solvers.runge_kutta.tableau import Tableau
 
 EQUATIONS = """\
@@ -148,7 +148,7 @@ static void stage_derivatives(
 
 
 @dataclass(frozen=True)
-class Equations:
+class EquationsSource:
     """One form of a system's equations in C; `state`, `parameters` and `ordinary` are sizes."""
 
     header: str  # text of the generated header
@@ -204,7 +204,7 @@ class Equations:
         }
 
 
-def equations_text(equations: Equations, tableau: Tableau) -> str:
+def equations_text(equations: EquationsSource, tableau: Tableau) -> str:
     """The right-hand side, in numbers or in vectors of stages."""
     if not tableau.is_parallel:
         return EQUATIONS.format(
@@ -226,13 +226,13 @@ def equations_text(equations: Equations, tableau: Tableau) -> str:
     )
 
 
-def _takes_stage_vectors(equations: Equations) -> bool:
+def _takes_stage_vectors(equations: EquationsSource) -> bool:
     # functions that convert states of a single motion take numbers, not vectors
     converts = any("_state(" in line for line in equations.from_ordinary)
     return equations.vectorises and not converts
 
 
-def projection_text(equations: Equations, tableau: Tableau) -> str:
+def projection_text(equations: EquationsSource, tableau: Tableau) -> str:
     """The functions by which states are moved onto the constraints."""
     is_vector = tableau.is_parallel and _takes_stage_vectors(equations)
     correct = evaluate = ""
@@ -259,13 +259,13 @@ def projection_text(equations: Equations, tableau: Tableau) -> str:
     )
 
 
-def _vectors(equations: Equations, name: str, results: int, shift: int = 0) -> str:
+def _vectors(equations: EquationsSource, name: str, results: int, shift: int = 0) -> str:
     """A call with vectors."""
     sizes = {"state": equations.state, "parameters": equations.parameters}
     return VECTORS.format(name=name, results=results, shift=shift, **sizes)
 
 
-def sliding_text(equations: Equations, tableau: Tableau) -> str:
+def sliding_text(equations: EquationsSource, tableau: Tableau) -> str:
     """The functions by which a motion stays on jumps of forces."""
     if not equations.switches:
         return ""

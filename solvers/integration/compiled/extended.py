@@ -24,7 +24,7 @@ from solvers.integration.compiled.extended_source import (
     Precision,
     Sequential,
 )
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.compiled.native import equations
 from solvers.integration.problem.problem import COLLAPSE, shortest_step
 from solvers.integration.problem.status import Status

@@ -12,8 +12,8 @@ from decimal import Decimal, localcontext
 
 from solvers.equations.forms import Form
 from solvers.equations.module import BINARY, ELEMENTARY
-from solvers.integration.compiled.equations_source import Equations
-from solvers.integration.compiled.layout import sizes_and_statuses, source
+from solvers.integration.compiled.equations_source import EquationsSource
+from solvers.integration.compiled.memory_layout import sizes_and_statuses, source
 from solvers.runge_kutta.collocation import collocation, gauss_nodes
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS
 
@@ -70,7 +70,7 @@ class NumberType:
     literal: str
     call: str = ""  # suffix of its functions, for a type that is not in C99
 
-    def equations(self, equations: Equations, prefix: str) -> str:
+    def equations(self, equations: EquationsSource, prefix: str) -> str:
         """The header's text for this type, with a prefix before all its names."""
         counts = dict.fromkeys(ELEMENTARY, 1) | dict.fromkeys(BINARY, 2) if self.call else {}
         system = equations.rhs.partition("_rhs")[0]
@@ -119,7 +119,7 @@ class Precision(ABC):
     may_fuse: bool  # products and sums
 
     @abstractmethod
-    def numbers(self, equations: Equations) -> str:
+    def numbers(self, equations: EquationsSource) -> str:
         """The types of numbers, the right-hand side in them, and CORRECTION with constraints.
 
         EVALUATE gives the integrals, if there are any.
@@ -130,7 +130,7 @@ class Precision(ABC):
     def coefficients(self) -> str:
         """The coefficients of the method in C."""
 
-    def program(self, equations: Equations, form: Form) -> str:
+    def program(self, equations: EquationsSource, form: Form) -> str:
         """The C99 program, with ``extended_start``, ``_advance`` and ``_progress``."""
         sines, rates = zip(*equations.angles or [(0, 0)], strict=True)
         added = {k: equations.state + a for a, (k, _) in enumerate(form.angle_columns)}
@@ -173,7 +173,7 @@ class Sequential(Precision):
         self.real, self.lower, self.stages = real, lower, stages
         self.epsilon = real.epsilon
 
-    def numbers(self, equations: Equations) -> str:
+    def numbers(self, equations: EquationsSource) -> str:
         """Both types, with the header for each."""
         types = {"real": self.real, "lower": self.lower}
         return "\n".join(

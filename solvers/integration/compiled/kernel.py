@@ -12,12 +12,12 @@ from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel_source import program
-from solvers.integration.compiled.layout import EVENT, STATUSES, Task, check, record
+from solvers.integration.compiled.memory_layout import EVENT, STATUSES, Task, check, record
 from solvers.integration.compiled.native import equations
 from solvers.integration.problem.events import Event, Extremum
 from solvers.integration.problem.problem import SHORTEST, Problem
 from solvers.integration.problem.status import Status
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stepper import Array
 
 

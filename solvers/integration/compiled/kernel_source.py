@@ -5,12 +5,12 @@ tableau, and the handwritten files in the folder ``c``.
 """
 
 from solvers.integration.compiled.equations_source import (
-    Equations,
+    EquationsSource,
     equations_text,
     projection_text,
     sliding_text,
 )
-from solvers.integration.compiled.layout import declarations, source
+from solvers.integration.compiled.memory_layout import declarations, source
 from solvers.integration.compiled.method_source import constants_text, extension_text, method_text
 from solvers.integration.problem.problem import SHORTEST
 from solvers.runge_kutta.tableau import Tableau
@@ -66,7 +66,12 @@ static void to_ordinary(
 
 
 def program(
-    equations: Equations, tableau: Tableau, *, lanes: bool, compensated: bool, variations: int = 0
+    equations: EquationsSource,
+    tableau: Tableau,
+    *,
+    lanes: bool,
+    compensated: bool,
+    variations: int = 0,
 ) -> str:
     """The text of the C99 program, with the functions ``run`` and, without lanes, ``single``.
 

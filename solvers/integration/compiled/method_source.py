@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from solvers.integration.compiled.implicit_source import IMPLICIT_FILES, implicit, real, row
-from solvers.integration.compiled.layout import source
+from solvers.integration.compiled.memory_layout import source
 from solvers.runge_kutta.continuous_extension import ContinuousExtension, elevated
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (

@@ -16,7 +16,7 @@ from solvers.equations.module import (
 )
 from solvers.equations.module import part as module_part
 from solvers.integration.compiled.compiler import Library, build
-from solvers.integration.compiled.equations_source import Equations
+from solvers.integration.compiled.equations_source import EquationsSource
 
 WRAPPER = """
 void rhs(double t, const double *y, double *dy, const double *params);
@@ -50,7 +50,7 @@ class NativeRhs:
 
 def equations(
     module: GeneratedModule, form: str, *, jacobian: bool = False, switches: bool = False
-) -> Equations:
+) -> EquationsSource:
     """One form of a generated module in C, with its Jacobian if `jacobian`.
 
     Its switching functions have signs if `switches`.
@@ -81,7 +81,7 @@ def equations(
         shared = layout.shared_columns
         corrected = [f"add_to_component(state, {i}, change[{k}]);" for k, i in shared]
         corrected += [f"turn(state, {i}, change[{k}]);" for k, i in layout.angle_columns]
-    return Equations(
+    return EquationsSource(
         text,
         f"{system}_{named('rhs', form)}",
         f"{system}_{named('jacobian', form)}",

@@ -6,37 +6,43 @@ from functools import cached_property
 
 import numpy as np
 
-from solvers.equations.quantities import NotFiniteNumberError
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.runge_kutta.continuous_extension import bernstein_values
-from solvers.runge_kutta.newton import Stages
+from solvers.runge_kutta.newton_stages import NewtonStages
 from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.parallel_stages import Polynomial
 from solvers.runge_kutta.step_control import Controller
-from solvers.runge_kutta.stepper import Array, NoConvergenceError, NotFiniteError, Step, Stepper
+from solvers.runge_kutta.stepper import (
+    Array,
+    NoConvergenceError,
+    NotFiniteError,
+    Stepper,
+    StepResult,
+)
 
 #: Failures of a step that a smaller step may avoid.
 FAILURES = (NotFiniteError, NoConvergenceError, NotFiniteNumberError)
 
 
 @dataclass(frozen=True)
-class Point:
+class TimedState:
     """A time in s, with the state and its derivative."""
 
     t: float
     y: Array
     derivative: Array
-    last: Polynomial | Stages | None = None  # of the step that ends here
+    last: Polynomial | NewtonStages | None = None  # of the step that ends here
 
 
 @dataclass(frozen=True)
 class Accepted:
     """A step with a sufficiently small error; `norm` is that of its error."""
 
-    attempts: "Attempts"
-    start: Point
-    end: Point
+    attempts: "StepAttempts"
+    start: TimedState
+    end: TimedState
     norm: float
-    step: Step
+    step: StepResult
 
     def state(self, t: float) -> Array:
         """The state at a time within the step, by a shorter step from its start."""
@@ -121,7 +127,7 @@ class Rejected:
 
 
 @dataclass(frozen=True)
-class Attempts:
+class StepAttempts:
     """Attempts at steps of one method; `project` is applied to every new state."""
 
     stepper: Stepper
@@ -133,7 +139,9 @@ class Attempts:
         pairs = zip(times.tolist(), states, strict=True)
         return np.stack([self.project(t, y) for t, y in pairs], axis=1)
 
-    def attempt(self, start: Point, t: float, h: float, *, is_last: bool) -> Accepted | Rejected:
+    def attempt(
+        self, start: TimedState, t: float, h: float, *, is_last: bool
+    ) -> Accepted | Rejected:
         """Try the step from `start` to `t`, of size `h`; the last step needs no derivative."""
         controller = self.controller
         try:
@@ -150,9 +158,9 @@ class Attempts:
                 derivative = self.stepper.derivative(t, y) if needed else start.derivative
         except FAILURES as failure:
             return Rejected(h / 4, failure)
-        return Accepted(self, start, Point(t, y, derivative, step.last), norm, step)
+        return Accepted(self, start, TimedState(t, y, derivative, step.last), norm, step)
 
-    def first_step_size(self, start: Point, end: float, shortest: float) -> float:
+    def first_step_size(self, start: TimedState, end: float, shortest: float) -> float:
         """The first step size of steps that are controlled."""
         assert self.controller is not None
         guess = self.controller.initial_step
@@ -164,11 +172,11 @@ class Attempts:
 class Orders:
     """Attempts by methods of decreasing order, and the choice between them."""
 
-    members: Sequence[Attempts]
+    members: Sequence[StepAttempts]
     choice: OrderChoice
 
     @property
-    def attempts(self) -> Attempts:
+    def attempts(self) -> StepAttempts:
         """Those by the method of the next step."""
         return self.members[self.choice.index]
 

@@ -5,17 +5,17 @@ from threading import Thread
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, has_header
-from solvers.equations.quantities import NotFiniteNumberError
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.integration.compiled.compilation import is_ahead
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
-from solvers.integration.compiled.layout import MAX_EVENTS, STATUSES
+from solvers.integration.compiled.memory_layout import MAX_EVENTS, STATUSES
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.outcome import Outcome
 from solvers.io.suggestion import warn_caller
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.tableau import Tableau
 
 #: Steps, and occurrences of an event, that C stores before Python collects them.

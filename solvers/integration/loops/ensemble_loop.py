@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.integration.compiled.kernel import Batch, Kernel
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import python_loop
 from solvers.integration.loops.passage import rerun
 from solvers.integration.loops.stop_flag import StopFlag

@@ -17,7 +17,7 @@ import scipy
 from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
 from solvers.equations.module import integrals
-from solvers.equations.quantities import NotFiniteNumberError
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.equations.singularities.singular_configuration import NEAR, distance_from_singularity
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel

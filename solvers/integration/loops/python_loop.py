@@ -5,9 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.equations.quantities import NotFiniteNumberError
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.integration.loops import scipy_loop
-from solvers.integration.loops.attempts import FAILURES, Accepted, Attempts, Orders, Point, Rejected
+from solvers.integration.loops.attempts import (
+    FAILURES,
+    Accepted,
+    Orders,
+    Rejected,
+    StepAttempts,
+    TimedState,
+)
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.loops.switching import first_part, is_coarse, next_part
 from solvers.integration.problem.problem import Problem, shortest_step
@@ -57,11 +64,13 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
 
 def _attempts(
     problem: Problem, members: Sequence[Tableau], controllers: Sequence[Controller | None]
-) -> list[Attempts]:
+) -> list[StepAttempts]:
     """Attempts by each method of a part of a motion; the controllers are those of all parts."""
     form, tolerances = problem.form, (problem.rtol, problem.atol)
     return [
-        Attempts(Stepper(method, form.rhs, form.jacobian, *tolerances), controller, form.projected)
+        StepAttempts(
+            Stepper(method, form.rhs, form.jacobian, *tolerances), controller, form.projected
+        )
         for method, controller in zip(members, controllers, strict=True)
     ]
 
@@ -83,7 +92,7 @@ def _run(
         return Status.FINISHED, h
     y = problem.form.from_ordinary(begin, recorder.y)
     try:
-        point = Point(begin, y, attempts.stepper.derivative(begin, y))
+        point = TimedState(begin, y, attempts.stepper.derivative(begin, y))
     except NotFiniteError as failure:
         return outcome.fail(failure), h
     shortest, failures, first = shortest_step(begin, end), 0, outcome.steps
@@ -125,7 +134,7 @@ def _run(
 
 
 def _step(
-    attempts: Attempts, recorder: Recorder, start: Point, t: float, *, is_last: bool
+    attempts: StepAttempts, recorder: Recorder, start: TimedState, t: float, *, is_last: bool
 ) -> tuple[Accepted | Rejected, bool]:
     """An attempt at a step to `t`, recorded if accepted, and whether an event ends the run."""
     h = abs(t - start.t)

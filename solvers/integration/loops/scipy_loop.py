@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from solvers.equations.forms import Form
-from solvers.equations.quantities import NotFiniteNumberError
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.loops.switching import first_part, next_part
 from solvers.integration.problem.problem import Problem

@@ -18,7 +18,7 @@ from solvers.equations.forms import Form
 from solvers.equations.sliding import is_affine
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.problem.switch import Switch
+from solvers.integration.problem.switch import SwitchEvent
 from solvers.integration.results.outcome import Outcome
 from solvers.runge_kutta.stepper import Array
 
@@ -126,7 +126,7 @@ def _with_signs(
     y[: len(state)] -= lagrangian.switching(t, state).excess
     levels = [0.0] * len(signs)
     for k in active:
-        value = Switch(_lagrangian(problem, y)[0], k, 0.0).value(t, y)
+        value = SwitchEvent(_lagrangian(problem, y)[0], k, 0.0).value(t, y)
         levels[k] = value if signs[k] else min(value, 0.0)
     return replace(problem, levels=tuple(levels), span=(t, problem.span[1])), y
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, title
 from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
-from solvers.io.notation import axis_label, symbol
+from solvers.io.figure_names import axis_label, symbol
 from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.stepper import Array
 

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.linearisation.linear_system import LinearSystem, Mode
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import real_number
-from solvers.integration.orbits.curve import Curve
+from solvers.equations.number_checks import real_number
+from solvers.equations.signature_checks import checked
 from solvers.integration.orbits.nature import Nature
-from solvers.integration.orbits.newton import solve
 from solvers.integration.orbits.orbit import PeriodicOrbit
-from solvers.integration.orbits.shooting import Point, Shooting
+from solvers.integration.orbits.orbit_newton import solve
+from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart
+from solvers.integration.orbits.solution_curve import SolutionCurve
 from solvers.integration.orbits.symmetry import Reversal
 from solvers.runge_kutta.stepper import Array
 
@@ -81,15 +81,15 @@ def normal_mode_orbit(
     params = np.array(equilibrium.params)
     reversal = Reversal.of_velocities(module, equilibrium.y, params)
     nature = Nature.of(module, equilibrium.y, params)
-    shooting = Shooting(module, nature, rtol, atol, reversal)
-    point = Point(equilibrium.y + displacement, 2 * np.pi / frequency, params)
+    shooting = OrbitConditions(module, nature, rtol, atol, reversal)
+    point = OrbitStart(equilibrium.y + displacement, 2 * np.pi / frequency, params)
     if not shooting.nature.is_conservative:
         raise ValueError(f"{module.SYSTEM} does not conserve its energy: no family is born at rest")
     if amplitude == 0:
         raise ValueError("amplitude = 0 is the equilibrium: give another one, such as 0.1")
     fixed = np.eye(2 * n + 2)[[largest]]
     if reversal is None:
-        fixed = np.concatenate([fixed, Curve(shooting, np.ones(2 * n + 2)).phase(point)])
+        fixed = np.concatenate([fixed, SolutionCurve(shooting, np.ones(2 * n + 2)).phase(point)])
     point, shot = solve(shooting, point, fixed)
     return PeriodicOrbit.of(shooting, point, shot)
 

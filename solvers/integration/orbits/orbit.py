@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.integration.orbits.shooting import TINY, Point, Shooting, Shot
+from solvers.integration.orbits.orbit_shooting import TINY, OrbitConditions, OrbitStart, Shot
 from solvers.runge_kutta.stepper import Array
 
 #: Name of the quantity that varies along a family of a conservative system.
@@ -54,7 +54,7 @@ class PeriodicOrbit:
     symmetry: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, shooting: Shooting, point: Point, shot: Shot) -> "PeriodicOrbit":
+    def of(cls, shooting: OrbitConditions, point: OrbitStart, shot: Shot) -> "PeriodicOrbit":
         """The orbit through a point."""
         others = np.linalg.eigvals(reduced(shooting, point, shot.monodromy))
         values = np.concatenate([others, np.ones(len(point.y) - len(others))])
@@ -90,7 +90,7 @@ class PeriodicOrbit:
         )
 
 
-def reduced(shooting: Shooting, point: Point, monodromy: Array) -> Array:
+def reduced(shooting: OrbitConditions, point: OrbitStart, monodromy: Array) -> Array:
     """The monodromy matrix for perturbations across the orbit that keep the energy.
 
     In an orthonormal basis of the direction of the motion, the remaining directions, and the

@@ -7,19 +7,19 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import positive, real_numbers
-from solvers.integration.orbits.curve import UNIQUE, Curve, Node
+from solvers.equations.number_checks import positive, real_numbers
+from solvers.equations.signature_checks import checked
 from solvers.integration.orbits.family import OrbitFamily, SpecialOrbit
 from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
-from solvers.integration.orbits.shooting import PeriodOf, Point, Shooting
+from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart, PeriodOf
+from solvers.integration.orbits.solution_curve import UNIQUE, CurveNode, SolutionCurve
 from solvers.integration.orbits.special_points import crossing_direction, doubling_direction
 from solvers.integration.orbits.symmetry import Reversal, angles
 from solvers.integration.orbits.walk import Limits, Walk, walk
 from solvers.integration.problem import validation
-from solvers.io.arguments import check_direction
+from solvers.io.argument_types import check_direction
 from solvers.io.suggestion import did_you_mean, shortened
 from solvers.runge_kutta.stepper import Array
 
@@ -120,7 +120,7 @@ def orbit_family(
         if breaks > SYMMETRIC * np.abs(start.direction).max():
             reversal = None
     index = None if parameter == ENERGY else module.PARAMETERS.index(parameter)
-    shooting = Shooting(
+    shooting = OrbitConditions(
         module, Nature.of(module, orbit.y, params, index), rtol, atol, reversal, index, period
     )
     ends = real_numbers("bounds", bounds, finite=False)
@@ -146,10 +146,12 @@ def orbit_family(
     return _family(module, parameter, behind, first, ahead)
 
 
-def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit, limits: Limits) -> Node:
+def _first(
+    shooting: OrbitConditions, start: PeriodicOrbit | SpecialOrbit, limits: Limits
+) -> CurveNode:
     """The first node, whose tangent leads to larger values."""
     orbit = start if isinstance(start, PeriodicOrbit) else start.orbit
-    point = Point(orbit.y, orbit.period, np.array(orbit.params))
+    point = OrbitStart(orbit.y, orbit.period, np.array(orbit.params))
     if isinstance(start, SpecialOrbit) and start.kind == "period doubling":
         point = replace(point, period=2 * orbit.period)
     shooting.check_period(point)
@@ -160,7 +162,7 @@ def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit, limits: Limi
             f"{', '.join(shooting.module.PARAMETERS)}"
         )
     shot = shooting(point)
-    curve = Curve(replace(shooting, advance=shot.advance), _scales(shooting, point, limits))
+    curve = SolutionCurve(replace(shooting, advance=shot.advance), _scales(shooting, point, limits))
     if isinstance(start, SpecialOrbit):
         assert start.direction is not None
         tangent = start.direction / curve.scales
@@ -176,7 +178,7 @@ def _first(shooting: Shooting, start: PeriodicOrbit | SpecialOrbit, limits: Limi
     return replace(node, tangent=sign * node.tangent, reference=sign * node.tangent)
 
 
-def _scales(shooting: Shooting, point: Point, limits: Limits) -> Array:
+def _scales(shooting: OrbitConditions, point: OrbitStart, limits: Limits) -> Array:
     """Units of the start, the period and the parameter in which distances are measured."""
     module, n = shooting.module, len(shooting.module.COORDINATES)
     is_angle = angles(module)[:n] > 0
@@ -188,7 +190,7 @@ def _scales(shooting: Shooting, point: Point, limits: Limits) -> Array:
 
 
 def _family(
-    module: GeneratedModule, parameter: str, behind: Walk, first: Node, ahead: Walk
+    module: GeneratedModule, parameter: str, behind: Walk, first: CurveNode, ahead: Walk
 ) -> OrbitFamily:
     nodes = [*behind.nodes[::-1], first, *ahead.nodes]
     # the special nodes between each node and the next

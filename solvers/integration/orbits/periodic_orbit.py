@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, function, integrals
-from solvers.equations.quantities import Values, positive, real_number
+from solvers.equations.number_checks import Values, positive, real_number
+from solvers.equations.signature_checks import checked
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.orbits.nature import Nature
-from solvers.integration.orbits.newton import NoPeriodicOrbitError, solve
 from solvers.integration.orbits.orbit import PeriodicOrbit
-from solvers.integration.orbits.shooting import SMALL, Point, Shooting
+from solvers.integration.orbits.orbit_newton import NoPeriodicOrbitError, solve
+from solvers.integration.orbits.orbit_shooting import SMALL, OrbitConditions, OrbitStart
 from solvers.integration.orbits.symmetry import Reversal
 from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
@@ -103,7 +103,7 @@ def periodic_orbit(
             f"energy = {shortened(energy)} cannot be held: {module.SYSTEM} does not conserve its "
             "energy with these parameters; leave it out"
         )
-    shooting = Shooting(module, nature, rtol, atol)
+    shooting = OrbitConditions(module, nature, rtol, atol)
     fixed = np.empty((0, len(y) + 2))
     if isinstance(period, Event):
         y, duration = _returned(module, y, period, constants, returns)
@@ -114,7 +114,7 @@ def periodic_orbit(
         reversal = Reversal.of(module, symmetry, y, constants)
         y[reversal.changed] = reversal.nearest(y)
         shooting = replace(shooting, reversal=reversal)
-    point = Point(y, duration, constants)
+    point = OrbitStart(y, duration, constants)
     shooting.check_period(point)
     if energy is not None:
         shooting = replace(shooting, energy_held=real_number("energy", energy, "J"))
@@ -129,7 +129,7 @@ def periodic_orbit(
     return PeriodicOrbit.of(shooting, point, shot)
 
 
-def _magnitudes(shooting: Shooting, point: Point) -> Array:
+def _magnitudes(shooting: OrbitConditions, point: OrbitStart) -> Array:
     """Those of components of the state, of the period and of a parameter, at least 1.
 
     Of a satellite in SI units they are millions of metres, thousands of metres per second, and the
@@ -140,7 +140,7 @@ def _magnitudes(shooting: Shooting, point: Point) -> Array:
     return np.maximum([*sizes, radian, 1.0], 1.0)
 
 
-def _check_moves(shooting: Shooting, point: Point) -> None:
+def _check_moves(shooting: OrbitConditions, point: OrbitStart) -> None:
     """`NoPeriodicOrbitError` at an equilibrium."""
     if shooting.nature.is_autonomous and np.abs(shooting.rate(point)).max() < SMALL:
         raise NoPeriodicOrbitError(f"{point.y} is an equilibrium: give a better guess")

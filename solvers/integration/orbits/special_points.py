@@ -9,7 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from solvers.integration.orbits.curve import Node
+from solvers.integration.orbits.solution_curve import CurveNode
 from solvers.runge_kutta.stepper import Array
 
 #: Largest distance from the unit circle of a pair of multipliers, and smallest imaginary part.
@@ -18,12 +18,12 @@ CLOSE = 1e-6
 ERROR = 1e-10
 
 
-def turning_point(node: Node) -> float:
+def turning_point(node: CurveNode) -> float:
     """The derivative of the parameter, or of the energy, along the curve."""
     return node.rate_of_value
 
 
-def branch_point(node: Node) -> float:
+def branch_point(node: CurveNode) -> float:
     """The determinant of the equations over a period and a vector near the tangent."""
     curve, free = node.curve, node.curve.shooting.unknowns(node.point)
     equations = curve.equations(node.point, node.shot.change, half=False)
@@ -32,7 +32,7 @@ def branch_point(node: Node) -> float:
     return float(np.linalg.det(np.vstack([equations, row])))
 
 
-def crossing_direction(node: Node) -> Array:
+def crossing_direction(node: CurveNode) -> Array:
     """The direction of the family that crosses at a branch point, if symmetry breaks there.
 
     The parameter, or the energy, is then extreme on that family.
@@ -46,7 +46,7 @@ def crossing_direction(node: Node) -> Array:
     return np.asarray(direction / np.linalg.norm(direction))
 
 
-def doubling_direction(node: Node) -> Array:
+def doubling_direction(node: CurveNode) -> Array:
     """The perturbation with the multiplier -1, along which a family of twice the period starts."""
     n = len(node.point.y)
     values, vectors = np.linalg.eig(node.shot.monodromy)
@@ -55,19 +55,19 @@ def doubling_direction(node: Node) -> Array:
     return direction
 
 
-def period_doubling(node: Node) -> float:
+def period_doubling(node: CurveNode) -> float:
     """The determinant of the monodromy matrix plus 1."""
     return float(np.linalg.det(node.reduced + np.eye(len(node.reduced))))
 
 
-def neimark_sacker(node: Node) -> float:
+def neimark_sacker(node: CurveNode) -> float:
     """The product, over all pairs of multipliers, of their product minus 1."""
     pairs = combinations(np.linalg.eigvals(node.reduced), 2)
     return float(np.prod([a * b - 1 for a, b in pairs]).real)
 
 
 #: Functions that change their sign at special points, by their kinds.
-FUNCTIONS: dict[str, Callable[[Node], float]] = {
+FUNCTIONS: dict[str, Callable[[CurveNode], float]] = {
     "turning point": turning_point,
     "branch point": branch_point,
     "period doubling": period_doubling,
@@ -75,14 +75,14 @@ FUNCTIONS: dict[str, Callable[[Node], float]] = {
 }
 
 
-def keeps_volume(node: Node) -> bool:
+def keeps_volume(node: CurveNode) -> bool:
     """Whether pairs of multipliers stay on the unit circle until they meet: without friction."""
     size = float(np.linalg.norm(node.reduced))
     difference = abs(np.linalg.det(node.reduced) - 1)
     return node.curve.shooting.nature.is_conservative or difference < max(CLOSE, ERROR * size**2)
 
 
-def is_torus(node: Node) -> bool:
+def is_torus(node: CurveNode) -> bool:
     """Whether a pair of complex multipliers is on the unit circle."""
     values = np.linalg.eigvals(node.reduced)
     return bool(np.any((np.abs(np.abs(values) - 1) < CLOSE) & (np.abs(values.imag) > CLOSE)))

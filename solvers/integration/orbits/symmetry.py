@@ -7,7 +7,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.integration.orbits.nature import states_near
-from solvers.io.arguments import check_texts
+from solvers.io.argument_types import check_texts
 from solvers.io.suggestion import did_you_mean, shortened
 from solvers.runge_kutta.stepper import Array
 

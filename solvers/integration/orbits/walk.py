@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy
 
-from solvers.integration.orbits.curve import Curve, Node
-from solvers.integration.orbits.newton import NoPeriodicOrbitError
+from solvers.integration.orbits.orbit_newton import NoPeriodicOrbitError
+from solvers.integration.orbits.solution_curve import CurveNode, SolutionCurve
 from solvers.integration.orbits.special_points import FUNCTIONS, is_torus, keeps_volume
 
 #: First step and shortest step, relative to the longest.
@@ -41,12 +41,14 @@ class Limits:
 class Walk:
     """Nodes after the first, the special nodes before each by their kinds, and why they end."""
 
-    nodes: list[Node]
-    special: list[list[tuple[str, Node]]] = field(default_factory=list)
+    nodes: list[CurveNode]
+    special: list[list[tuple[str, CurveNode]]] = field(default_factory=list)
     end: str = ""
 
 
-def walk(curve: Curve, first: Node, limits: Limits, *, branches_off: bool = False) -> Walk:
+def walk(
+    curve: SolutionCurve, first: CurveNode, limits: Limits, *, branches_off: bool = False
+) -> Walk:
     """Follow a curve in the direction of the tangent of its first node.
 
     If it `branches_off` there from another one, its direction is an estimate, and the first node is
@@ -82,7 +84,7 @@ def walk(curve: Curve, first: Node, limits: Limits, *, branches_off: bool = Fals
     return replace(result, end="number of orbits")
 
 
-def _last(node: Node, new: Node) -> str:
+def _last(node: CurveNode, new: CurveNode) -> str:
     """The reason why a node is the last one: the next has no meaning; empty if it has."""
     shooting = node.curve.shooting
     rates = [shooting.rate(n.point) for n in (node, new)]
@@ -93,14 +95,14 @@ def _last(node: Node, new: Node) -> str:
     return ""
 
 
-def _at_rest(node: Node, new: Node) -> float:
+def _at_rest(node: CurveNode, new: CurveNode) -> float:
     """The value at an equilibrium between two nodes, where it is extreme along the curve."""
     rates = [np.linalg.norm(n.curve.shooting.rate(n.point)) for n in (node, new)]
     distance = float(new.difference(node) @ node.tangent) * rates[0] / sum(rates)
     return float(node.value + node.rate_of_value * distance / 2)
 
 
-def _crossed(new: Node, limits: Limits) -> tuple[str, Callable[[Node], float]] | None:
+def _crossed(new: CurveNode, limits: Limits) -> tuple[str, Callable[[CurveNode], float]] | None:
     """The limit that the new node is beyond, and a function that is 0 there."""
     if not limits.low <= new.value <= limits.high:
         bound = limits.low if new.value < limits.low else limits.high
@@ -110,7 +112,7 @@ def _crossed(new: Node, limits: Limits) -> tuple[str, Callable[[Node], float]] |
     return None
 
 
-def _passes(node: Node, new: Node, first: Node) -> bool:
+def _passes(node: CurveNode, new: CurveNode, first: CurveNode) -> bool:
     """Whether a step passes the start of the curve."""
     chord, offset = new.difference(node), first.difference(node)
     share = float(offset @ chord / (chord @ chord))
@@ -118,7 +120,7 @@ def _passes(node: Node, new: Node, first: Node) -> bool:
     return 0 <= share <= 1 and distance < CLOSED * float(np.linalg.norm(chord))
 
 
-def _special(node: Node, new: Node) -> list[tuple[str, Node]]:
+def _special(node: CurveNode, new: CurveNode) -> list[tuple[str, CurveNode]]:
     """The special nodes in a step, by their kinds."""
     found = []
     for kind, function in FUNCTIONS.items():
@@ -132,7 +134,7 @@ def _special(node: Node, new: Node) -> list[tuple[str, Node]]:
     return [(kind, there) for _, kind, there in sorted(found, key=lambda entry: entry[0])]
 
 
-def _root(node: Node, new: Node, function: Callable[[Node], float]) -> Node:
+def _root(node: CurveNode, new: CurveNode, function: Callable[[CurveNode], float]) -> CurveNode:
     """The node between two others at which a function is 0.
 
     It is located again between nodes close to it, from which it is predicted more accurately.
@@ -146,7 +148,7 @@ def _root(node: Node, new: Node, function: Callable[[Node], float]) -> Node:
 
 
 def _between(
-    node: Node, new: Node, function: Callable[[Node], float], accuracy: float
+    node: CurveNode, new: CurveNode, function: Callable[[CurveNode], float], accuracy: float
 ) -> tuple[float, float]:
     """Distance from a node, along its tangent, where a function is 0, and that of the next node."""
     length = float(new.difference(node) @ node.tangent)

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import REAL, real_number
-from solvers.io.arguments import check_direction
+from solvers.equations.number_checks import REAL, real_number
+from solvers.equations.signature_checks import checked
+from solvers.io.argument_types import check_direction
 from solvers.io.suggestion import did_you_mean, shortened
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule, inputs, motion_times
-from solvers.equations.quantities import REAL, Values, positive, quantities, real_numbers
+from solvers.equations.number_checks import REAL, Values, positive, quantities, real_numbers
 from solvers.io.suggestion import shortened
 from solvers.runge_kutta.stepper import Array
 

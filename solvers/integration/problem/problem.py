@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form
 from solvers.equations.module import integrals
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
 from solvers.integration.problem.inputs import Controller, Held, History, Schedule
-from solvers.integration.problem.switch import Switch
+from solvers.integration.problem.switch import SwitchEvent
 from solvers.runge_kutta.stepper import Array
 from solvers.runge_kutta.tableau import Tableau
 
@@ -131,12 +131,12 @@ class Problem:
         return [*self.events, *self.limits, *self.switches]
 
     @property
-    def switches(self) -> list[Switch]:
+    def switches(self) -> list[SwitchEvent]:
         """Events that end steps where switching functions, whose signs are held, are 0."""
         if not self.levels:  # a specialised module may have one form only
             return []
         lagrangian = self.form.in_form("lagrangian")
-        return [Switch(lagrangian, k, level) for k, level in enumerate(self.levels)]
+        return [SwitchEvent(lagrangian, k, level) for k, level in enumerate(self.levels)]
 
     @property
     def collapse(self) -> float:

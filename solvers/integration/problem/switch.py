@@ -13,7 +13,7 @@ TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
-class Switch:
+class SwitchEvent:
     """An event that ends a step: a switching function changes its sign, or does not stay 0."""
 
     form: Form  # Lagrange's, with the signs that are held

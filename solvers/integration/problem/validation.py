@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import check_module
 from solvers.equations.forms import Form
 from solvers.equations.module import (
     GeneratedModule,
@@ -18,13 +17,14 @@ from solvers.equations.module import (
     perturbations,
     state_names,
 )
-from solvers.equations.quantities import (
+from solvers.equations.number_checks import (
     Values,
     quantities,
     real_number,
     real_numbers,
     without_texts,
 )
+from solvers.equations.signature_checks import check_module
 from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import consistent, given_names, guesses
 from solvers.equations.starts.tangent_start import tangent_start
@@ -32,9 +32,9 @@ from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
 from solvers.integration.problem.memory import check_times
 from solvers.integration.problem.problem import Options, Problem, shortest_step
-from solvers.io.arguments import check_type
+from solvers.io.argument_types import check_type
 from solvers.io.suggestion import counted, shortened, warn_caller
-from solvers.runge_kutta.catalogue import SCIPY, load
+from solvers.runge_kutta.method_catalogue import SCIPY, load
 from solvers.runge_kutta.stepper import Array
 from solvers.runge_kutta.tableau import Tableau
 

@@ -40,7 +40,7 @@ ROUNDING, CLOSE = 1e-13, 1e-6
 UNCERTAIN = 10
 
 
-class Extremum(NamedTuple):
+class PolynomialExtremum(NamedTuple):
     """An extremum of a polynomial over a step, and the part of the step where the next one is."""
 
     part: float
@@ -55,7 +55,7 @@ class Shape(NamedTuple):
     """
 
     polynomial: Array
-    extrema: list[Extremum]
+    extrema: list[PolynomialExtremum]
     recurs: bool = False
 
 
@@ -104,13 +104,13 @@ def separate_crossings(before: float, values: Array, after: float) -> Shape:
         value = float(chebval(2 * part - 1, c))
         is_near = abs(value) <= margin
         if is_near or not value * last > 0:
-            kept.append(Extremum(part, value, end))
+            kept.append(PolynomialExtremum(part, value, end))
             last = 0.0 if is_near else value
     return Shape(c, kept[:-1] if kept and last * after > 0 else kept)
 
 
 def approach(
-    extremum: Extremum, begin: float, before: float, value: Callable[[float], float]
+    extremum: PolynomialExtremum, begin: float, before: float, value: Callable[[float], float]
 ) -> tuple[float, float]:
     """A part of the step, and the value there, with another sign than `before` if there is one.
 

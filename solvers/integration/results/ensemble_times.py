@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.quantities import real_number, real_numbers
+from solvers.equations.number_checks import real_number, real_numbers
 from solvers.integration.problem import validation
 from solvers.runge_kutta.stepper import Array
 

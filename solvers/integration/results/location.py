@@ -25,7 +25,7 @@ MOST, MOST_AIMED = 100, 6
 CLOSE = 2.0**-24
 
 
-class Estimate(NamedTuple):
+class TimeEstimate(NamedTuple):
     """The estimated time of an event, and the rate at which its value changes there."""
 
     time: float = np.nan
@@ -60,18 +60,18 @@ class Bracket(NamedTuple):
         return min(max(aim, low + self.resolution), high - self.resolution)
 
 
-def estimate(polynomial: Array, begin: float, bracket: Bracket) -> Estimate:
+def estimate(polynomial: Array, begin: float, bracket: Bracket) -> TimeEstimate:
     """The zero in a bracket of a polynomial, by Chebyshev coefficients over the step."""
     h = bracket.h
     near, far = (2 * (time - begin) / h - 1 for time in (bracket.near, bracket.far))
     if not chebval(near, polynomial) * chebval(far, polynomial) < 0:
-        return Estimate()
+        return TimeEstimate()
     x = scipy.optimize.brentq(chebval, near, far, args=(polynomial,), xtol=CLOSE)
     rate = 2 * float(chebval(x, chebder(polynomial))) / h
-    return Estimate(begin + h * (x + 1) / 2, rate)
+    return TimeEstimate(begin + h * (x + 1) / 2, rate)
 
 
-def locate(bracket: Bracket, guess: Estimate, course: EventCourse) -> float:
+def locate(bracket: Bracket, guess: TimeEstimate, course: EventCourse) -> float:
     """The first time not before the event, but for rounding errors."""
     (aim, rate), side, last = guess, 0, None
     value: Callable[[float], float] = course.at

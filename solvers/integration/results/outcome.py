@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solvers.equations.quantities import NotFiniteNumberError
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.integration.problem.inputs import History
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status

@@ -7,7 +7,7 @@ import numpy as np
 
 from solvers.equations.energy import supplied_energy
 from solvers.equations.module import GeneratedModule, has_function, title
-from solvers.io.notation import plain_symbol
+from solvers.io.figure_names import plain_symbol
 from solvers.io.units import with_unit
 from solvers.player.sampled_motion import SampledMotion, sample_times
 from solvers.runge_kutta.stepper import Array

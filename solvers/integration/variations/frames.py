@@ -14,7 +14,7 @@ from solvers.equations.module import (
     position_constraints,
 )
 from solvers.integration.compiled.kernel import Batch
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import compiled_loop, python_loop
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import SHORTEST, Options

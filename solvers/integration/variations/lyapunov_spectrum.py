@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, independent_perturbations
-from solvers.equations.quantities import Values, positive, real_number
+from solvers.equations.number_checks import Values, positive, real_number
+from solvers.equations.signature_checks import checked
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import validation
 from solvers.integration.variations.frames import FINISHED, Frames

@@ -8,10 +8,10 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import checked
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, has_constraints
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
+from solvers.equations.signature_checks import checked
 from solvers.equations.starts.consistent_start import given_names
 from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.checks.predictability import ignore_predictability

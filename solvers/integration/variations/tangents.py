@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
 from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.compiled.kernel import Batch
-from solvers.integration.compiled.layout import STATUSES
+from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import compiled_loop, python_loop
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import validation

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import Values
+from solvers.equations.number_checks import Values
+from solvers.equations.signature_checks import checked
 from solvers.integration.problem.validation import time_span
 from solvers.integration.variations.tangents import Tangents
 from solvers.runge_kutta.stepper import Array

@@ -4,9 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.quantities import Array
+from solvers.equations.number_checks import Array
 from solvers.scenes.fitting.experiment import Experiment
-from solvers.scenes.fitting.least_squares import Linear, Minimum, NotConvergedError, minimise
+from solvers.scenes.fitting.least_squares import (
+    LinearisedResiduals,
+    Minimum,
+    NotConvergedError,
+    minimise,
+)
 from solvers.scenes.fitting.relaxation import relaxed
 from solvers.scenes.fitting.starts import first_nodes
 from solvers.scenes.fitting.statistics import autocorrelation, covariance, leverages
@@ -110,7 +115,7 @@ def estimate(
 
 def _near(
     experiment: Experiment, start: Array, guess: Array, noise: Array, relaxes: bool
-) -> tuple[Array, Array, Linear | None, Array]:
+) -> tuple[Array, Array, LinearisedResiduals | None, Array]:
     """Nodes and unknown parameters near the minimum, residuals there, and sizes of the state.
 
     Where a few steps from the first guess do not lead there, gaps are relaxed.
@@ -137,7 +142,7 @@ def _near(
     return best
 
 
-def _is_noise(experiment: Experiment, linear: Linear) -> bool:
+def _is_noise(experiment: Experiment, linear: LinearisedResiduals) -> bool:
     """Whether residuals are as small as the rough noise, and independent of each other."""
     rows = np.moveaxis(linear.residuals.reshape(experiment.masks.shape), 1, 0)
     count = experiment.counts.sum()

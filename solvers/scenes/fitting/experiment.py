@@ -7,10 +7,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.quantities import Array
-from solvers.scenes.fitting.least_squares import Linear, Linearise
+from solvers.equations.number_checks import Array
+from solvers.scenes.fitting.least_squares import Linearise, LinearisedResiduals
 from solvers.scenes.fitting.measurement import Measurement, Outputs, wrapped
-from solvers.scenes.fitting.shooting import Arcs, NoValueError, Segment, Shooting, segments
+from solvers.scenes.fitting.multiple_shooting import (
+    Arcs,
+    MultipleShooting,
+    NoResidualsError,
+    Segment,
+    segments,
+)
 
 #: Most segments of a run, fewest samples of one, and fewest values for a component of the state.
 MOST_SEGMENTS, FEWEST_SAMPLES, FEWEST_VALUES = 200, 5, 3
@@ -55,7 +61,7 @@ class Experiment:
         self.segments: list[Segment] = []
         for k, (run, own) in enumerate(zip(runs, cuts, strict=True)):
             self.segments += segments(k, run.t, own)
-        self.shooting = Shooting(self.module, self.indices, self.segments)
+        self.shooting = MultipleShooting(self.module, self.indices, self.segments)
         shape = (len(self.segments), len(outputs.names), self.shooting.missing.shape[1])
         self.data = np.full(shape, np.nan)
         for values, segment in zip(self.data, self.segments, strict=True):
@@ -92,7 +98,7 @@ class Experiment:
         count = len(self.segments[k].times)
         other.data, other.masks = self.data[k : k + 1, :, :count], self.masks[k : k + 1, :, :count]
         other.params, other.unknown, other.indices = self.all_params(unknown), (), []
-        other.shooting = Shooting(self.module, [], other.segments)
+        other.shooting = MultipleShooting(self.module, [], other.segments)
         return other
 
     def linearise(self, noise: Array) -> Linearise:
@@ -101,12 +107,12 @@ class Experiment:
         joined = np.append(np.diff(runs) == 0, False)[:, np.newaxis]
         weights = self.masks / noise[:, np.newaxis]
 
-        def linearised(nodes: Array, unknown: Array) -> Linear:
+        def linearised(nodes: Array, unknown: Array) -> LinearisedResiduals:
             params, count = self.all_params(unknown), len(nodes)
             arcs = self.shooting(nodes, params)
             differences, by = self._residuals(arcs, params)
             gaps = wrapped((arcs.ends - np.roll(nodes, -1, axis=0)).T, self.outputs.angles).T
-            return Linear(
+            return LinearisedResiduals(
                 runs,
                 (weights * differences).reshape(count, -1),
                 (weights[..., np.newaxis] * by).reshape(count, -1, by.shape[-1]),
@@ -119,7 +125,7 @@ class Experiment:
     def _residuals(self, arcs: Arcs, params: Array) -> tuple[Array, Array]:
         """Differences of motions and measurements, (segments, outputs, times), and derivatives.
 
-        Both are 0 where there is no measurement; `NoValueError` where a formula has no value.
+        Both are 0 where there is no measurement; `NoResidualsError` where a formula has no value.
         """
         outputs, n = self.outputs, arcs.y.shape[1]
         if outputs.formulas is None:
@@ -138,7 +144,7 @@ class Experiment:
         without = ~(np.isfinite(differences) & np.isfinite(by).all(axis=-1))
         for segment, output, sample in np.argwhere(without):
             name, t = outputs.names[output], self.shooting.times[segment, sample]
-            raise NoValueError(f"{name}, or a derivative of it, has no value at t = {t:.6g} s")
+            raise NoResidualsError(f"{name}, or a derivative of it, has no value at t = {t:.6g} s")
         return differences, by
 
     def first_noise(self) -> Array:

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.quantities import Array
-from solvers.scenes.fitting.shooting import NoValueError
+from solvers.equations.number_checks import Array
+from solvers.scenes.fitting.multiple_shooting import NoResidualsError
 
 #: Iterations, and halvings of a step.
 MOST_ITERATIONS, MOST_HALVINGS = 100, 12
@@ -37,7 +37,7 @@ def triangle_of(matrices: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearisedResiduals:
     """Linearised residuals of all segments, and the gaps between them.
 
     Attributes
@@ -70,18 +70,18 @@ class Linear:
         """The sum of squares of the residuals."""
         return float(np.sum(self.residuals**2))
 
-    def weighted(self, ratio: Array) -> "Linear":
+    def weighted(self, ratio: Array) -> "LinearisedResiduals":
         """Residuals times a factor for each of the values, shape (segments, values)."""
         by = self.by * ratio[:, :, np.newaxis]
         return replace(self, residuals=self.residuals * ratio, by=by)
 
 
-#: Residuals at nodes of shape (segments, state) and unknown parameters; `NoValueError` if none.
-Linearise = Callable[[Array, Array], Linear]
+#: Residuals at nodes of shape (segments, state) and unknown parameters; `NoResidualsError` if none.
+Linearise = Callable[[Array, Array], LinearisedResiduals]
 
 
 @dataclass(frozen=True)
-class Step:
+class GaussNewtonStep:
     """A Gauss-Newton step: changes of nodes and parameters, and residuals predicted by it."""
 
     nodes: Array
@@ -90,7 +90,7 @@ class Step:
     triangle: Array  # R of the QR decomposition of the condensed problem
     maps: Array  # of first nodes and parameters to each node, shape (segments, state, columns)
 
-    def jacobian(self, linear: Linear) -> Array:
+    def jacobian(self, linear: LinearisedResiduals) -> Array:
         """Derivatives by first nodes and parameters, shape (segments, values, columns)."""
         n, u = self.maps.shape[1], len(self.params)
         jacobian = linear.by[:, :, :n] @ self.maps
@@ -98,7 +98,7 @@ class Step:
         return np.asarray(jacobian)
 
 
-def condensed(linear: Linear, u: int) -> Step:
+def condensed(linear: LinearisedResiduals, u: int) -> GaussNewtonStep:
     """The least-squares step of all segments, with linearised continuity satisfied exactly."""
     runs, n = linear.runs, linear.gaps.shape[1]
     first = np.concatenate([[True], np.diff(runs) > 0])
@@ -126,7 +126,7 @@ def condensed(linear: Linear, u: int) -> Step:
     moves = maps @ np.append(change, 1.0)
     predicted = float(residuals @ residuals)
     triangle = triangle * scale
-    return Step(moves, change[columns - u :], predicted, triangle, maps[:, :, :columns])
+    return GaussNewtonStep(moves, change[columns - u :], predicted, triangle, maps[:, :, :columns])
 
 
 @dataclass(frozen=True)
@@ -135,8 +135,8 @@ class Minimum:
 
     nodes: Array
     params: Array  # the unknown ones
-    linear: Linear
-    step: Step
+    linear: LinearisedResiduals
+    step: GaussNewtonStep
     iterations: int
 
 
@@ -146,7 +146,7 @@ def minimise(
     params: Array,
     positive: Flags,
     scale: Array,
-    linear: Linear | None = None,
+    linear: LinearisedResiduals | None = None,
     most: int | None = None,
 ) -> Minimum:
     """Nodes and parameters that minimise the sum of squares, with continuous motions.
@@ -157,7 +157,7 @@ def minimise(
     """
     try:
         linear = linear or linearise(nodes, params)
-    except NoValueError as error:
+    except NoResidualsError as error:
         raise NotConvergedError(
             f"from the first guess, {error}: give a better first guess"
         ) from error
@@ -180,7 +180,7 @@ def minimise(
             trial = nodes + size * step.nodes, params + size * step.params
             try:
                 new = linearise(*trial)
-            except NoValueError:
+            except NoResidualsError:
                 size /= 4
                 continue
             reached = new.squares + weight * _gaps(new, scale)
@@ -197,7 +197,7 @@ def minimise(
     raise NotConvergedError(f"no minimum after {most} iterations: give a better first guess")
 
 
-def _gaps(linear: Linear, scale: Array) -> float:
+def _gaps(linear: LinearisedResiduals, scale: Array) -> float:
     return float(np.sum(np.abs(linear.gaps / scale)))
 
 

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, function
-from solvers.equations.quantities import Array, real_numbers
+from solvers.equations.number_checks import Array, real_numbers
+from solvers.equations.signature_checks import checked
 from solvers.io.suggestion import counted
 
 

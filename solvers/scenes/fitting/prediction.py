@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solvers.equations.quantities import Array
+from solvers.equations.number_checks import Array
 from solvers.integration.integrate import integrate
 from solvers.io.suggestion import counted
 from solvers.scenes.fitting.estimate import estimate
 from solvers.scenes.fitting.experiment import Experiment, unwrapped
-from solvers.scenes.fitting.fit import Fit
+from solvers.scenes.fitting.fitted_model import Fit
 from solvers.scenes.fitting.least_squares import NotConvergedError
 from solvers.scenes.fitting.measurement import Measurement, wrapped
 
@@ -79,7 +79,7 @@ def predicted(fit: Fit, run: Measurement, begin: float | None = None) -> Predict
 
 
 @dataclass(frozen=True)
-class Candidate:
+class ModelCandidate:
     """A model among others: its fit and how well it predicts.
 
     `error` is the root mean square of predicted residuals in units of the noise; `excess` is the
@@ -95,11 +95,11 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ModelComparison:
     """Candidates, and the one with the fewest unknowns that predicts as well as the best."""
 
-    candidates: tuple[Candidate, ...]
-    selected: Candidate
+    candidates: tuple[ModelCandidate, ...]
+    selected: ModelCandidate
 
     @property
     def reason(self) -> str:
@@ -115,7 +115,7 @@ class Comparison:
 
 def compared(
     fits: Mapping[str, Fit], kept: Sequence[tuple[Measurement, float | None]]
-) -> Comparison:
+) -> ModelComparison:
     """The comparison of fits by runs, each kept back from a time on, or from its middle."""
     noise = np.min([fit.estimate.noise for fit in fits.values()], axis=0)
     candidates, squares = [], {}
@@ -123,7 +123,7 @@ def compared(
         predictions = tuple(predicted(fit, *one) for one in kept)
         squares[name] = np.concatenate([one.errors(noise) for one in predictions])
         error = float(np.sqrt(squares[name].mean()))
-        candidates.append(Candidate(name, fit, predictions, error))
+        candidates.append(ModelCandidate(name, fit, predictions, error))
     best = min(candidates, key=lambda one: one.error)
     results = []
     for one in candidates:
@@ -133,4 +133,4 @@ def compared(
         results.append(replace(one, excess=float(excess.mean()), excess_error=error))
     good = [one for one in results if one.excess <= SIGNIFICANT * one.excess_error]
     selected = min(good, key=lambda one: (len(one.fit.unknown), one.error))
-    return Comparison(tuple(results), selected)
+    return ModelComparison(tuple(results), selected)

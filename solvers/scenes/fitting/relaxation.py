@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from solvers.equations.quantities import Array
-from solvers.scenes.fitting.least_squares import Flags, Linear, Linearise, longest
-from solvers.scenes.fitting.shooting import NoValueError
+from solvers.equations.number_checks import Array
+from solvers.scenes.fitting.least_squares import Flags, Linearise, LinearisedResiduals, longest
+from solvers.scenes.fitting.multiple_shooting import NoResidualsError
 
 #: Weights of gaps in units of the noise, for components of the state in units of their size.
 WEIGHTS = (1.0, 10.0, 100.0)
@@ -31,7 +31,7 @@ class Relaxed:
     nodes: Array
     params: Array
     squares: float
-    linear: Linear | None
+    linear: LinearisedResiduals | None
 
 
 def relaxed(
@@ -40,7 +40,7 @@ def relaxed(
     """Better nodes and parameters; arguments as those of `least_squares.minimise`."""
     try:
         linear, damping = linearise(nodes, params), FIRST_DAMPING
-    except NoValueError:
+    except NoResidualsError:
         return Relaxed(nodes, params, np.inf, None)
     for weight in WEIGHTS:
         weights = weight / scale
@@ -52,7 +52,7 @@ def relaxed(
             try:
                 new = linearise(*trial)
                 new_squares = _squares(new, weights)
-            except NoValueError:
+            except NoResidualsError:
                 new_squares = np.inf
             if new_squares < squares:
                 is_sufficient = new_squares > (1 - SUFFICIENT) * squares
@@ -65,11 +65,13 @@ def relaxed(
     return Relaxed(nodes, params, squares, linear)
 
 
-def _squares(linear: Linear, weights: Array) -> float:
+def _squares(linear: LinearisedResiduals, weights: Array) -> float:
     return linear.squares + float(np.sum((weights * linear.gaps) ** 2))
 
 
-def _step(linear: Linear, u: int, weights: Array, damping: float) -> tuple[Array, Array]:
+def _step(
+    linear: LinearisedResiduals, u: int, weights: Array, damping: float
+) -> tuple[Array, Array]:
     """Changes of nodes and parameters, by damped normal equations."""
     count, n = linear.gaps.shape
     triangles, rows = linear.triangles, weights[:, np.newaxis]

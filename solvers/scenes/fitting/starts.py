@@ -5,10 +5,10 @@ from contextlib import suppress
 
 import numpy as np
 
-from solvers.equations.quantities import Array
+from solvers.equations.number_checks import Array
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.least_squares import NotConvergedError, minimise
-from solvers.scenes.fitting.shooting import NoValueError
+from solvers.scenes.fitting.multiple_shooting import NoResidualsError
 
 #: Samples of the parabola whose value and slope are those of a coordinate at a node.
 SAMPLES = 7
@@ -93,5 +93,5 @@ def _fitted(alone: Experiment, guess: Array, noise: Array) -> tuple[Array, Array
         nodes = minimise(linearise, nodes, none, alone.positive, np.ones(len(guess))).nodes
     try:
         return nodes[0], alone.shooting(nodes, alone.params).ends[0]
-    except NoValueError:
+    except NoResidualsError:
         return guess, guess

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from solvers.equations.quantities import Array
+from solvers.equations.number_checks import Array
 
 #: Probability that an interval contains the true value.
 LEVEL = 0.95
@@ -47,7 +47,7 @@ def autocorrelation(residuals: Sequence[Array], lags: int) -> Array:
 
 
 @dataclass(frozen=True)
-class Interval:
+class ConfidenceInterval:
     """A fitted value with its standard error and confidence interval."""
 
     value: float
@@ -56,7 +56,7 @@ class Interval:
     high: float
 
     @classmethod
-    def of(cls, value: float, error: float, degrees: int) -> "Interval":
+    def of(cls, value: float, error: float, degrees: int) -> "ConfidenceInterval":
         """The interval for a number of degrees of freedom."""
         half = quantile(degrees) * error
         return cls(value, error, value - half, value + half)

@@ -6,7 +6,12 @@ from typing import ClassVar, Self
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, depends_on_time
-from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError, golden_points
+from solvers.integration.accuracy.checked_motion import (
+    Array,
+    Motion,
+    OutsideDomainError,
+    golden_points,
+)
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
 
 #: Safety factor for times between the samples.

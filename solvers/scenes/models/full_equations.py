@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
+from solvers.integration.accuracy.checked_motion import Array
 from solvers.integration.accuracy.checked_run import CheckedRun
 from solvers.integration.accuracy.integration_run import IntegrationRun
-from solvers.integration.accuracy.motion import Array
 from solvers.scenes.models.model import Model
 
 

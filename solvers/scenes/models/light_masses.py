@@ -5,6 +5,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from solvers.integration.accuracy.checked_motion import Array, Motion, OutsideDomainError
 from solvers.integration.accuracy.double_precision import check_times
 from solvers.integration.accuracy.integration_run import (
     IntegrationRun,
@@ -12,7 +13,6 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import MethodChoice, usual_form
-from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError
 from solvers.references.elliptic import pendulum as exact
 from solvers.scenes.models.pendulum import ANGLES, SAME, Pendulum, rounding_errors
 

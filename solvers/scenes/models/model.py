@@ -8,8 +8,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, depends_on_time, has_function
+from solvers.integration.accuracy.checked_motion import Array, Motion
 from solvers.integration.accuracy.integration_run import IntegrationRun
-from solvers.integration.accuracy.motion import Array, Motion
 from solvers.integration.timing import median_seconds
 
 #: Relative rounding of a number, and roundings that a closed form is assumed to accumulate.

@@ -12,7 +12,7 @@ from typing import Self
 import numpy as np
 
 from solvers.equations.module import has_function
-from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError
+from solvers.integration.accuracy.checked_motion import Array, Motion, OutsideDomainError
 
 #: Largest relative difference of equal energies, and number of random states to compare.
 SAME, STATES = 1e-12, 8

@@ -5,7 +5,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError
+from solvers.integration.accuracy.checked_motion import Array, Motion, OutsideDomainError
 from solvers.references.elliptic import pendulum as exact
 from solvers.references.elliptic import swing
 from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm

@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from solvers.integration.accuracy.motion import Array, Motion, OutsideDomainError
+from solvers.integration.accuracy.checked_motion import Array, Motion, OutsideDomainError
 from solvers.scenes.models.model import EPS, ClosedForm, rounding_error
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
@@ -34,7 +34,7 @@ NO_SERIES = f"no Fourier series of {POINTS[-1]} points converges"
 
 
 @dataclass(frozen=True)
-class Series:
+class FourierSeries:
     """The integral of a periodic function: mean · φ and its Fourier series without the mean."""
 
     mean: float
@@ -96,8 +96,8 @@ class Orbit:
 
     reduced: ReducedMotion
     path: Path
-    time: Series
-    rotation: Series
+    time: FourierSeries
+    rotation: FourierSeries
     phase: float
     period_error: float
 
@@ -208,7 +208,7 @@ def _by_series(reduced: ReducedMotion, path: Path, phase: float, n: int) -> tupl
         raise OutsideDomainError(NO_SERIES)
     G = np.abs(du) * np.sqrt(mu / (2 * kinetic))
     S = spin * G - drag * du
-    time, rotation = Series.of(G), Series.of(S)
+    time, rotation = FourierSeries.of(G), FourierSeries.of(S)
     # E - W, and the distance from a turning point, are known to rounding only
     lost = EPS * (abs(reduced.energy) + np.abs(W)) / kinetic
     centre, amplitude = path.centre, path.amplitude

@@ -16,7 +16,7 @@ from solvers.integration.integrate import integrate
 from solvers.io.figures import panels
 from solvers.io.text_table import text_table
 from solvers.studies.failure_modes import horizon
-from solvers.studies.failure_modes.lyapunov import Mean, lyapunov
+from solvers.studies.failure_modes.largest_exponent import Mean, lyapunov
 from solvers.studies.failure_modes.study import Load, Study
 
 #: The report's motion of the double pendulum from rest, which is chaotic.

@@ -20,7 +20,7 @@ from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.integration.timing import timed_run
 from solvers.io.figures import COLOURS, panels
 from solvers.io.text_table import text_table
-from solvers.references.series import Series
+from solvers.references.power_series import PowerSeries
 from solvers.references.taylor import taylor
 from solvers.studies.failure_modes.study import Load, Study
 
@@ -81,7 +81,7 @@ def exact_accelerations(module: GeneratedModule, y: Array, params: Sequence[floa
         half = len(y) // 2
         pairs = [sine_and_cosine(Decimal(float(x))) for x in y[:half]]
         state = [*(x for pair in pairs for x in pair), *map(Decimal, map(float, y[half:]))]
-        arguments = ([Series.number([], x) for x in values] for values in (state, params))
+        arguments = ([PowerSeries.number([], x) for x in values] for values in (state, params))
         rates = function(module, "rhs_rational")(0.0, *arguments)
         return np.array([float(rate.at(0)) for rate in rates[-half:]])
 

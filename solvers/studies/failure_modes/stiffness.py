@@ -14,7 +14,7 @@ from solvers.integration.prepare import NotFinishedError, Prepared, prepare
 from solvers.integration.timing import MOST_STEPS, median_seconds
 from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
-from solvers.runge_kutta.catalogue import load as load_method
+from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.studies.failure_modes.study import Load, Study
 
 #: Approximate ratios of the fast to the slow frequency.

@@ -13,7 +13,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.references.taylor import taylor
-from solvers.runge_kutta.catalogue import SCIPY
+from solvers.runge_kutta.method_catalogue import SCIPY
 from solvers.studies.failure_modes.study import Load, Study
 
 METHODS = ("bs32", "dp54", "tsit54", "dop853", "verner853", "verner98", *SCIPY)

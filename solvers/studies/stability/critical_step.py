@@ -18,7 +18,7 @@ from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.runge_kutta.catalogue import load
+from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import NoConvergenceError, NotFiniteError, Stepper
 
@@ -68,7 +68,7 @@ def critical_step(method: str, module: GeneratedModule, params: Sequence[float])
     Parameters
     ----------
     method : str
-        One of ``solvers.runge_kutta.catalogue.names()``.
+        One of ``solvers.runge_kutta.method_catalogue.names()``.
     module : module
         A generated module.
     params : sequence of float
@@ -81,7 +81,7 @@ def critical_step(method: str, module: GeneratedModule, params: Sequence[float])
 
     Raises
     ------
-    solvers.runge_kutta.catalogue.UnknownMethodError
+    solvers.runge_kutta.method_catalogue.UnknownMethodError
         When no method has this name.
     ValueError
         When no stable equilibrium of the system is known, or a mode has no mass.

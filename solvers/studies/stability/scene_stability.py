@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.io.text_table import text_table
-from solvers.runge_kutta.catalogue import load, names
+from solvers.runge_kutta.method_catalogue import load, names
 from solvers.scenes.scene import Scene
 from solvers.studies.stability.critical_step import CriticalStep, critical_step
-from solvers.studies.stability.plots import regions
+from solvers.studies.stability.stability_plots import regions
 
 #: Samples of a scene's motion at which its modes are computed.
 SAMPLES = 100

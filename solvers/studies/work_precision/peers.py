@@ -19,8 +19,8 @@ from solvers.integration.compiled.native import native_rhs
 from solvers.integration.timing import median_seconds
 from solvers.scenes.scene import Scene
 from solvers.studies.heyoka import generated, single
-from solvers.studies.work_precision.curve import Curve, Point
-from solvers.studies.work_precision.measurement import LONGEST, STEPS, TOLERANCES, point
+from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun
+from solvers.studies.work_precision.measured_curves import LONGEST, STEPS, TOLERANCES, point
 from solvers.studies.work_precision.reference import Reference
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ FINEST_OF_LSODA = 5e-13
 
 def curves(
     scene: Scene, reference: Reference, package: Callable[[str], ModuleType | None]
-) -> list[Curve]:
+) -> list[CostCurve]:
     """A curve for each method of the packages that are installed.
 
     A program that fails loses neither its earlier runs nor those of others: its curve states the
@@ -58,9 +58,9 @@ def curves(
         methods, failure = _collected(methods_of(name))
         for method, run in methods:
             collected = _collected(_points(scene, reference, form, method, run))
-            results.append(Curve(scene.name, method, form.name, name, *collected))
+            results.append(CostCurve(scene.name, method, form.name, name, *collected))
         if failure:
-            results.append(Curve(scene.name, "", form.name, name, [], failure))
+            results.append(CostCurve(scene.name, "", form.name, name, [], failure))
     return results
 
 
@@ -77,7 +77,7 @@ def _collected(items: Iterator[Item]) -> tuple[list[Item], str]:
 
 def _points(
     scene: Scene, reference: Reference, form: Form, method: str, run: Callable[[float], Run]
-) -> Iterator[Point]:
+) -> Iterator[MeasuredRun]:
     key, settings = "rtol", TOLERANCES
     if method == "rk4":
         key, settings = "h", scene.duration / STEPS

@@ -10,16 +10,16 @@ from solvers.equations.linearisation.normal_modes import mode_spread
 from solvers.io.exports import jsonable
 from solvers.io.text_table import text_table
 from solvers.scenes.scene import Scene
-from solvers.studies.work_precision import plots
-from solvers.studies.work_precision.curve import Curve, FrontierPoint, frontier
-from solvers.studies.work_precision.findings import (
+from solvers.studies.work_precision import work_precision_plots
+from solvers.studies.work_precision.cost_curve import CostCurve, FrontierPoint, frontier
+from solvers.studies.work_precision.curve_findings import (
     MisleadingEnergy,
     RoundingLimit,
     misleading_energy,
     rounding_limits,
     wrong_above,
 )
-from solvers.studies.work_precision.measurement import unit_of_energy
+from solvers.studies.work_precision.measured_curves import unit_of_energy
 from solvers.studies.work_precision.reference import Reference
 
 #: Choices with which the frontier is compared.
@@ -34,14 +34,14 @@ class SceneCurves:
 
     scene: Scene
     reference: Reference
-    curves: list[Curve]
+    curves: list[CostCurve]
     frontier: list[FrontierPoint]  # the cheapest combinations in seconds
     frontier_rhs: list[FrontierPoint]  # the same in evaluations of the right-hand side
     rounding_limits: list[RoundingLimit]
     misleading_energy: MisleadingEnergy | None
 
     @classmethod
-    def of(cls, scene: Scene, reference: Reference, curves: list[Curve]) -> "SceneCurves":
+    def of(cls, scene: Scene, reference: Reference, curves: list[CostCurve]) -> "SceneCurves":
         """Findings that follow from curves."""
         frontiers = frontier(curves), frontier(curves, "work_rhs")
         misleading = misleading_energy(curves, scene, reference)
@@ -76,9 +76,13 @@ class SceneCurves:
         title, name, curves = self.scene.title, self.scene.name, self.curves
         wrong, unit = wrong_above(self.scene, self.reference), unit_of_energy(self.scene)
         return {
-            f"work_precision_{name}": plots.work_precision(f"Cost of accuracy: {title}", curves),
-            f"steps_{name}": plots.steps(f"Shorter steps: {title}", curves),
-            f"energy_{name}": plots.energy(f"Energy and trajectory: {title}", curves, wrong, unit),
+            f"work_precision_{name}": work_precision_plots.work_precision(
+                f"Cost of accuracy: {title}", curves
+            ),
+            f"steps_{name}": work_precision_plots.steps(f"Shorter steps: {title}", curves),
+            f"energy_{name}": work_precision_plots.energy(
+                f"Energy and trajectory: {title}", curves, wrong, unit
+            ),
         }
 
 

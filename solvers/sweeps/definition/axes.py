@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Self, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.quantities import real_numbers
+from solvers.equations.number_checks import real_numbers
 from solvers.integration.problem import validation
-from solvers.io.arguments import check_type
+from solvers.io.argument_types import check_type
 
 Array: TypeAlias = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from math import prod
 import numpy as np
 
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import real_number
+from solvers.equations.number_checks import real_number
 from solvers.io.quantity import WORD, formula
 from solvers.io.units import UnitError, dimension
 from solvers.sweeps.definition.axes import Array

@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from solvers.equations.arguments import check_module
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
+from solvers.equations.signature_checks import check_module
 from solvers.equations.singularities.mass_matrix import check_condition
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
-from solvers.io.arguments import check_type
-from solvers.runge_kutta.catalogue import load, names
-from solvers.sweeps.definition import checks
+from solvers.io.argument_types import check_type
+from solvers.runge_kutta.method_catalogue import load, names
+from solvers.sweeps.definition import sweep_checks
 from solvers.sweeps.definition.axes import Array, Axes
 from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.maps import Map
@@ -45,7 +45,7 @@ class Sweep:
         units. Velocities that are not named are 0, parameters have their default. One velocity
         may be ``"energy"``: it is 0 or more and follows from the energy.
     method : str, optional
-        One of ``solvers.runge_kutta.catalogue.names()`` that estimates its error.
+        One of ``solvers.runge_kutta.method_catalogue.names()`` that estimates its error.
     rtol, atol : float, optional
         Tolerances of each step, as in `solvers.integration.ensemble.ensemble`. With the defaults
         half of the times of `flips` are within 1e-10 s, and 98 % within 1e-6 s.
@@ -61,7 +61,7 @@ class Sweep:
     ------
     ValueError
         When an argument is invalid; the message states the allowed values.
-    solvers.runge_kutta.catalogue.UnknownMethodError
+    solvers.runge_kutta.method_catalogue.UnknownMethodError
         When no method has this name.
 
     Examples
@@ -96,14 +96,14 @@ class Sweep:
             raise ValueError(
                 f"method = {self.method!r} does not estimate its error: use one of {able}"
             )
-        checks.check_names(self.module, self.axes, self.values)
-        checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
-        checks.check_maps(self.module, self.axes, self.maps, self.values)
-        checks.check_duration(self.maps, self.duration, self.skip)
+        sweep_checks.check_names(self.module, self.axes, self.values)
+        sweep_checks.check_energy(self.module, (*self.axes.smallest, *self.values), self.values)
+        sweep_checks.check_maps(self.module, self.axes, self.maps, self.values)
+        sweep_checks.check_duration(self.maps, self.duration, self.skip)
         validation.problem_at_rest(self.module, (0.0, 1.0), Options(**self.options))
-        some = checks.examined_motions(self.module, self.axes, self.values)
+        some = sweep_checks.examined_motions(self.module, self.axes, self.values)
         check_condition(self.module, some)
-        for _, params, _ in checks.examined_motions(self.module, self.axes, self.values):
+        for _, params, _ in sweep_checks.examined_motions(self.module, self.axes, self.values):
             self.times([np.array([value]) for value in params])  # periods must be positive
 
     def __getstate__(self) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.chunk_motions import integrate_all
 from solvers.sweeps.execution.initial_states import initial_states
-from solvers.sweeps.execution.motions import integrate_all
 from solvers.sweeps.maps import Motions
 from solvers.sweeps.results import CODES
 

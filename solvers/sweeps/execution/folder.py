@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from solvers.io.atomic_write import is_abandoned, replacing, write_text
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution.arithmetic import DIGEST
+from solvers.sweeps.execution.process_arithmetic import DIGEST
 from solvers.sweeps.execution.worker import chunk_length
 
 MANIFEST, CHUNKS, FORMAT = "sweep.json", "chunks", 5

@@ -11,8 +11,8 @@ from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import guesses
 from solvers.sweeps.barrier import energies, is_below
 from solvers.sweeps.definition.axes import Array
-from solvers.sweeps.definition.checks import ENERGY, FROM_ENERGY
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.definition.sweep_checks import ENERGY, FROM_ENERGY
 from solvers.sweeps.results import NO_CONFIGURATION, NO_SUCH_ENERGY, PROVED
 
 #: Completes states in rows, and returns whether each satisfies the constraints.

@@ -20,12 +20,12 @@ from warnings import warn
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.arguments import checked
+from solvers.equations.signature_checks import checked
 from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.problem import validation
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution.arithmetic import first_motions, run_equal_chunk
+from solvers.sweeps.execution.process_arithmetic import first_motions, run_equal_chunk
 
 #: Index of the first motion of a chunk, and of the one after its last.
 Span: TypeAlias = tuple[int, int]

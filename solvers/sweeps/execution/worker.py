@@ -9,9 +9,9 @@ from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep
+from solvers.sweeps.execution.chunk_motions import after_transient, integrated
 from solvers.sweeps.execution.continuation import continued
 from solvers.sweeps.execution.initial_states import initial_states
-from solvers.sweeps.execution.motions import after_transient, integrated
 from solvers.sweeps.maps import Motions
 from solvers.sweeps.results import CODES
 

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.problem.events import Event
 from solvers.integration.results.ensemble_solution import Ensemble
-from solvers.io.arguments import check_texts
+from solvers.io.argument_types import check_texts
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.definition.axes import Array, Axes
 from solvers.sweeps.definition.map_table import MapTable

@@ -6,9 +6,9 @@ from typing import Any, Self
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
-from solvers.equations.quantities import positive
+from solvers.equations.number_checks import positive
+from solvers.equations.signature_checks import checked
 from solvers.sweeps.attractors import classify
 from solvers.sweeps.definition.axes import Array, Axes
 from solvers.sweeps.definition.map_table import MapTable

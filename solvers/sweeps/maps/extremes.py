@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
+from solvers.equations.signature_checks import checked
 from solvers.integration.problem.events import Event, Extremum
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import ComponentMap, Motions

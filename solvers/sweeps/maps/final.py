@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from solvers.equations.arguments import checked
+from solvers.equations.signature_checks import checked
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import ComponentMap, Motions
 

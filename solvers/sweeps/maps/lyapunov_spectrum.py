@@ -7,9 +7,9 @@ from typing import Self
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule, independent_perturbations
-from solvers.equations.quantities import positive
+from solvers.equations.number_checks import positive
+from solvers.equations.signature_checks import checked
 from solvers.integration.variations.frames import Frames
 from solvers.sweeps.definition.axes import Array, Axes
 from solvers.sweeps.definition.map_table import MapTable

@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 
-from solvers.equations.arguments import checked
 from solvers.equations.module import GeneratedModule
+from solvers.equations.signature_checks import checked
 from solvers.integration.problem.events import Event
 from solvers.sweeps.definition.axes import Array, Axes
 from solvers.sweeps.definition.map_table import MapTable

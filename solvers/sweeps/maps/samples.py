@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.equations.arguments import checked
+from solvers.equations.signature_checks import checked
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.maps import CountedMap, Motions
 

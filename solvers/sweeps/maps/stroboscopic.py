@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from solvers.equations.arguments import checked
+from solvers.equations.signature_checks import checked
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.definition.sampling import Sampling

@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, to_rgba
 
 from solvers.equations.module import has_function
+from solvers.io.figure_names import axis_label, symbol
 from solvers.io.figures import COLOURS
-from solvers.io.notation import axis_label, symbol
 from solvers.io.units import with_unit
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.definition.axes import Array, Grid
 from solvers.sweeps.execution.initial_states import initial_states
-from solvers.sweeps.plots.quantity import Quantity, add_legend, label_axis, letter, wrapped
+from solvers.sweeps.plots.plot_quantity import Quantity, add_legend, label_axis, letter, wrapped
 from solvers.sweeps.results import PROVED, Results
 
 #: Where nothing happened or nothing is known, and where it is proved that nothing can happen.

@@ -4,19 +4,19 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from derive.reading.latex.grammar.derivatives import applied, fraction
-from derive.reading.latex.grammar.functions import AMBIGUOUS
-from derive.reading.latex.grammar.parts import (
+from derive.reading.latex.grammar.function_commands import AMBIGUOUS
+from derive.reading.latex.grammar.products import divided
+from derive.reading.latex.grammar.written_nodes import (
     Operator,
     Part,
     SumSign,
-    Written,
+    WrittenNode,
     around,
     is_symbol,
     node,
     product,
 )
-from derive.reading.latex.grammar.products import divided
-from derive.reading.latex.layout.tokens import Unread
+from derive.reading.latex.layout.tokens import UnreadError
 from derive.reading.latex.tree import (
     Application,
     AtPlace,
@@ -73,11 +73,11 @@ class Build:
         """A transposed matrix."""
         return Transpose(node(children[0]), around(children))
 
-    def argument(self, children: list[Part]) -> Written:
+    def argument(self, children: list[Part]) -> WrittenNode:
         """The content of the braces of an argument."""
         first, content, last = children
         inner = content[0] if isinstance(content, list) else content
-        return Written(node(inner), around((first, last)), "argument")
+        return WrittenNode(node(inner), around((first, last)), "argument")
 
     def application(self, children: list[Part]) -> Node:
         """A letter before brackets."""
@@ -97,8 +97,8 @@ class Build:
         if len(items) > 1:
             return Tuple(tuple(map(node, items)), span)
         if isinstance(items[0], Operator | SumSign):
-            raise Unread("a derivative or a sum in brackets has no operand")
-        return Written(node(items[0]), span, "brackets")
+            raise UnreadError("a derivative or a sum in brackets has no operand")
+        return WrittenNode(node(items[0]), span, "brackets")
 
     def group(self, children: list[Part]) -> Part:
         """An expression in braces."""
@@ -108,7 +108,7 @@ class Build:
             return Tuple(tuple(map(node, items)), span)
         if isinstance(items[0], Operator | SumSign):
             return replace(items[0], span=span)
-        return Written(node(items[0]), span, "braces")
+        return WrittenNode(node(items[0]), span, "braces")
 
     def norm(self, children: list[Part]) -> Node:
         """An expression between bars; of a matrix, its determinant."""
@@ -141,7 +141,7 @@ class Build:
         """Rows between the start and the end of an environment."""
         rows = tuple(c for c in children if isinstance(c, tuple))
         if len({len(row) for row in rows}) > 1:
-            raise Unread("the rows of a matrix have different lengths")
+            raise UnreadError("the rows of a matrix have different lengths")
         span = around((children[0], children[-1]))
         result = Matrix(rows, span)
         return Call("det", result, span) if children[0].value == "vmatrix" else result
@@ -153,7 +153,7 @@ class Build:
     def cell(self, children: list[Part]) -> Node:
         """An entry of a matrix."""
         if not children:
-            raise Unread("an entry of a matrix is empty")
+            raise UnreadError("an entry of a matrix is empty")
         return node(children[0])
 
     def sum(self, children: list[Part]) -> SumSign:
@@ -170,10 +170,10 @@ class Build:
         written = [node(item) for item in items]
         indices = tuple(f for one in written for f in getattr(one, "factors", (one,)))
         if first and first[0].value != "=":
-            raise Unread("a sum over a condition")
+            raise UnreadError("a sum over a condition")
         letters = tuple(index for index in indices if isinstance(index, Letter))
         if len(letters) < len(indices):
-            raise Unread("the index of a sum is no letter")
+            raise UnreadError("the index of a sum is no letter")
         return Bound(node(first[1]) if first else None, around(children[:2]), letters)
 
     def upper(self, children: list[Part]) -> "Bound":
@@ -184,17 +184,17 @@ class Build:
         """A function, its power and its argument."""
         function, *powers, argument = children
         span = around(children)
-        is_bare = isinstance(argument, Written) and argument.form == "bare"
+        is_bare = isinstance(argument, WrittenNode) and argument.form == "bare"
         result: Node = Call(function.value, node(argument), span)
         if powers:
             result = Power(result, node(powers[0]), span)
-        return Written(result, span, "bare") if is_bare else result
+        return WrittenNode(result, span, "bare") if is_bare else result
 
-    def function_power(self, children: list[Part]) -> Written:
+    def function_power(self, children: list[Part]) -> WrittenNode:
         """The power of a function before its argument."""
         _, exponent = children
         if isinstance(exponent.node, Sum):
-            raise Unread("a negative power of a function before its argument")
+            raise UnreadError("a negative power of a function before its argument")
         return exponent
 
     def function_argument(self, children: list[Part]) -> Part:
@@ -203,29 +203,29 @@ class Build:
 
     def raised_group(self, children: list[Part]) -> Node:
         """A power behind braces."""
-        raise Unread("an exponent of the function or of its argument")
+        raise UnreadError("an exponent of the function or of its argument")
 
-    def raised_accented(self, children: list[Part]) -> Written:
+    def raised_accented(self, children: list[Part]) -> WrittenNode:
         """A letter with dots, with its exponent."""
-        return Written(node(children[0]), children[0].span, "bare")
+        return WrittenNode(node(children[0]), children[0].span, "bare")
 
-    def bare(self, children: list[Part]) -> Written:
+    def bare(self, children: list[Part]) -> WrittenNode:
         """An argument without brackets."""
         ends_well = isinstance(children[-1], list)
         factors = [f for c in children for f in (c if isinstance(c, list) else [node(c)])]
         letters = [f for f in factors if not isinstance(f, Number) and not _is_pi(f)]
         is_tight = all(a.span[1] == b.span[0] for a, b in pairwise(factors))
         if len(letters) > 1 and not ends_well and not is_tight:
-            raise Unread(AMBIGUOUS)
-        return Written(product(factors), around(factors), "bare")
+            raise UnreadError(AMBIGUOUS)
+        return WrittenNode(product(factors), around(factors), "bare")
 
-    def counted(self, children: list[Part]) -> Written:
+    def counted(self, children: list[Part]) -> WrittenNode:
         """An argument of a number and brackets, a fraction or a letter with dots."""
         number, *rest = [c for c in children if not is_symbol(c, "TIMES")]
         if len(rest) > 1:
-            raise Unread(AMBIGUOUS)
+            raise UnreadError(AMBIGUOUS)
         factors = [node(number), node(rest[0])]
-        return Written(product(factors), around(children), "bare")
+        return WrittenNode(product(factors), around(children), "bare")
 
     def scaled(self, children: list[Part]) -> Node:
         """A number before a sign of multiplication, in an argument without brackets."""

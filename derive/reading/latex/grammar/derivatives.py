@@ -1,17 +1,17 @@
 """Derivatives that are written as fractions, and what they and sums apply to."""
 
-from derive.reading.latex.grammar.parts import (
+from derive.reading.latex.grammar.written_nodes import (
     Operator,
     Part,
     SumSign,
-    Written,
+    WrittenNode,
     around,
     factors_of,
     node,
     product,
 )
-from derive.reading.latex.layout.symbols import VARIATIONS
-from derive.reading.latex.layout.tokens import Unread
+from derive.reading.latex.layout.latex_symbols import VARIATIONS
+from derive.reading.latex.layout.tokens import UnreadError
 from derive.reading.latex.tree import (
     Application,
     Derivative,
@@ -36,14 +36,14 @@ def fraction(numerator: Node, denominator: Node, span: Span) -> Node | Operator:
             return Sum(((sign, inner),), span)
         return Quotient(numerator, denominator, span)
     if _sign(numerator) in VARIATIONS and _sign(denominator) == _sign(numerator):
-        raise Unread("a quotient of differences or variations")
+        raise UnreadError("a quotient of differences or variations")
     found = _differential(numerator)
     variables = found and _variables(denominator, found[0])
     if found is None or variables is None:
         return Quotient(numerator, denominator, span)
     name, order, operands = found
     if order != len(variables):
-        raise Unread("the orders above and below a derivative differ")
+        raise UnreadError("the orders above and below a derivative differ")
     if not operands:
         return Operator(variables, name == "partial", span)
     return Derivative(product(operands), variables, name == "partial", span)
@@ -132,7 +132,7 @@ def applied(parts: list[Part]) -> Part:
         if isinstance(part, Operator | SumSign) and done:
             first = done[-1]
             is_operator = isinstance(part, Operator)
-            if is_operator and isinstance(first, Written) and first.form == "brackets":
+            if is_operator and isinstance(first, WrittenNode) and first.form == "brackets":
                 operands = [done.pop()]
             else:
                 operands, done = done[::-1], []

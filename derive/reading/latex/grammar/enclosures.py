@@ -3,11 +3,15 @@
 from abc import abstractmethod
 from dataclasses import replace
 
-from derive.reading.latex.grammar.functions import AMBIGUOUS, LETTER_TYPES, ends_bare_argument
-from derive.reading.latex.grammar.letters import Letters
-from derive.reading.latex.grammar.parts import Symbol
+from derive.reading.latex.grammar.function_commands import (
+    AMBIGUOUS,
+    LETTER_TYPES,
+    ends_bare_argument,
+)
+from derive.reading.latex.grammar.letter_grammar import LetterTokens
+from derive.reading.latex.grammar.written_nodes import Symbol
 from derive.reading.latex.layout.pairs import inside, is_operator
-from derive.reading.latex.layout.tokens import Token, Unread
+from derive.reading.latex.layout.tokens import Token, UnreadError
 
 SHAPES = {"(": "ROUND", "[": "SQUARE", "{": "CURLY", "|": "NORM", "<": "ANGLE", "floor": "FLOOR"}
 SHAPES["place"] = "PLACE"
@@ -31,7 +35,7 @@ REASONS = {
 }
 
 
-class Enclosures(Letters):
+class Enclosures(LetterTokens):
     """Tokens of which brackets, groups and matrices are read."""
 
     def __init__(self, tokens: list[Token]) -> None:
@@ -56,7 +60,7 @@ class Enclosures(Letters):
                 self.applied |= {at, self.partner[at]}
             shape = "APPLY" if at in self.applied else SHAPES[token.text]
             return Symbol(shape + ("_OPEN" if is_open else "_CLOSE"), "", token.span)
-        raise Unread(REASONS.get(token.kind, f"{token.text!r} cannot stand here"))
+        raise UnreadError(REASONS.get(token.kind, f"{token.text!r} cannot stand here"))
 
     def _is_applied(self, at: int, result: list[Symbol]) -> bool:
         """Whether a bracket holds the arguments of the letter before it.
@@ -73,7 +77,7 @@ class Enclosures(Letters):
             return True
         end_of_argument = ends_bare_argument(result)
         if end_of_argument == "LATIN":
-            raise Unread(AMBIGUOUS)
+            raise UnreadError(AMBIGUOUS)
         return not end_of_argument and result[-1].value.name != "partial"
 
     def read_argument(self, at: int, end: int, result: list[Symbol]) -> int:
@@ -85,7 +89,7 @@ class Enclosures(Letters):
         """The terminals of the content of an argument that ends before a token."""
         inner = self.between(start, stop)
         if not inner:
-            raise Unread("an argument is empty")
+            raise UnreadError("an argument is empty")
         left, right = self.tokens[start].span[0], self.tokens[after - 1].span[1]
         result.append(Symbol("ARGUMENT_OPEN", "", (left, left)))
         result += inner
@@ -95,7 +99,7 @@ class Enclosures(Letters):
     def group(self, at: int, end: int, result: list[Symbol]) -> int:
         """The terminals of an expression in braces."""
         if at not in self.partner:
-            raise Unread("a brace is never closed")
+            raise UnreadError("a brace is never closed")
         stop = self.partner[at]
         first, last = self.skip(at + 1, stop), self._skip_back(stop - 1)
         if self.kind(first, stop) == "open" and self.partner.get(first) == last:
@@ -133,9 +137,9 @@ class Enclosures(Letters):
         """The terminals of a matrix."""
         token = self.tokens[at]
         if token.text in ("cases", "dcases"):
-            raise Unread("a definition by cases")
+            raise UnreadError("a definition by cases")
         if at not in self.partner:
-            raise Unread(REASONS["begin"])
+            raise UnreadError(REASONS["begin"])
         stop = self.partner[at]
         places = inside(at, stop, self.partner)
         self.entries |= {place for place in places if self.tokens[place].kind in ("&", "row")}
@@ -158,5 +162,5 @@ class Enclosures(Letters):
                 is_operator(self.tokens[after]) or self.kind(after, end) == "&"
             )
             if not is_next and (not result or result[-1].type not in ("SIGN", "TIMES", "SLASH")):
-                raise Unread("a new row in brackets")
+                raise UnreadError("a new row in brackets")
         return at + 1

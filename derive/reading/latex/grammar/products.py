@@ -1,20 +1,20 @@
 """Factors side by side, and quotients with a slash."""
 
 from derive.reading.latex.grammar.derivatives import slashed_derivative
-from derive.reading.latex.grammar.parts import (
+from derive.reading.latex.grammar.written_nodes import (
     Operator,
     Part,
     SumSign,
     Symbol,
-    Written,
+    WrittenNode,
     around,
     factors_of,
     is_symbol,
     node,
     product,
 )
-from derive.reading.latex.layout.symbols import GREEK, VARIATIONS
-from derive.reading.latex.layout.tokens import Unread
+from derive.reading.latex.layout.latex_symbols import GREEK, VARIATIONS
+from derive.reading.latex.layout.tokens import UnreadError
 from derive.reading.latex.tree import Application, Call, Letter, Node, Number, Power, Quotient
 
 NUMERIC = ("NUMBER", "TIMES", "SLASH")
@@ -46,14 +46,14 @@ def divided(children: list[Part]) -> list[Part]:
             continue
         if is_symbol(child, "TIMES"):
             if child.value == "times" and any(map(_is_bold, children[at - 1 : at + 2 : 2])):
-                raise Unread("a vector product")
+                raise UnreadError("a vector product")
         else:
             before = children[at - 1] if at else None
             if is_symbol(child, "NUMBER") and is_symbol(before, "NUMBER"):
-                raise Unread("two numbers side by side")
+                raise UnreadError("two numbers side by side")
             is_last = at == len(children) - 1 and not isinstance(before, Operator | SumSign | None)
             if is_last and _may_be_number(child) and not is_symbol(before, *NUMERIC):
-                raise Unread("a number in brackets, which may be that of the equation")
+                raise UnreadError("a number in brackets, which may be that of the equation")
             result.append(child)
         at += 1
     return result
@@ -61,7 +61,7 @@ def divided(children: list[Part]) -> list[Part]:
 
 def _may_be_number(part: Part) -> bool:
     """Whether a part is a whole number in brackets, like the number of an equation."""
-    is_enclosed = isinstance(part, Written) and part.form == "brackets"
+    is_enclosed = isinstance(part, WrittenNode) and part.form == "brackets"
     return is_enclosed and isinstance(part.node, Number) and part.node.digits.isdigit()
 
 
@@ -80,9 +80,9 @@ def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:
     if found := slashed_derivative(before, behind):
         return found
     left, right = before.pop(), behind[0]
-    is_bare = isinstance(left, Written) and left.form == "bare"
+    is_bare = isinstance(left, WrittenNode) and left.form == "bare"
     if is_bare and (is_symbol(right, "NUMBER") or not _ends_with_angle(left.node)):
-        raise Unread("what stands above the slash is ambiguous without brackets")
+        raise UnreadError("what stands above the slash is ambiguous without brackets")
     count = 1
     is_tight = len(behind) > 1 and right.span[1] == behind[1].span[0]
     if is_symbol(right, "NUMBER") and not is_symbol(left, "NUMBER"):
@@ -92,10 +92,10 @@ def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:
         pass
     elif (
         _is_variation(right)
-        or (is_tight and not isinstance(behind[1], Written))
+        or (is_tight and not isinstance(behind[1], WrittenNode))
         or _has_brackets(right)
     ):
-        raise Unread(AMBIGUOUS)
+        raise UnreadError(AMBIGUOUS)
     below = product([node(part) for part in behind[:count]])
     return [Quotient(node(left), below, around([left, *behind[:count]])), *behind[count:]]
 

@@ -8,9 +8,13 @@ import re
 from collections.abc import Callable
 
 from derive.reading.latex.grammar.enclosures import REASONS, Enclosures
-from derive.reading.latex.grammar.functions import AMBIGUOUS, ends_bare_argument, function_at
-from derive.reading.latex.grammar.parts import Symbol
-from derive.reading.latex.layout.symbols import (
+from derive.reading.latex.grammar.function_commands import (
+    AMBIGUOUS,
+    ends_bare_argument,
+    function_at,
+)
+from derive.reading.latex.grammar.written_nodes import Symbol
+from derive.reading.latex.layout.latex_symbols import (
     ACCENTS,
     BOLD,
     FONTS,
@@ -22,7 +26,7 @@ from derive.reading.latex.layout.symbols import (
     TIMES,
     VARIATIONS,
 )
-from derive.reading.latex.layout.tokens import Unread
+from derive.reading.latex.layout.tokens import UnreadError
 from derive.reading.latex.tree import Letter, Number
 
 STARS = {"*": "star", "star": "star", "ast": "star", "dagger": "dagger", "circ": "circ"}
@@ -56,7 +60,7 @@ class Terminals(Enclosures):
             kind = _type(letter[0])
             is_behind = ends_bare_argument(result) == "GREEK" and kind in ("LATIN", "GREEK")
             if is_behind and result[-1].value.identifier in VARIATIONS:
-                raise Unread(AMBIGUOUS)
+                raise UnreadError(AMBIGUOUS)
             result.append(Symbol(kind, letter[0], letter[0].span))
             if letter[2]:
                 self._superscript(letter[2], end, result)
@@ -89,7 +93,7 @@ class Terminals(Enclosures):
                 break
         behind = "".join(token.text for token in self.tokens[at : min(at + 3, end)])
         if re.fullmatch(r"[eE][+-]\d", behind):
-            raise Unread("a number with an exponent behind e")
+            raise UnreadError("a number with an exponent behind e")
         span = self.tokens[start].span[0], self.tokens[at - 1].span[1]
         result.append(Symbol("NUMBER", Number(digits, span), span))
         return at
@@ -98,9 +102,11 @@ class Terminals(Enclosures):
         span = self.tokens[start].span[0], self.tokens[at - 1].span[1]
         script = self.skip(at, end)
         if self.kind(script, end) == "_":
-            raise Unread("the base of a logarithm" if name == "log" else "an index of a function")
+            raise UnreadError(
+                "the base of a logarithm" if name == "log" else "an index of a function"
+            )
         if self.kind(script, end) == "'":
-            raise Unread("a prime behind a function")
+            raise UnreadError("a prime behind a function")
         if self.kind(script, end) == "^" and name in INVERTIBLE:
             first, stop, after = self.argument(script + 1, end)
             if self.texts(first, stop) == ["-", "1"]:
@@ -130,8 +136,8 @@ class Terminals(Enclosures):
             result.append(Symbol(kind, name, token.span))
             return at + 1
         if name in MARKS:
-            raise Unread(rf"\{name} over an expression that is no letter")
-        raise Unread(REASONS.get(name, rf"the command \{name} is not known"))
+            raise UnreadError(rf"\{name} over an expression that is no letter")
+        raise UnreadError(REASONS.get(name, rf"the command \{name} is not known"))
 
     def _font(self, at: int, end: int, result: list[Symbol]) -> int:
         start, stop, after = self.argument(at + 1, end)
@@ -152,7 +158,7 @@ class Terminals(Enclosures):
                 return self.enclosed(start, stop + 1, stop + 1, result)
             text = "".join(self.texts(start + 1, stop))
             if not re.fullmatch(r"[2-9]", text):
-                raise Unread("the degree of a root is not one of 2 to 9")
+                raise UnreadError("the degree of a root is not one of 2 to 9")
             degree, start = int(text), stop + 1
         result.append(Symbol("ROOT", degree, self.tokens[at].span))
         return self.read_argument(start, end, result)
@@ -163,7 +169,7 @@ class Terminals(Enclosures):
         at = self.skip(at + 1, end)
         while (kind := self.kind(at, end)) in bounds:
             if bounds[kind]:
-                raise Unread("two lower or two upper bounds of a sum")
+                raise UnreadError("two lower or two upper bounds of a sum")
             name = "LOWER" if kind == "_" else "UPPER"
             bounds[kind].append(Symbol(name, "", self.tokens[at].span))
             at = self.skip(self.read_argument(at + 1, end, bounds[kind]), end)
@@ -178,13 +184,13 @@ class Terminals(Enclosures):
             result.append(Symbol("TRANSPOSED", "", span))
             return after
         if texts in (["-", "T"], ["-", "top"]):
-            raise Unread("the transpose of an inverse")
+            raise UnreadError("the transpose of an inverse")
         if texts and set(texts) <= {"'", "prime"}:
-            raise Unread(REASONS["'"])
+            raise UnreadError(REASONS["'"])
         if self.kind(self.skip(start, stop), stop) == "open" and len(texts) == 3:
-            raise Unread("a number in brackets in the place of an exponent")
+            raise UnreadError("a number in brackets in the place of an exponent")
         if self.kind(after, end) == "digit" and self.tokens[after - 1].kind == "digit":
-            raise Unread("a digit behind an exponent without braces")
+            raise UnreadError("a digit behind an exponent without braces")
         result.append(Symbol("POWER", "", self.tokens[at].span))
         if len(texts) == 1 and texts[0] in STARS:
             star = Letter(STARS[texts[0]], self.tokens[start].span)

@@ -1,6 +1,6 @@
 """Tokens with arguments, before their layout is left out."""
 
-from derive.reading.latex.layout.tokens import Token, Unread
+from derive.reading.latex.layout.tokens import Token, UnreadError
 
 
 class Cursor:
@@ -23,7 +23,7 @@ class Cursor:
         """The token after the argument at a place."""
         start = self.skip(at)
         if start >= len(self.tokens):
-            raise Unread("an argument is missing at the end")
+            raise UnreadError("an argument is missing at the end")
         if self.tokens[start].kind != "{":
             return start + 1
         depth = 0
@@ -31,7 +31,7 @@ class Cursor:
             depth += {"{": 1, "}": -1}.get(self.tokens[end].kind, 0)
             if depth == 0:
                 return end + 1
-        raise Unread("a brace is never closed")
+        raise UnreadError("a brace is never closed")
 
     def source(self, start: int, end: int) -> str:
         """The text of tokens without outer braces, spaces as they stand."""

@@ -1,7 +1,7 @@
 """Brackets, braces, bars and environments with their partners."""
 
-from derive.reading.latex.layout.symbols import SLASHES, TIMES
-from derive.reading.latex.layout.tokens import Token, Unread
+from derive.reading.latex.layout.latex_symbols import SLASHES, TIMES
+from derive.reading.latex.layout.tokens import Token, UnreadError
 
 #: Brackets within brackets.
 MAX_DEPTH = 60
@@ -36,7 +36,7 @@ def pairs(tokens: list[Token]) -> dict[int, int]:
             if stack and _fits(tokens[stack[-1]], token):
                 _join(partner, stack.pop(), at)
         if len(stack) > MAX_DEPTH:
-            raise Unread(f"more than {MAX_DEPTH} brackets within one another")
+            raise UnreadError(f"more than {MAX_DEPTH} brackets within one another")
     return partner
 
 

@@ -18,9 +18,9 @@ of the equation.
 from dataclasses import dataclass, field
 from itertools import takewhile
 
+from derive.reading.latex.layout.latex_symbols import ELLIPSES, MATRICES, ROWS
 from derive.reading.latex.layout.pairs import inside, is_operator, pairs
-from derive.reading.latex.layout.symbols import ELLIPSES, MATRICES, ROWS
-from derive.reading.latex.layout.tokens import Token, Unread
+from derive.reading.latex.layout.tokens import Token, UnreadError
 
 HARD = frozenset({",", ";", "prose", "."})
 SEPARATORS = HARD | {"gap", "row", "&"}
@@ -59,11 +59,11 @@ def flattened(tokens: list[Token]) -> list[Token]:
         if token.kind == "begin":
             end = partner.get(at)
             if end is None:
-                raise Unread(rf"\begin{{{token.text}}} has no \end")
+                raise UnreadError(rf"\begin{{{token.text}}} has no \end")
             if _is_matrix(tokens, at, end, partner):
                 kept |= {at, end}
             elif token.text not in ROWS and token.text not in MATRICES:
-                raise Unread(f"the environment {token.text!r} is not known")
+                raise UnreadError(f"the environment {token.text!r} is not known")
             elif token.text in ("cases", "dcases") and not _starts_statement(result):
                 kept |= {at, end}
             if token.text in ("multline", "multlined"):

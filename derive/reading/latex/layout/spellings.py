@@ -4,8 +4,8 @@ import unicodedata
 from dataclasses import replace
 from itertools import groupby
 
-from derive.reading.latex.layout.symbols import COMBINING
-from derive.reading.latex.layout.tokens import Token, Unread, script_of, tokenize
+from derive.reading.latex.layout.latex_symbols import COMBINING
+from derive.reading.latex.layout.tokens import Token, UnreadError, script_of, tokenize
 
 #: Fonts that hold to the end of their braces.
 OLD_FONTS = {
@@ -23,7 +23,7 @@ def with_new_fonts(tokens: list[Token]) -> list[Token]:
             while brace and result[brace].kind == "space":
                 brace -= 1
             if not result or result[brace].kind != "{":
-                raise Unread(rf"\{token.text} does not stand behind a brace")
+                raise UnreadError(rf"\{token.text} does not stand behind a brace")
             font = replace(token, text=OLD_FONTS[token.text], span=result[brace].span)
             result.insert(brace, font)
         else:
@@ -39,7 +39,7 @@ def with_unicode_scripts(tokens: list[Token]) -> list[Token]:
         if kind == "accent":
             letter = [result.pop()] if result else []
             if not letter or letter[0].kind not in ("letter", "command"):
-                raise Unread(f"the accent {marked[0].text!r} has no letter")
+                raise UnreadError(f"the accent {marked[0].text!r} has no letter")
             for token in marked:
                 start, end = letter[0].span[0], token.span[1]
                 accent = Token("command", COMBINING[token.text], (start, end))

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from derive.reading.latex.layout.symbols import CHARACTERS, COMBINING
+from derive.reading.latex.layout.latex_symbols import CHARACTERS, COMBINING
 from derive.reading.latex.tree import Span
 
 
-class Unread(ValueError):  # noqa: N818 - carries the reason of an `Unreadable`
+class UnreadError(ValueError):
     """A part of a formula cannot be read, for the stated reason."""
 
 

@@ -5,7 +5,14 @@ from collections.abc import Sequence
 from derive.reading.programs.evaluation.arrays import entries, flat, product
 from derive.reading.programs.evaluation.mathematics import IDENTITIES, applied, split
 from derive.reading.programs.languages.language import Language
-from derive.reading.programs.syntax.trees import Array, Call, Number, Opaque, Operation, Tree
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Expression,
+    FunctionCall,
+    NumberLiteral,
+    Opaque,
+    OperatorExpression,
+)
 
 #: Functions that place arrays one behind the other.
 STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
@@ -13,7 +20,9 @@ STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "
 RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose", "astype", "item"}
 
 
-def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> Tree | None:
+def of_arrays(
+    call: FunctionCall, path: str, base: Expression | None, language: Language
+) -> Expression | None:
     """The value of a function of arrays, or of a method of `base`; None for others."""
     library, name = split(path)
     is_method = base is not None and library not in ("np", "numpy", "jnp")
@@ -23,11 +32,14 @@ def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> T
         case ("dot" | "matmul", (left, right)):
             return product(call.line, left, right, language)
         case ("solve" | "linsolve" | "mldivide", (matrix, column)):
-            return Operation(call.line, "solve", (matrix, flat(column)))
+            return OperatorExpression(call.line, "solve", (matrix, flat(column)))
         case ("inv" | "pinv" | "inverse", (matrix,)):
-            return Operation(call.line, "inverse", (matrix,))
+            return OperatorExpression(call.line, "inverse", (matrix,))
         case "reshape", shape if is_method and base is not None:
-            is_row = shape[-1:] in ((Number(0, "1"),), (Operation(0, "-", (Number(0, "1"),)),))
+            is_row = shape[-1:] in (
+                (NumberLiteral(0, "1"),),
+                (OperatorExpression(0, "-", (NumberLiteral(0, "1"),)),),
+            )
             return flat(base) if is_row else Opaque(call.line, "another shape is not followed")
         case _ if is_method and base is not None and name in RESHAPED:
             return flat(base)
@@ -40,7 +52,7 @@ def of_arrays(call: Call, path: str, base: Tree | None, language: Language) -> T
     return None
 
 
-def of_entries(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
+def of_entries(line: int, path: str, arguments: tuple[Expression, ...]) -> Expression | None:
     """The value of a function of mathematics, of each entry of an array."""
     if len(arguments) == 1 and (items := entries(arguments[0])) is not None:
         values = [applied(line, path, (one,)) for one in items]
@@ -48,7 +60,7 @@ def of_entries(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None
     return applied(line, path, arguments)
 
 
-def _stacked(first: Tree, rest: Sequence[Tree]) -> Tree | None:
+def _stacked(first: Expression, rest: Sequence[Expression]) -> Expression | None:
     """Arrays one behind the other."""
     arrays = [*first.items] if isinstance(first, Array) and not rest else [first, *rest]
     parts = [entries(one) for one in arrays]

@@ -3,15 +3,25 @@
 from collections.abc import Sequence
 
 from derive.reading.programs.languages.language import Language
-from derive.reading.programs.syntax.trees import Array, Item, Name, Number, Operation, Result, Tree
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Expression,
+    Item,
+    Name,
+    NumberLiteral,
+    OperatorExpression,
+    Result,
+)
 
 
-def combined(line: int, operator: str, operands: Sequence[Tree], language: Language) -> Tree:
+def combined(
+    line: int, operator: str, operands: Sequence[Expression], language: Language
+) -> Expression:
     """The value of an operation."""
     if operator == "transpose" and not is_array(operands[0]):
         return operands[0]  # a number, or an array in one direction
     if not any(map(is_array, operands)):
-        return Operation(line, operator, tuple(operands))
+        return OperatorExpression(line, operator, tuple(operands))
     values = [Array(one.line, entries(one) or ()) if is_array(one) else one for one in operands]
     if operator == "transpose":
         return transposed(values[0])
@@ -22,22 +32,22 @@ def combined(line: int, operator: str, operands: Sequence[Tree], language: Langu
         return product(line, left, right, language)
     if operator in ("+", "-", "*", "/", "**"):
         return _each(line, operator, values, language)
-    return Operation(line, operator, tuple(values))
+    return OperatorExpression(line, operator, tuple(values))
 
 
-def is_array(tree: Tree) -> bool:
+def is_array(tree: Expression) -> bool:
     """Whether the entries of a value are known."""
     return isinstance(tree.value if isinstance(tree, Result) else tree, Array)
 
 
-def is_square(tree: Tree) -> bool:
+def is_square(tree: Expression) -> bool:
     """Whether a value is a matrix of as many rows as columns."""
     return isinstance(tree, Array) and all(
         isinstance(row, Array) and len(row.items) == len(tree.items) for row in tree.items
     )
 
 
-def entries(tree: Tree) -> tuple[Tree, ...] | None:
+def entries(tree: Expression) -> tuple[Expression, ...] | None:
     """The entries of an array, or of the solution of a linear system; None if not known."""
     match tree:
         case Array(items=items):
@@ -46,19 +56,19 @@ def entries(tree: Tree) -> tuple[Tree, ...] | None:
             found = entries(value)
             if found is None:
                 return None
-            numbers = (Number(tree.line, str(i)) for i in range(len(found)))
+            numbers = (NumberLiteral(tree.line, str(i)) for i in range(len(found)))
             return tuple(
                 Result(one.line, Item(tree.line, call, (number,)), one)
                 for number, one in zip(numbers, found, strict=True)
             )
-        case Operation(operator="solve", operands=(Array(items=rows), _)):
+        case OperatorExpression(operator="solve", operands=(Array(items=rows), _)):
             return tuple(
-                Item(tree.line, tree, (Number(tree.line, str(i)),)) for i in range(len(rows))
+                Item(tree.line, tree, (NumberLiteral(tree.line, str(i)),)) for i in range(len(rows))
             )
     return None
 
 
-def flat(tree: Tree) -> Tree:
+def flat(tree: Expression) -> Expression:
     """A column of rows of one entry as a plain array."""
     if isinstance(tree, Array) and tree.items:
         rows = [one.items if isinstance(one, Array) else () for one in tree.items]
@@ -69,7 +79,7 @@ def flat(tree: Tree) -> Tree:
     return tree
 
 
-def transposed(tree: Tree) -> Tree:
+def transposed(tree: Expression) -> Expression:
     """A matrix with rows and columns exchanged; a plain array stays as it is."""
     if isinstance(tree, Array) and all(isinstance(row, Array) for row in tree.items):
         rows = [row.items for row in tree.items if isinstance(row, Array)]
@@ -78,35 +88,35 @@ def transposed(tree: Tree) -> Tree:
     return tree
 
 
-def product(line: int, left: Tree, right: Tree, language: Language) -> Tree:
+def product(line: int, left: Expression, right: Expression, language: Language) -> Expression:
     """The product of a matrix and a column, or of two columns."""
-    if isinstance(left, Operation) and left.operator == "inverse":
-        return Operation(line, "solve", (left.operands[0], flat(right)))
+    if isinstance(left, OperatorExpression) and left.operator == "inverse":
+        return OperatorExpression(line, "solve", (left.operands[0], flat(right)))
     right = flat(right)
     if is_square(left) and isinstance(left, Array) and isinstance(right, Array):
         return Array(line, tuple(_dot(line, row, right, language) for row in left.items))
     if isinstance(left, Array) and isinstance(right, Array):
         return _dot(line, left, right, language)
-    return Operation(line, "@", (left, right))
+    return OperatorExpression(line, "@", (left, right))
 
 
-def _dot(line: int, left: Tree, right: Array, language: Language) -> Tree:
+def _dot(line: int, left: Expression, right: Array, language: Language) -> Expression:
     if not isinstance(left, Array) or len(left.items) != len(right.items):
-        return Operation(line, "@", (left, right))
+        return OperatorExpression(line, "@", (left, right))
     terms = [
         combined(line, "*", pair, language) for pair in zip(left.items, right.items, strict=True)
     ]
     total = terms[0]
     for term in terms[1:]:
-        total = Operation(line, "+", (total, term))
+        total = OperatorExpression(line, "+", (total, term))
     return total
 
 
-def _each(line: int, operator: str, values: Sequence[Tree], language: Language) -> Tree:
+def _each(line: int, operator: str, values: Sequence[Expression], language: Language) -> Expression:
     values = [flat(one) for one in values]
     lengths = {len(one.items) for one in values if isinstance(one, Array)}
     if len(lengths) > 1:
-        return Operation(line, operator, tuple(values))
+        return OperatorExpression(line, operator, tuple(values))
     (length,) = lengths
     rows = [_repeated(one, length, operator in "+-", language.first_index) for one in values]
     return Array(
@@ -115,7 +125,7 @@ def _each(line: int, operator: str, values: Sequence[Tree], language: Language) 
     )
 
 
-def _repeated(value: Tree, length: int, is_sum: bool, first: int) -> Sequence[Tree]:
+def _repeated(value: Expression, length: int, is_sum: bool, first: int) -> Sequence[Expression]:
     """The operands for each entry; an array is multiplied by numbers, and added to arrays."""
     if isinstance(value, Array):
         return value.items

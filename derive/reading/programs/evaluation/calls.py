@@ -3,21 +3,21 @@
 from dataclasses import dataclass
 
 from derive.reading.programs.evaluation.array_functions import of_arrays, of_entries
-from derive.reading.programs.evaluation.context import APPENDING, Context, assigned
+from derive.reading.programs.evaluation.context import APPENDING, ProgramContext, assigned
 from derive.reading.programs.evaluation.elementwise import mapped
 from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.evaluation.values import Values, root
 from derive.reading.programs.syntax.code import Definition, Lambda, Return, Statement
 from derive.reading.programs.syntax.trees import (
     Array,
-    Call,
+    Expression,
+    FunctionCall,
     Item,
     Member,
     Name,
-    Number,
+    NumberLiteral,
     Opaque,
     Result,
-    Tree,
 )
 
 #: Calls within calls that are followed.
@@ -28,24 +28,24 @@ CONDITION = "the value depends on a condition"
 
 
 @dataclass(frozen=True)
-class Step:
+class VariableValue:
     """A value that a variable takes."""
 
     line: int
     path: str
-    value: Tree
+    value: Expression
 
 
 class Calls(Values):
     """The values of calls; those of functions of the program are followed."""
 
-    def __init__(self, context: Context, owner: str = "") -> None:
+    def __init__(self, context: ProgramContext, owner: str = "") -> None:
         super().__init__(context, owner)
-        self.steps: list[Step] = []
+        self.steps: list[VariableValue] = []
         #: The value that is returned, and values that are returned under conditions.
-        self.returned: Tree | None = None
+        self.returned: Expression | None = None
         self.other_returns: list[Return] = []
-        self.calls: list[Call] = []
+        self.calls: list[FunctionCall] = []
         self.declared: set[str] = set()
         #: Names with one numeric value, which stay letters.
         self.fixed: set[str] = set()
@@ -55,18 +55,18 @@ class Calls(Values):
         """Follow statements in order."""
         raise NotImplementedError
 
-    def assign(self, line: int, target: Tree, value: Tree) -> None:
+    def assign(self, line: int, target: Expression, value: Expression) -> None:
         """Give a target, or several, a value."""
         raise NotImplementedError
 
-    def called(self, call: Call) -> Tree:
+    def called(self, call: FunctionCall) -> Expression:
         """The value of a call: of mathematics, of arrays, or of a function of the program."""
         path = self.place(call.function) or ""
         if isinstance(other := self.variables.get(path), Name):
             path = other.path  # another name of a function
         arguments = tuple(map(self.value, call.arguments))
         name = split(path)[1]
-        made = Call(call.line, call.function, arguments, call.keywords)
+        made = FunctionCall(call.line, call.function, arguments, call.keywords)
         self.calls.append(made)
         if (function := self._function(call.function, path)) is not None:
             return self._inlined(made, function, call.arguments)
@@ -80,7 +80,7 @@ class Calls(Values):
                     array = mapped(of_entry, call.function.base)
                     return made if array is None else self.value(array)
         if name in APPENDING and isinstance(call.function, Member) and len(arguments) == 1:
-            last = Item(call.line, call.function.base, (Number(call.line, "-1"),))
+            last = Item(call.line, call.function.base, (NumberLiteral(call.line, "-1"),))
             self.assign(call.line, last, arguments[0])
             return made
         if not path and isinstance(call.function, Member):
@@ -88,24 +88,26 @@ class Calls(Values):
         value = of_arrays(made, path, self._base(call), self.context.language)
         return made if value is None else value
 
-    def _base(self, call: Call) -> Tree | None:
+    def _base(self, call: FunctionCall) -> Expression | None:
         """The object of a method."""
         function = call.function
         return self.value(function.base) if isinstance(function, Member) else None
 
-    def _is_entry(self, call: Call, path: str) -> bool:
+    def _is_entry(self, call: FunctionCall, path: str) -> bool:
         """Whether round brackets contain an index."""
         if not self.context.language.has_round_indices or not isinstance(call.function, Name):
             return False
         return path in self.context.variables or path in self.parameters
 
-    def _function(self, tree: Tree, path: str) -> Definition | None:
+    def _function(self, tree: Expression, path: str) -> Definition | None:
         value = self.variables.get(path)
         if isinstance(value, Lambda):
             return value.function
         return None if path in self.parameters else self.context.function(path, self.owner)
 
-    def _inlined(self, call: Call, function: Definition, given: tuple[Tree, ...]) -> Tree:
+    def _inlined(
+        self, call: FunctionCall, function: Definition, given: tuple[Expression, ...]
+    ) -> Expression:
         if self.depth >= MAX_CALLS:
             return Opaque(call.line, f"calls of {function.name} within calls are not followed")
         parameters = [one.name for one in function.parameters]
@@ -136,7 +138,7 @@ class Calls(Values):
         value = callee.result(function)
         return Result(call.line, call, self._trimmed(call, value))
 
-    def _take_back(self, callee: "Calls", own: set[str], call: Call) -> None:
+    def _take_back(self, callee: "Calls", own: set[str], call: FunctionCall) -> None:
         """Take the values of variables that a function changes outside itself."""
         references = set(callee.references.values())
         own = (own | callee.declared) - references
@@ -153,7 +155,7 @@ class Calls(Values):
                 )
         self.steps += [one for one in callee.steps if root(one.path) not in own]
 
-    def _trimmed(self, call: Call, value: Tree) -> Tree:
+    def _trimmed(self, call: FunctionCall, value: Expression) -> Expression:
         """A value with large entries left out, in the later stages of a method."""
         if isinstance(value, Array):
             items = tuple(self._trimmed(call, one) for one in value.items)
@@ -162,7 +164,7 @@ class Calls(Values):
             return Opaque(value.line, "the formula is too large")
         return value
 
-    def result(self, function: Definition) -> Tree:
+    def result(self, function: Definition) -> Expression:
         """The value that the function returns."""
         if self.other_returns:
             return Opaque(self.other_returns[0].line, CONDITION)
@@ -174,6 +176,6 @@ class Calls(Values):
         return Array(function.line, values) if values else Opaque(function.line, "no value")
 
 
-def _has_results(tree: Tree) -> bool:
+def _has_results(tree: Expression) -> bool:
     """Whether values of functions of the program occur, as in the stages of a method."""
     return isinstance(tree, Result) or any(map(_has_results, tree.parts))

@@ -8,13 +8,13 @@ from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import ProgramError
 from derive.reading.programs.syntax.code import (
     Assignment,
-    Branch,
+    Conditional,
     Definition,
-    Evaluation,
+    ExpressionStatement,
     Loop,
     Statement,
 )
-from derive.reading.programs.syntax.trees import Array, Call, Item, Member, Name, Tree
+from derive.reading.programs.syntax.trees import Array, Expression, FunctionCall, Item, Member, Name
 
 #: Expressions that are followed in one program.
 MAX_STEPS = 60_000
@@ -23,7 +23,7 @@ APPENDING = ("append", "push", "push_back", "emplace_back")
 
 
 @dataclass
-class Context:
+class ProgramContext:
     """The functions of a program, and its variables that have one value."""
 
     language: Language
@@ -31,11 +31,11 @@ class Context:
     #: The names that have one numeric value in a function, by the identity of its statements.
     fixed: dict[int, set[str]] = field(default_factory=dict)
     #: The values of those with one value in the whole program.
-    constants: dict[str, Tree] = field(default_factory=dict)
+    constants: dict[str, Expression] = field(default_factory=dict)
     #: Names that are assigned anywhere.
     variables: set[str] = field(default_factory=set)
     #: Names that are assigned once, and their values.
-    shared: dict[str, Tree] = field(default_factory=dict)
+    shared: dict[str, Expression] = field(default_factory=dict)
     steps: int = 0
 
     def spend(self) -> None:
@@ -56,7 +56,7 @@ class Context:
         return (own or found)[0]
 
 
-def static_path(tree: Tree) -> str:
+def static_path(tree: Expression) -> str:
     """The name of a target as written, without entries; empty for others."""
     match tree:
         case Name(path=path):
@@ -68,7 +68,7 @@ def static_path(tree: Tree) -> str:
     return ""
 
 
-def targets(tree: Tree) -> Iterator[Tree]:
+def targets(tree: Expression) -> Iterator[Expression]:
     """The single targets of an assignment."""
     if isinstance(tree, Array):
         for one in tree.items:
@@ -82,7 +82,7 @@ def statements(body: tuple[Statement, ...], *, inner: bool) -> Iterator[Statemen
     for one in body:
         yield one
         match one:
-            case Branch():
+            case Conditional():
                 yield from statements(one.body, inner=inner)
                 yield from statements(one.otherwise, inner=inner)
             case Loop():
@@ -98,7 +98,7 @@ def assigned(body: tuple[Statement, ...], *, inner: bool = False) -> Counter[str
         match one:
             case Assignment():
                 found.update(map(static_path, targets(one.target)))
-            case Evaluation(value=Call(function=Member(base=base, name=name))):
+            case ExpressionStatement(value=FunctionCall(function=Member(base=base, name=name))):
                 if name in APPENDING:
                     found[static_path(base)] += 1
     return found

@@ -1,7 +1,15 @@
 """Loops over the entries of arrays, and functions of entries, for whole arrays."""
 
 from derive.reading.programs.syntax.code import Assignment, Definition, Loop, Return, Statement
-from derive.reading.programs.syntax.trees import Call, Item, Name, Number, Operation, Tree, replaced
+from derive.reading.programs.syntax.trees import (
+    Expression,
+    FunctionCall,
+    Item,
+    Name,
+    NumberLiteral,
+    OperatorExpression,
+    replaced,
+)
 
 
 class _NotElementwiseError(Exception):
@@ -24,7 +32,7 @@ def elementwise(loop: Loop) -> tuple[Statement, ...] | None:
     return tuple(found)
 
 
-def mapped(function: Definition, array: Tree) -> Tree | None:
+def mapped(function: Definition, array: Expression) -> Expression | None:
     """The array of the values of a function of an entry and its index; None for others."""
     match function:
         case Definition(parameters=(entry, *rest), body=(Return(value=value),)) if value:
@@ -36,23 +44,25 @@ def mapped(function: Definition, array: Tree) -> Tree | None:
     return None
 
 
-def _with_array(tree: Tree, entry: str, array: Tree) -> Tree:
+def _with_array(tree: Expression, entry: str, array: Expression) -> Expression:
     if isinstance(tree, Name):
         return array if tree.path == entry else tree
     return replaced(tree, tuple(_with_array(part, entry, array) for part in tree.parts))
 
 
-def _without(tree: Tree, variable: str) -> Tree:
+def _without(tree: Expression, variable: str) -> Expression:
     match tree:
         case Item(base=base, indices=(Name(path=path),)) if path == variable:
             return _without(base, variable)
-        case Call(function=Name() as base, arguments=(Name(path=path),)) if path == variable:
+        case FunctionCall(function=Name() as base, arguments=(Name(path=path),)) if (
+            path == variable
+        ):
             return base  # round brackets
         case Name(path=path) if path == variable:
             raise _NotElementwiseError
-        case Name() | Number():
+        case Name() | NumberLiteral():
             return tree
-        case Operation() | Item():
+        case OperatorExpression() | Item():
             parts = tuple(_without(part, variable) for part in tree.parts)
             return replaced(tree, parts)
     raise _NotElementwiseError

@@ -4,35 +4,35 @@ from collections.abc import Iterable, Sequence
 from copy import copy
 from typing import Self
 
-from derive.reading.programs.evaluation.arithmetic import number
 from derive.reading.programs.evaluation.arrays import entries, flat
-from derive.reading.programs.evaluation.calls import CONDITION, Calls, Step
-from derive.reading.programs.evaluation.context import Context, assigned, static_path
+from derive.reading.programs.evaluation.calls import CONDITION, Calls, VariableValue
+from derive.reading.programs.evaluation.context import ProgramContext, assigned, static_path
 from derive.reading.programs.evaluation.elementwise import elementwise
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.values import whole
 from derive.reading.programs.syntax.code import (
     Assignment,
-    Branch,
-    Declaration,
+    Conditional,
     Definition,
-    Evaluation,
+    ExpressionStatement,
     Fault,
     Loop,
     Return,
     Statement,
+    VariableDeclaration,
 )
 from derive.reading.programs.syntax.trees import (
     Array,
-    Call,
     Choice,
+    Expression,
+    FunctionCall,
     Item,
     Member,
     Name,
-    Number,
+    NumberLiteral,
     Opaque,
-    Operation,
+    OperatorExpression,
     Slice,
-    Tree,
 )
 
 LOOP = "a loop is not followed"
@@ -41,10 +41,10 @@ LOOP = "a loop is not followed"
 class Follower(Calls):
     """Follows statements; names that are not assigned before stand for themselves."""
 
-    def __init__(self, context: Context, owner: str = "") -> None:
+    def __init__(self, context: ProgramContext, owner: str = "") -> None:
         super().__init__(context, owner)
         #: Loops that are followed by themselves, and the values of variables before them.
-        self.loops: list[tuple[Loop, dict[str, Tree]]] = []
+        self.loops: list[tuple[Loop, dict[str, Expression]]] = []
         #: Statements that are not understood: line and reason.
         self.faults: list[tuple[int, str]] = []
         self.has_ended = False
@@ -60,16 +60,16 @@ class Follower(Calls):
                 case Return(value=value):
                     self.returned = None if value is None else self.value(value)
                     self.has_ended = True
-                case Evaluation(value=value):
+                case ExpressionStatement(value=value):
                     self.value(value)
-                case Branch():
+                case Conditional():
                     self._branch(one)
                 case Loop():
                     self._loop(one)
                 case Fault(line=line, reason=reason):
                     self.faults.append((line, reason))
                     self._close(one.names, line, reason)
-                case Declaration(name=name):
+                case VariableDeclaration(name=name):
                     self.declared.add(name)
                 case Definition():
                     pass  # followed by itself
@@ -78,10 +78,12 @@ class Follower(Calls):
         value = self.value(one.value)
         if one.operator:
             operands = (one.target, one.value)
-            value = self.value(Operation(one.line, one.operator, operands))
+            value = self.value(OperatorExpression(one.line, one.operator, operands))
         self.assign(one.line, one.target, value, is_declaration=one.is_declaration)
 
-    def assign(self, line: int, target: Tree, value: Tree, *, is_declaration: bool = False) -> None:
+    def assign(
+        self, line: int, target: Expression, value: Expression, *, is_declaration: bool = False
+    ) -> None:
         """Give a target, or several, a value."""
         if isinstance(target, Array):
             for one, part in zip(target.items, self._parts(target, value), strict=True):
@@ -100,9 +102,9 @@ class Follower(Calls):
             self.variables[path] = value
             if is_declaration:
                 self.declared.add(path)
-            self.steps.append(Step(line, path, value))
+            self.steps.append(VariableValue(line, path, value))
 
-    def _is_constant(self, target: Tree, value: Tree) -> bool:
+    def _is_constant(self, target: Expression, value: Expression) -> bool:
         is_known = static_path(target) in self.fixed
         return is_known and isinstance(target, Name | Member) and number(value) is not None
 
@@ -115,7 +117,7 @@ class Follower(Calls):
             first = self.context.language.first_index
             self.variables |= {f"{place}[{i + first}]": item for i, item in enumerate(items)}
 
-    def _assign_range(self, line: int, target: Item, value: Tree) -> None:
+    def _assign_range(self, line: int, target: Item, value: Expression) -> None:
         whole_range = all(
             isinstance(i, Slice) and i.lower is None and i.upper is None for i in target.indices
         )
@@ -125,19 +127,19 @@ class Follower(Calls):
             for one, part in zip(array.items, self._parts(array, value), strict=True):
                 self.assign(line, one, part)
 
-    def _parts(self, target: Array, value: Tree) -> Sequence[Tree]:
+    def _parts(self, target: Array, value: Expression) -> Sequence[Expression]:
         count = len(target.items)
         items = entries(flat(value))
         if items is not None and len(items) == count:
             return items
         if isinstance(value, Name):
             return self.named_entries(value.line, value.path, 0, count)
-        if isinstance(value, Call):
-            numbers = [Number(value.line, str(i)) for i in range(count)]
+        if isinstance(value, FunctionCall):
+            numbers = [NumberLiteral(value.line, str(i)) for i in range(count)]
             return [Item(value.line, value, (number,)) for number in numbers]
         return [Opaque(value.line, "the values of several names are not followed")] * count
 
-    def _branch(self, one: Branch) -> None:
+    def _branch(self, one: Conditional) -> None:
         branches = [self._copy(), self._copy()]
         count = len(self.steps)
         for branch, body in zip(branches, (one.body, one.otherwise), strict=True):
@@ -164,7 +166,9 @@ class Follower(Calls):
         other.other_returns, other.returned, other.faults = [], None, []
         return other
 
-    def _merge(self, line: int, before: dict[str, Tree], after: dict[str, Tree]) -> None:
+    def _merge(
+        self, line: int, before: dict[str, Expression], after: dict[str, Expression]
+    ) -> None:
         merged = {}
         for path in before | after:
             values = [one.get(path, Name(line, path)) for one in (before, after)]
@@ -186,13 +190,13 @@ class Follower(Calls):
                 del self.variables[key]
             self.variables[path] = Opaque(line, reason)
 
-    def _is_input(self, tree: Tree) -> bool:
+    def _is_input(self, tree: Expression) -> bool:
         """Whether a value is one of two constants, such as a force to the left or to the right."""
         return isinstance(tree, Choice) and all(map(self._is_number, tree.parts))
 
-    def _is_number(self, tree: Tree) -> bool:
+    def _is_number(self, tree: Expression) -> bool:
         match tree:
-            case Operation(operator="-", operands=(operand,)):
+            case OperatorExpression(operator="-", operands=(operand,)):
                 return self._is_number(operand)
             case Name(path=path):
                 return path in self.context.constants

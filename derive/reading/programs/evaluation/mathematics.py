@@ -1,6 +1,13 @@
 """Functions and constants of mathematics, as languages and libraries name them."""
 
-from derive.reading.programs.syntax.trees import Call, Name, Number, Opaque, Operation, Tree
+from derive.reading.programs.syntax.trees import (
+    Expression,
+    FunctionCall,
+    Name,
+    NumberLiteral,
+    Opaque,
+    OperatorExpression,
+)
 
 #: Names before a function, such as math.sin and std::sin.
 LIBRARIES = {
@@ -33,7 +40,7 @@ def split(path: str) -> tuple[str, str]:
     return library, name
 
 
-def constant(line: int, path: str) -> Tree | None:
+def constant(line: int, path: str) -> Expression | None:
     """The value of the name of a constant; None for other names."""
     library, name = split(path)
     if library not in LIBRARIES:
@@ -41,40 +48,40 @@ def constant(line: int, path: str) -> Tree | None:
     if name in PI:
         return Name(line, "pi")
     if multiple := MULTIPLES.get(path) or MULTIPLES.get(name):
-        return Operation(line, "*", (Number(line, multiple), Name(line, "pi")))
+        return OperatorExpression(line, "*", (NumberLiteral(line, multiple), Name(line, "pi")))
     return None
 
 
-def applied(line: int, path: str, arguments: tuple[Tree, ...]) -> Tree | None:
+def applied(line: int, path: str, arguments: tuple[Expression, ...]) -> Expression | None:
     """The value of a function of mathematics; None for other functions."""
     library, name = split(path)
     if library not in LIBRARIES:
         return None
     match name, arguments:
         case _, (x,) if name in FUNCTIONS:
-            return Call(line, Name(line, FUNCTIONS[name]), (x,))
+            return FunctionCall(line, Name(line, FUNCTIONS[name]), (x,))
         case _, (x,) if name in DEGREES:
-            return Call(line, Name(line, DEGREES[name]), (radians(line, x),))
+            return FunctionCall(line, Name(line, DEGREES[name]), (radians(line, x),))
         case "radians" | "deg2rad" | "toRadians", (x,):
             return radians(line, x)
         case "degrees" | "rad2deg" | "toDegrees", (x,):
-            return Operation(line, "*", (x, _ratio(line, "180", "pi")))
+            return OperatorExpression(line, "*", (x, _ratio(line, "180", "pi")))
         case "pow" | "power" | "powf" | "float_power", (x, exponent):
-            return Operation(line, "**", (x, exponent))
+            return OperatorExpression(line, "**", (x, exponent))
         case "clip" | "constrain" | "clamp", (x, _, _):
             return x  # equations hold within the limits
         case "square" | "sq" | "abs2", (x,):
-            return Operation(line, "**", (x, Number(line, "2")))
+            return OperatorExpression(line, "**", (x, NumberLiteral(line, "2")))
         case "sign" | "abs" | "fabs" | "atan2" | "asin" | "acos" | "atan", _:
             return Opaque(line, f"the function {name} is not among those of formulas")
     return None
 
 
-def radians(line: int, x: Tree) -> Tree:
+def radians(line: int, x: Expression) -> Expression:
     """An angle in degrees, in radians."""
-    return Operation(line, "*", (x, _ratio(line, "pi", "180")))
+    return OperatorExpression(line, "*", (x, _ratio(line, "pi", "180")))
 
 
-def _ratio(line: int, above: str, below: str) -> Tree:
-    parts = [Name(line, one) if one == "pi" else Number(line, one) for one in (above, below)]
-    return Operation(line, "/", tuple(parts))
+def _ratio(line: int, above: str, below: str) -> Expression:
+    parts = [Name(line, one) if one == "pi" else NumberLiteral(line, one) for one in (above, below)]
+    return OperatorExpression(line, "/", tuple(parts))

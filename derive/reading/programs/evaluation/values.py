@@ -1,43 +1,43 @@
 """Values of expressions in the names that a function starts with."""
 
 from derive.reading.programs.evaluation.arrays import combined, entries, flat
-from derive.reading.programs.evaluation.context import Context
+from derive.reading.programs.evaluation.context import ProgramContext
 from derive.reading.programs.evaluation.mathematics import constant
 from derive.reading.programs.syntax.code import Lambda
+from derive.reading.programs.syntax.formula_text import UnwrittenError, plain
 from derive.reading.programs.syntax.trees import (
     MAX_DEPTH,
     MAX_SIZE,
     Array,
-    Call,
     Choice,
+    Expression,
+    FunctionCall,
     Item,
     Member,
     Name,
-    Number,
+    NumberLiteral,
     Opaque,
-    Operation,
+    OperatorExpression,
     Record,
     Result,
     Slice,
-    Text,
-    Tree,
+    TextLiteral,
     replaced,
 )
-from derive.reading.programs.syntax.writing import UnwrittenError, plain
 
 
 class Values:
     """The values of variables at a statement, and of expressions in them."""
 
-    def __init__(self, context: Context, owner: str = "") -> None:
+    def __init__(self, context: ProgramContext, owner: str = "") -> None:
         self.context, self.owner = context, owner
-        self.variables: dict[str, Tree] = {}
+        self.variables: dict[str, Expression] = {}
         self.parameters: set[str] = set()
         #: Arrays that a caller passes, which the function changes.
         self.references: dict[str, str] = {}
         self._open: set[str] = set()
 
-    def value(self, tree: Tree) -> Tree:
+    def value(self, tree: Expression) -> Expression:
         """The value of an expression."""
         self.context.spend()
         value = self._value(tree)
@@ -45,7 +45,7 @@ class Values:
             return Opaque(tree.line, "the formula is too large")
         return value
 
-    def _value(self, tree: Tree) -> Tree:
+    def _value(self, tree: Expression) -> Expression:
         match tree:
             case Name():
                 return self.variable(tree.line, self.references.get(tree.path, tree.path))
@@ -53,24 +53,24 @@ class Values:
                 return self._member(tree, base, name)
             case Item():
                 return self._item(tree)
-            case Operation(operator=operator, operands=operands):
+            case OperatorExpression(operator=operator, operands=operands):
                 values = tuple(map(self.value, operands))
                 return combined(tree.line, operator, values, self.context.language)
-            case Call():
+            case FunctionCall():
                 return self.called(tree)
             case Array():
                 return Array(tree.line, tuple(map(self.value, tree.items)))
-            case Number() | Text() | Lambda() | Slice() | Opaque() | Result():
+            case NumberLiteral() | TextLiteral() | Lambda() | Slice() | Opaque() | Result():
                 return tree
             case Record() | Choice():
                 return replaced(tree, tuple(map(self.value, tree.parts)))
         raise AssertionError(tree)
 
-    def called(self, call: Call) -> Tree:
+    def called(self, call: FunctionCall) -> Expression:
         """The value of a call."""
         raise NotImplementedError
 
-    def variable(self, line: int, path: str) -> Tree:
+    def variable(self, line: int, path: str) -> Expression:
         """The value of a variable, or of an entry or member of one."""
         if path in self.variables:
             return self.variables[path]
@@ -90,7 +90,7 @@ class Values:
         name = path.partition(".")[0]
         return name in self.parameters and name not in ("self", "this")
 
-    def _collected(self, line: int, path: str) -> Tree | None:
+    def _collected(self, line: int, path: str) -> Expression | None:
         """The array of which the entries were assigned one by one."""
         found = {}
         first = self.context.language.first_index
@@ -101,7 +101,7 @@ class Values:
             return Array(line, tuple(found[i] for i in range(len(found))))
         return None
 
-    def place(self, tree: Tree) -> str | None:
+    def place(self, tree: Expression) -> str | None:
         """The name of a variable, an entry or a member; None for values without a name."""
         match tree:
             case Name(path=path):
@@ -113,24 +113,24 @@ class Values:
                 return f"{outer}[{index}]" if outer and index else None
         return None
 
-    def _object(self, tree: Tree) -> str | None:
+    def _object(self, tree: Expression) -> str | None:
         """The name of an array or object, which can be another name for one."""
         place = self.place(tree)
         value = self.variables.get(place) if place else None
         return value.path if isinstance(value, Name) else place
 
-    def _index(self, indices: tuple[Tree, ...]) -> str:
+    def _index(self, indices: tuple[Expression, ...]) -> str:
         """An index of one entry, as a text; empty for ranges."""
         values = list(map(self.value, indices))
         is_column = len(values) == 2 and not isinstance(values[1], Slice)
-        if is_column and Number(0, str(self.context.language.first_index)) == values[1]:
+        if is_column and NumberLiteral(0, str(self.context.language.first_index)) == values[1]:
             values.pop()  # of a column as a matrix
         try:
             return plain(values[0]) if len(values) == 1 else ",".join(map(plain, values))
         except UnwrittenError:
             return ""
 
-    def _member(self, tree: Tree, base: Tree, name: str) -> Tree:
+    def _member(self, tree: Expression, base: Expression, name: str) -> Expression:
         if name in ("T", "transpose", "ravel", "flatten"):
             return flat(self.value(base))
         if path := self.place(tree):
@@ -141,7 +141,7 @@ class Values:
             return field or self.variable(tree.line, path)
         return Opaque(tree.line, f"the member {name} of a value is not followed")
 
-    def _item(self, tree: Item) -> Tree:
+    def _item(self, tree: Item) -> Expression:
         if len(tree.indices) == 1 and isinstance(tree.indices[0], Slice):
             return self._part(tree, tree.indices[0])
         if isinstance(tree.base, Name) and tree.base.path == "SA":  # a static array of Julia
@@ -161,10 +161,10 @@ class Values:
         if isinstance(base, Opaque):
             return base
         if is_zeros(base):
-            return Number(tree.line, "0")
+            return NumberLiteral(tree.line, "0")
         return Item(tree.line, base, tuple(map(self.value, tree.indices)))
 
-    def _part(self, tree: Item, bounds: Slice) -> Tree:
+    def _part(self, tree: Item, bounds: Slice) -> Expression:
         """A range of entries; without an end, as many as stand before it: y = (q, q̇)."""
         base = self.value(tree.base)
         language = self.context.language
@@ -183,13 +183,13 @@ class Values:
             return Opaque(tree.line, "a range of entries is not followed")
         return Array(tree.line, self.named_entries(tree.line, base.path, start, end))
 
-    def named_entries(self, line: int, path: str, start: int, end: int) -> tuple[Tree, ...]:
+    def named_entries(self, line: int, path: str, start: int, end: int) -> tuple[Expression, ...]:
         """The entries of an array that has a name, from one up to another, counted from 0."""
         first = self.context.language.first_index
         return tuple(self.variable(line, f"{path}[{i + first}]") for i in range(start, end))
 
 
-def _field(tree: Tree, name: str) -> Tree | None:
+def _field(tree: Expression, name: str) -> Expression | None:
     """A value with a name in a record."""
     match tree:
         case Result(value=value):
@@ -209,10 +209,10 @@ def whole(text: str) -> int | None:
     return int(text) if text.lstrip("-").isdigit() else None
 
 
-def is_zeros(tree: Tree) -> bool:
+def is_zeros(tree: Expression) -> bool:
     """Whether a value is an array of zeros, or one to be filled."""
     names = ("zeros", "zeros_like", "empty", "empty_like", "similar", "zero", "fill", "Array")
     match tree:
-        case Call(function=Name(path=path)) | Call(function=Member(name=path)):
+        case FunctionCall(function=Name(path=path)) | FunctionCall(function=Member(name=path)):
             return path.rpartition(".")[2] in names
     return False

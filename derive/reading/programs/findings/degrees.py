@@ -4,15 +4,15 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 
-from derive.reading.programs.evaluation.arithmetic import number
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.program import Finding
-from derive.reading.programs.syntax.trees import Call, Name, Tree
+from derive.reading.programs.syntax.trees import Expression, FunctionCall, Name
 
 IN_DEGREES = re.compile(r"(_|\b)deg(ree)?s?$|[a-z\d](Deg|Degrees)$|_deg_", re.IGNORECASE)
 CIRCULAR = ("sin", "cos", "tan")
 
 
-def named_in_degrees(value: Tree, function: str) -> Iterator[Finding]:
+def named_in_degrees(value: Expression, function: str) -> Iterator[Finding]:
     """Names such as angle_deg in the arguments of sines, without a conversion."""
     for line, argument in arguments(value):
         found = [*_names(argument)]
@@ -23,7 +23,7 @@ def named_in_degrees(value: Tree, function: str) -> Iterator[Finding]:
 
 
 def starts_in_degrees(
-    path: str, start: Tree, values: Mapping[str, Tree], function: str
+    path: str, start: Expression, values: Mapping[str, Expression], function: str
 ) -> Iterator[Finding]:
     """An initial angle of more than a turn, such as 120, that is written without pi."""
     while isinstance(start, Name) and start.path in values:
@@ -34,29 +34,29 @@ def starts_in_degrees(
         yield Finding(start.line, "degrees", function, text, True)
 
 
-def takes_degrees(call: Call) -> bool:
+def takes_degrees(call: FunctionCall) -> bool:
     """Whether a call makes sines those of degrees."""
     match call:
-        case Call(function=Name(path="angleMode"), arguments=(Name(path="DEGREES"),)):
+        case FunctionCall(function=Name(path="angleMode"), arguments=(Name(path="DEGREES"),)):
             return True
     return False
 
 
-def angles(values: list[Tree]) -> set[str]:
+def angles(values: list[Expression]) -> set[str]:
     """The variables in the arguments of sines and cosines."""
     return {path for one in values for _, argument in arguments(one) for path in _names(argument)}
 
 
-def arguments(tree: Tree) -> Iterator[tuple[int, Tree]]:
+def arguments(tree: Expression) -> Iterator[tuple[int, Expression]]:
     """The arguments of sines and cosines, with their lines."""
     match tree:
-        case Call(function=Name(path=path), arguments=(argument,)) if path in CIRCULAR:
+        case FunctionCall(function=Name(path=path), arguments=(argument,)) if path in CIRCULAR:
             yield tree.line, argument
     for part in tree.parts:
         yield from arguments(part)
 
 
-def _names(tree: Tree) -> Iterator[str]:
+def _names(tree: Expression) -> Iterator[str]:
     if isinstance(tree, Name):
         yield tree.path
     for part in tree.parts:

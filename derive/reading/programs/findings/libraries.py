@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.program import Finding
 from derive.reading.programs.syntax.code import Definition, Lambda, Return
-from derive.reading.programs.syntax.trees import Call, Member, Name, Text, Tree
+from derive.reading.programs.syntax.trees import Expression, FunctionCall, Member, Name, TextLiteral
 
 #: Functions that integrate, and the library and the method by default.
 INTEGRATORS = {
@@ -31,22 +31,22 @@ INTEGRATORS = {
 STATE_FIRST = ("odeint", "ODEProblem", "SecondOrderODEProblem")
 
 
-def library_findings(calls: Iterable[Call], function: str) -> Iterator[Finding]:
+def library_findings(calls: Iterable[FunctionCall], function: str) -> Iterator[Finding]:
     """The integrators among calls."""
     for call in calls:
         name = split(_path(call.function))[1]
         if name in INTEGRATORS:
             library, method = INTEGRATORS[name]
             chosen = dict(call.keywords).get("method")
-            if isinstance(chosen, Text | Name):
-                method = chosen.value if isinstance(chosen, Text) else chosen.path
+            if isinstance(chosen, TextLiteral | Name):
+                method = chosen.value if isinstance(chosen, TextLiteral) else chosen.path
             text = f"{name} of {library} integrates: {method}"
             if library == "an integrator":
                 text = f"{name} integrates: {method}"
             yield Finding(call.line, "library", function, text)
 
 
-def integrated(calls: Iterable[Call]) -> Iterator[tuple[str, Tree]]:
+def integrated(calls: Iterable[FunctionCall]) -> Iterator[tuple[str, Expression]]:
     """Functions that are passed to an integrator, and their initial states."""
     for call in calls:
         name = split(_path(call.function))[1]
@@ -56,17 +56,17 @@ def integrated(calls: Iterable[Call]) -> Iterator[tuple[str, Tree]]:
             yield functions[0], call.arguments[place]
 
 
-def _function(tree: Tree) -> str:
+def _function(tree: Expression) -> str:
     """A function by its name, or the function that one without a name calls."""
     match tree:
-        case Lambda(function=Definition(body=(Return(value=Call(function=inner)),))):
+        case Lambda(function=Definition(body=(Return(value=FunctionCall(function=inner)),))):
             return _path(inner)
-        case Text(value=name):
+        case TextLiteral(value=name):
             return name
     return _path(tree)
 
 
-def _path(tree: Tree) -> str:
+def _path(tree: Expression) -> str:
     match tree:
         case Name(path=path):
             return path

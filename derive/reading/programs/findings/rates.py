@@ -9,14 +9,14 @@ from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.sums import inner, terms
 from derive.reading.programs.evaluation.values import whole
 from derive.reading.programs.syntax.code import Definition
-from derive.reading.programs.syntax.trees import Call, Name, Record, Tree
+from derive.reading.programs.syntax.trees import Expression, FunctionCall, Name, Record
 
 
 @dataclass(frozen=True)
 class Rates:
     """The rates of variables, by the names of the variables."""
 
-    values: Mapping[str, Tree]
+    values: Mapping[str, Expression]
     lines: Mapping[str, int]
     is_step: bool = False  # the values are not rates, but the variables after a step
 
@@ -48,7 +48,7 @@ def _is_observation(rates: Rates) -> bool:
     values = {variable: inner(value) for variable, value in rates.values.items()}
     kept = sum(value == Name(0, variable) for variable, value in values.items())
     is_direction = any(
-        isinstance(one, Call)
+        isinstance(one, FunctionCall)
         and one.function in (Name(0, "sin"), Name(0, "cos"))
         and isinstance(inner(one.arguments[0]), Name)
         for one in values.values()
@@ -56,7 +56,7 @@ def _is_observation(rates: Rates) -> bool:
     return is_direction or kept > len(rates.velocities)
 
 
-def _is_step(values: Mapping[str, Tree]) -> bool:
+def _is_step(values: Mapping[str, Expression]) -> bool:
     """Whether values are those of the same variables later, not their rates."""
     return any(
         sign == 1 and inner(term) == Name(0, path)
@@ -67,7 +67,7 @@ def _is_step(values: Mapping[str, Tree]) -> bool:
 
 def _outputs(
     definition: Definition, follower: Follower
-) -> Iterator[tuple[dict[str, Tree], list[int]]]:
+) -> Iterator[tuple[dict[str, Expression], list[int]]]:
     """Values that a function returns or assigns, by their indices or names of members."""
     last = {step.path: step.line for step in follower.steps}
     value = follower.result(definition)
@@ -80,7 +80,7 @@ def _outputs(
         items = entries(flat(follower.variables.get(parameter.name, value)))
         if parameter.name in follower.variables and items is not None:
             yield {str(i): one for i, one in enumerate(items)}, [one.line for one in items]
-    groups: dict[str, dict[str, Tree]] = {}
+    groups: dict[str, dict[str, Expression]] = {}
     for path, value in follower.variables.items():
         base, key = _split(path)
         if base and key and not (isinstance(value, Name) and value.path == path):
@@ -107,7 +107,7 @@ def _split(path: str) -> tuple[str, str]:
 
 
 def _state(
-    definition: Definition, follower: Follower, outputs: dict[str, Tree]
+    definition: Definition, follower: Follower, outputs: dict[str, Expression]
 ) -> list[str] | None:
     """The variables whose rates the outputs are; None if that is not clear."""
     names = [tree.path for one in outputs.values() for tree in _names(one)]
@@ -134,7 +134,7 @@ def _state(
 
 
 def _scalars(
-    definition: Definition, outputs: dict[str, Tree], direct: set[str]
+    definition: Definition, outputs: dict[str, Expression], direct: set[str]
 ) -> list[str] | None:
     """The state as separate parameters, in the order of the outputs; time may stand before."""
     names = [one.name for one in definition.parameters]
@@ -147,7 +147,7 @@ def _scalars(
     return None
 
 
-def _names(tree: Tree) -> Iterator[Name]:
+def _names(tree: Expression) -> Iterator[Name]:
     if isinstance(tree, Name):
         yield tree
     for part in tree.parts:

@@ -4,26 +4,34 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from derive.reading.programs.evaluation.arithmetic import number
 from derive.reading.programs.evaluation.context import (
-    Context,
+    ProgramContext,
     assigned,
     statements,
     static_path,
     targets,
 )
 from derive.reading.programs.evaluation.following import Follower
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.values import root
 from derive.reading.programs.findings.runge_kutta import called
 from derive.reading.programs.syntax.code import (
     Assignment,
     Definition,
-    Evaluation,
+    ExpressionStatement,
     Lambda,
     Loop,
     Statement,
 )
-from derive.reading.programs.syntax.trees import Array, Call, Member, Name, Opaque, Tree, replaced
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Expression,
+    FunctionCall,
+    Member,
+    Name,
+    Opaque,
+    replaced,
+)
 
 
 @dataclass(frozen=True)
@@ -37,7 +45,7 @@ class Region:
     is_loop: bool = False
 
 
-def prepare(context: Context, body: tuple[Statement, ...]) -> None:
+def prepare(context: ProgramContext, body: tuple[Statement, ...]) -> None:
     """Collect the functions and constants of a program."""
     everything = [*statements(body, inner=True)]
     context.variables = {*assigned(body, inner=True)}
@@ -45,7 +53,7 @@ def prepare(context: Context, body: tuple[Statement, ...]) -> None:
         if isinstance(one, Definition):
             context.functions.setdefault(one.name, []).append(one)
             context.variables.discard(one.name)
-    values: dict[str, list[Tree]] = {}
+    values: dict[str, list[Expression]] = {}
     counts: Counter[str] = Counter()
     for scope in (body, *(one.body for one in everything if isinstance(one, Definition))):
         fixed = _fixed(context, scope)
@@ -58,15 +66,15 @@ def prepare(context: Context, body: tuple[Statement, ...]) -> None:
             context.constants[path] = found[0]
 
 
-def _fixed(context: Context, body: tuple[Statement, ...]) -> dict[str, Tree]:
+def _fixed(context: ProgramContext, body: tuple[Statement, ...]) -> dict[str, Expression]:
     """The names that have one numeric value in a function, and the values."""
-    values: dict[str, list[Tree | None]] = {}
+    values: dict[str, list[Expression | None]] = {}
     reader = Follower(context)
     for one in statements(body, inner=False):
         if isinstance(one, Assignment):
             given = None if one.operator else reader.value(one.value)
             single = [*targets(one.target)]
-            parts: Sequence[Tree | None] = [given]
+            parts: Sequence[Expression | None] = [given]
             if len(single) != 1:
                 known = isinstance(given, Array) and len(given.items) == len(single)
                 parts = given.items if known and isinstance(given, Array) else [None] * len(single)
@@ -81,7 +89,7 @@ def _fixed(context: Context, body: tuple[Statement, ...]) -> dict[str, Tree]:
     return fixed
 
 
-def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
+def regions(context: ProgramContext, body: tuple[Statement, ...]) -> list[Region]:
     """All regions, followed twice: then each knows the values that others assign once."""
     found = [*_regions(context, body)]
     once = _assigned_once(body)
@@ -96,7 +104,7 @@ def regions(context: Context, body: tuple[Statement, ...]) -> list[Region]:
 def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
     """Names with one formula, even repeated; numbers that they have at the beginning aside."""
     counts: Counter[str] = Counter()
-    formulas: dict[str, Tree] = {}
+    formulas: dict[str, Expression] = {}
     for one in _everything(body):
         if isinstance(one, Assignment):
             for target in targets(one.target):
@@ -105,7 +113,7 @@ def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
                 is_known = number(one.value) is not None or formulas.get(path) == one.value
                 formulas.setdefault(path, one.value)
                 counts[path] += (not is_known) if is_whole else 2
-        elif isinstance(one, Evaluation) and isinstance(one.value, Call):
+        elif isinstance(one, ExpressionStatement) and isinstance(one.value, FunctionCall):
             # a function can change its arguments, and a method its object
             changed = [*one.value.parts]
             if isinstance(one.value.function, Member):
@@ -118,12 +126,12 @@ def _everything(body: tuple[Statement, ...]) -> Iterator[Statement]:
     """All statements, also those of functions without a name."""
     for one in statements(body, inner=True):
         yield one
-        if isinstance(one, Evaluation | Assignment):
+        if isinstance(one, ExpressionStatement | Assignment):
             for callback in _callbacks(one.value):
                 yield from _everything(callback.body)
 
 
-def _elsewhere(tree: Tree, parameters: set[str], function: str) -> Tree:
+def _elsewhere(tree: Expression, parameters: set[str], function: str) -> Expression:
     """A value with the parameters of a function as names that others do not have."""
     if isinstance(tree, Name):
         is_parameter = root(tree.path) in parameters - {"self", "this", "obj"}
@@ -133,34 +141,34 @@ def _elsewhere(tree: Tree, parameters: set[str], function: str) -> Tree:
     return tree if is_same else replaced(tree, parts)
 
 
-def _is_formula(value: Tree) -> bool:
+def _is_formula(value: Expression) -> bool:
     """Whether a value is a formula: no number, and no value of a function that is not known."""
     return number(value) is None and not isinstance(value, Opaque) and not _has_call(value)
 
 
-def _has_call(tree: Tree) -> bool:
+def _has_call(tree: Expression) -> bool:
     return called(tree) is not None or any(map(_has_call, tree.parts))
 
 
-def _contains(tree: Tree, path: str) -> bool:
+def _contains(tree: Expression, path: str) -> bool:
     if isinstance(tree, Name):
         return tree.path == path or tree.path.startswith((f"{path}[", f"{path}."))
     return any(_contains(part, path) for part in tree.parts)
 
 
-def _regions(context: Context, body: tuple[Statement, ...]) -> Iterator[Region]:
+def _regions(context: ProgramContext, body: tuple[Statement, ...]) -> Iterator[Region]:
     yield from _followed(context, Definition(1, "", (), body), {}, body)
     for one in statements(body, inner=True):
         if isinstance(one, Definition):
             yield from _followed(context, one, {}, one.body)
-        elif isinstance(one, Evaluation | Assignment):
+        elif isinstance(one, ExpressionStatement | Assignment):
             for callback in _callbacks(one.value):
                 yield from _followed(context, callback, {}, callback.body)
 
 
-def _callbacks(tree: Tree) -> Iterator[Definition]:
+def _callbacks(tree: Expression) -> Iterator[Definition]:
     """Functions without a name that a call takes and that assign something, such as a frame's."""
-    if isinstance(tree, Call):
+    if isinstance(tree, FunctionCall):
         for one in tree.arguments:
             if isinstance(one, Lambda) and assigned(one.function.body):
                 yield one.function
@@ -169,9 +177,9 @@ def _callbacks(tree: Tree) -> Iterator[Definition]:
 
 
 def _followed(
-    context: Context,
+    context: ProgramContext,
     definition: Definition,
-    variables: dict[str, Tree],
+    variables: dict[str, Expression],
     scope: tuple[Statement, ...],
     *,
     is_loop: bool = False,
@@ -199,12 +207,14 @@ def _as_function(loop: Loop, outer: Definition) -> Definition:
     return Definition(loop.line, outer.name, outer.parameters, loop.body, outer.owner)
 
 
-def _kept(context: Context, loop: Loop, before: dict[str, Tree]) -> dict[str, Tree]:
+def _kept(
+    context: ProgramContext, loop: Loop, before: dict[str, Expression]
+) -> dict[str, Expression]:
     """The values before a loop of the variables that it does not change."""
     whole = {*assigned(loop.body)}
     changed = {root(path) for path in whole} | {loop.variable}
     for one in statements(loop.body, inner=False):
-        if isinstance(one, Evaluation) and isinstance(one.value, Call):
+        if isinstance(one, ExpressionStatement) and isinstance(one.value, FunctionCall):
             # a function can change arrays that are passed
             is_own = context.function(static_path(one.value.function), "") is not None
             for part in one.value.arguments:

@@ -8,17 +8,17 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from derive.reading.programs.evaluation.arithmetic import combined
+from derive.reading.programs.evaluation.numeric_values import combined
 from derive.reading.programs.evaluation.sums import inner
 from derive.reading.programs.syntax.trees import (
     Array,
-    Call,
+    Expression,
+    FunctionCall,
     Item,
     Name,
-    Number,
-    Operation,
+    NumberLiteral,
+    OperatorExpression,
     Result,
-    Tree,
 )
 
 FUNCTIONS: Mapping[str, Callable[[float], float]] = {
@@ -66,7 +66,7 @@ class Method:
         return 4
 
 
-def method(increment: Tree) -> tuple[Method, Tree] | None:
+def method(increment: Expression) -> tuple[Method, Expression] | None:
     """The method whose step adds `increment`, and the value of its first stage.
 
     None if it is no method of several stages.
@@ -90,43 +90,45 @@ def method(increment: Tree) -> tuple[Method, Tree] | None:
     return found, _result(increment, calls[order[0]]) or increment
 
 
-def _result(tree: Tree, call: Call) -> Tree | None:
+def _result(tree: Expression, call: FunctionCall) -> Expression | None:
     """The value of a call in a combination."""
     if called(tree) == call:
         return inner(tree)
     return next((found for part in tree.parts if (found := _result(part, call))), None)
 
 
-def value_at(tree: Tree, names: Mapping[str, float], calls: Sequence[Call] = ()) -> float:
+def value_at(
+    tree: Expression, names: Mapping[str, float], calls: Sequence[FunctionCall] = ()
+) -> float:
     """A combination at values of names, 1 for others, with 0 for the values of calls."""
     return _number(tree, calls, [0.0] * len(calls), names)
 
 
-def called(tree: Tree) -> Call | None:
+def called(tree: Expression) -> FunctionCall | None:
     """The call of a function of the program whose value, or an entry of it, a value is."""
     match tree:
         case Result(call=call):
             return called(call)
         case Item(base=base):
             return called(base)
-        case Call(function=Name(path=path)) if path in FUNCTIONS:
+        case FunctionCall(function=Name(path=path)) if path in FUNCTIONS:
             return None
-        case Call():
+        case FunctionCall():
             return tree
     return None
 
 
-def _calls(tree: Tree) -> list[Call]:
+def _calls(tree: Expression) -> list[FunctionCall]:
     """The calls in a combination, in order; those in arguments follow from the calls."""
     if (call := called(tree)) is not None:
         return [call]
-    found: list[Call] = []
+    found: list[FunctionCall] = []
     for part in tree.parts:
         found += [one for one in _calls(part) if one not in found]
     return found
 
 
-def _with_earlier(calls: list[Call]) -> list[Call]:
+def _with_earlier(calls: list[FunctionCall]) -> list[FunctionCall]:
     """Calls, and the calls of the same functions in their arguments."""
     found = [*calls]
     for call in found:  # which grows
@@ -138,7 +140,7 @@ def _with_earlier(calls: list[Call]) -> list[Call]:
     return found
 
 
-def _row(call: Call, calls: list[Call]) -> tuple[float, ...] | None:
+def _row(call: FunctionCall, calls: list[FunctionCall]) -> tuple[float, ...] | None:
     """The coefficients of earlier calls in the argument of a call."""
     rows = set()
     for argument in call.arguments:
@@ -154,7 +156,7 @@ def _row(call: Call, calls: list[Call]) -> tuple[float, ...] | None:
     return rows.pop() if len(rows) == 1 else None
 
 
-def _is_proportional(tree: Tree, calls: list[Call], row: tuple[float, ...]) -> bool:
+def _is_proportional(tree: Expression, calls: list[FunctionCall], row: tuple[float, ...]) -> bool:
     """Whether coefficients grow with the step size, not with its square."""
     doubled = _coefficients(tree, calls, 2.0)
     return doubled is not None and all(
@@ -162,7 +164,9 @@ def _is_proportional(tree: Tree, calls: list[Call], row: tuple[float, ...]) -> b
     )
 
 
-def _coefficients(tree: Tree, calls: Sequence[Call], step: float = 1.0) -> tuple[float, ...] | None:
+def _coefficients(
+    tree: Expression, calls: Sequence[FunctionCall], step: float = 1.0
+) -> tuple[float, ...] | None:
     """The coefficients of the values of calls in a combination, with 1 for all names."""
     zeros = [0.0] * len(calls)
     names = {"": step}
@@ -184,22 +188,25 @@ def _coefficients(tree: Tree, calls: Sequence[Call], step: float = 1.0) -> tuple
 
 
 def _number(
-    tree: Tree, calls: Sequence[Call], values: Sequence[float], names: Mapping[str, float]
+    tree: Expression,
+    calls: Sequence[FunctionCall],
+    values: Sequence[float],
+    names: Mapping[str, float],
 ) -> float:
     """A combination with `values` of calls, and of names; that of others is names[""] or 1."""
     if (call := called(tree)) is not None:
         return values[calls.index(call)] if call in calls else 0.0
     match tree:
-        case Number(digits=digits):
+        case NumberLiteral(digits=digits):
             return float(digits)
         case Name(path=path):
             return math.pi if path == "pi" else names.get(path, names.get("", 1.0))
-        case Operation(operator="-", operands=(operand,)):
+        case OperatorExpression(operator="-", operands=(operand,)):
             return -_number(operand, calls, values, names)
-        case Operation(operator=operator, operands=(left, right)):
+        case OperatorExpression(operator=operator, operands=(left, right)):
             a, b = (_number(one, calls, values, names) for one in (left, right))
             return combined(operator, a, b)
-        case Call(function=Name(path=path), arguments=(argument,)) if path in FUNCTIONS:
+        case FunctionCall(function=Name(path=path), arguments=(argument,)) if path in FUNCTIONS:
             return FUNCTIONS[path](_number(argument, calls, values, names))
         case Item():
             return names.get("", 1.0)

@@ -9,16 +9,16 @@ from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from functools import cached_property
 
-from derive.reading.programs.evaluation.calls import Step
+from derive.reading.programs.evaluation.calls import VariableValue
 from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.sums import Term, factors, inner, product, terms, total
 from derive.reading.programs.syntax.trees import (
     Array,
     Choice,
+    Expression,
     Name,
-    Number,
-    Operation,
-    Tree,
+    NumberLiteral,
+    OperatorExpression,
     replaced,
 )
 
@@ -26,7 +26,7 @@ from derive.reading.programs.syntax.trees import (
 TIMED = re.compile(r"(.*?)\[([^\W\d]\w*)([+-]\d+)?\](.*)")
 
 
-NO_STEP = Number(0, "1")
+NO_STEP = NumberLiteral(0, "1")
 LAST = re.compile(r"(.*?)\[(-1|end)()\](.*)")
 
 
@@ -37,7 +37,7 @@ class Update:
     variable: str  # before the step, such as theta[i]
     line: int
     increment: tuple[Term, ...]
-    damping: Tree | None = None  # the factor by which the velocity is multiplied
+    damping: Expression | None = None  # the factor by which the velocity is multiplied
     damping_line: int = 0
 
 
@@ -47,7 +47,7 @@ class Pair:
 
     coordinate: Update
     velocity: Update
-    step: Tree | None  # the step size; None if no factor is written
+    step: Expression | None  # the step size; None if no factor is written
     uses_new_velocity: bool
     #: Whether the coordinate grows by more than its velocity before or after the step.
     has_other_terms: bool
@@ -63,7 +63,7 @@ class Updates:
         self._steps = [part for step in follower.steps for part in _parts(step, follower)]
         final = {}
         for path, value in follower.variables.items():
-            for part in _parts(Step(0, path, value), follower):
+            for part in _parts(VariableValue(0, path, value), follower):
                 final[part.path] = part.value
         is_timed = any(TIMED.fullmatch(step.path) for step in self._steps)
         values = [step.value for step in self._steps] if is_timed else []
@@ -73,15 +73,15 @@ class Updates:
         self._owners = {
             id(value): self._old[step.path]
             for step in self._steps
-            if not isinstance(value := self._chosen(step.value, step.path), Name | Number)
+            if not isinstance(value := self._chosen(step.value, step.path), Name | NumberLiteral)
         }
         found = (self._update(path, value) for path, value in final.items())
         self.updates: dict[str, Update] = {one.variable: one for one in found if one}
 
-    def _is_whole(self, tree: Tree) -> bool:
+    def _is_whole(self, tree: Expression) -> bool:
         return id(tree) in self._owners
 
-    def _chosen(self, value: Tree, old: str) -> Tree:
+    def _chosen(self, value: Expression, old: str) -> Expression:
         """A value without conditions: that which changes a variable, or one of two that do."""
         value = inner(value)
         while isinstance(value, Choice):
@@ -90,12 +90,12 @@ class Updates:
             value = inner(value.after if takes_after else value.before)
         return value
 
-    def _update(self, path: str, value: Tree) -> Update | None:
+    def _update(self, path: str, value: Expression) -> Update | None:
         old = self._old.get(path, path)
         value = self._chosen(value, old)
         damping, damping_line = None, 0
         match value:
-            case Operation(operator="*", operands=(earlier, factor)) if self._owners.get(
+            case OperatorExpression(operator="*", operands=(earlier, factor)) if self._owners.get(
                 id(earlier)
             ) == old or earlier == Name(0, old):
                 damping, damping_line, value = factor, value.line, earlier
@@ -144,14 +144,14 @@ class Updates:
                 return Pair(coordinate, velocity, step, is_new, more)
         return None
 
-    def _others(self, term: Tree, step: Tree | None) -> list[str]:
+    def _others(self, term: Expression, step: Expression | None) -> list[str]:
         """The variables in a term that are no step size: accelerations from before."""
         steps = {*names(step)} if step else set()
         parts = factors(term, self._is_whole)
         found = [one.path for one in parts if isinstance(one, Name)]
         return [path for path in found if path not in {*steps, "pi"}]
 
-    def _velocity(self, tree: Tree) -> tuple[Update | None, bool, bool]:
+    def _velocity(self, tree: Expression) -> tuple[Update | None, bool, bool]:
         """The variable that a factor is, whether after its update, and whether in between."""
         if isinstance(tree, Name):
             return self.updates.get(tree.path), False, False
@@ -162,25 +162,27 @@ class Updates:
                 return self.updates[term.path], False, True
         return None, False, False
 
-    def _moves(self, tree: Tree) -> bool:
+    def _moves(self, tree: Expression) -> bool:
         """Whether a value depends on variables that are updated."""
         if isinstance(tree, Name):
             return tree.path in self.updates
         return any(map(self._moves, tree.parts))
 
-    def acceleration(self, pair: Pair) -> tuple[Tree, frozenset[str]]:
+    def acceleration(self, pair: Pair) -> tuple[Expression, frozenset[str]]:
         """The acceleration in values before the step, and the variables used after it."""
         used: set[str] = set()
         velocity, step = pair.velocity, pair.step
         found = [(sign, self._divided(term, step)) for sign, term in velocity.increment]
         if any(term is None for _, term in found):  # no common factor
             whole = [(sign, self._restored(term, used)) for sign, term in velocity.increment]
-            value = Operation(velocity.line, "/", (total(velocity.line, whole), step or NO_STEP))
+            value = OperatorExpression(
+                velocity.line, "/", (total(velocity.line, whole), step or NO_STEP)
+            )
             return value, frozenset(used)
         divided = [(sign, self._restored(term, used)) for sign, term in found if term]
         return total(velocity.line, divided), frozenset(used)
 
-    def _divided(self, term: Tree, step: Tree | None) -> Tree | None:
+    def _divided(self, term: Expression, step: Expression | None) -> Expression | None:
         """A term without the step size; None if that is not a factor."""
         if step is None:
             return term
@@ -191,7 +193,7 @@ class Updates:
             parts.remove(one)
         return product(term.line, parts)
 
-    def _restored(self, tree: Tree, used: set[str]) -> Tree:
+    def _restored(self, tree: Expression, used: set[str]) -> Expression:
         """A value with variables after their update replaced by the variables."""
         owner = self._owners.get(id(tree))
         if owner is not None and owner in self.updates:
@@ -202,13 +204,16 @@ class Updates:
         return tree if is_same else replaced(tree, parts)
 
 
-def _parts(step: Step, follower: Follower) -> list[Step]:
+def _parts(step: VariableValue, follower: Follower) -> list[VariableValue]:
     """The entries of an array that is assigned as a whole."""
     value = inner(step.value)
     if not isinstance(value, Array):
         return [step]
     first = follower.context.language.first_index
-    return [Step(step.line, f"{step.path}[{i + first}]", one) for i, one in enumerate(value.items)]
+    return [
+        VariableValue(step.line, f"{step.path}[{i + first}]", one)
+        for i, one in enumerate(value.items)
+    ]
 
 
 def previous(path: str, used: Set[str]) -> str:
@@ -226,7 +231,7 @@ def without_time(path: str) -> str:
     return match[1] + match[4] if match else path
 
 
-def names(tree: Tree) -> Iterator[str]:
+def names(tree: Expression) -> Iterator[str]:
     """The variables in a value."""
     if isinstance(tree, Name):
         yield tree.path

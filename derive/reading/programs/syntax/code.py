@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from derive.reading.programs.syntax.trees import Tree
+from derive.reading.programs.syntax.trees import Expression
 
 
 @dataclass(frozen=True)
@@ -13,14 +13,14 @@ class Assignment:
     """A value for a target; with an operator, such as ``+``, the target is changed by it."""
 
     line: int
-    target: Tree
+    target: Expression
     operator: str
-    value: Tree
+    value: Expression
     is_declaration: bool = False
 
 
 @dataclass(frozen=True)
-class Declaration:
+class VariableDeclaration:
     """A variable of a function, without a value."""
 
     line: int
@@ -32,19 +32,19 @@ class Return:
     """The end of a function, and its value if it has one."""
 
     line: int
-    value: Tree | None
+    value: Expression | None
 
 
 @dataclass(frozen=True)
-class Evaluation:
+class ExpressionStatement:
     """An expression of which the value is dropped, such as a call."""
 
     line: int
-    value: Tree
+    value: Expression
 
 
 @dataclass(frozen=True)
-class Branch:
+class Conditional:
     """A conditional statement."""
 
     line: int
@@ -62,11 +62,11 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Parameter:
+class FunctionParameter:
     """A parameter of a function."""
 
     name: str
-    default: Tree | None = None
+    default: Expression | None = None
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ class Definition:
 
     line: int
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[FunctionParameter, ...]
     body: tuple[Statement, ...]
     owner: str = ""
     results: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
-class Lambda(Tree):
+class Lambda(Expression):
     """A function without a name, as a value."""
 
     function: Definition = field(compare=False)
@@ -98,5 +98,12 @@ class Fault:
 
 
 Statement: TypeAlias = (
-    Assignment | Declaration | Return | Evaluation | Branch | Loop | Definition | Fault
+    Assignment
+    | VariableDeclaration
+    | Return
+    | ExpressionStatement
+    | Conditional
+    | Loop
+    | Definition
+    | Fault
 )

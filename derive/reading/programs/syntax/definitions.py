@@ -5,16 +5,16 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from derive.reading.programs.syntax.code import (
-    Branch,
+    Conditional,
     Definition,
-    Evaluation,
+    ExpressionStatement,
+    FunctionParameter,
     Lambda,
-    Parameter,
     Return,
     Statement,
 )
 from derive.reading.programs.syntax.expressions import ExpressionTranslator, line, text
-from derive.reading.programs.syntax.trees import Name, Tree
+from derive.reading.programs.syntax.trees import Expression, Name
 
 if TYPE_CHECKING:
     from tree_sitter import Node
@@ -51,7 +51,7 @@ class DefinitionTranslator(ExpressionTranslator):
         scope = named.child_by_field_name("scope") if named else None
         return text(scope) if scope else self._owner
 
-    def _lambda_tree(self, node: "Node") -> Tree:
+    def _lambda_tree(self, node: "Node") -> Expression:
         parameters = node.child_by_field_name("parameter") or self._first(node, "parameters")
         parameters = parameters or self.children(node)[0]
         return Lambda(line(node), self._definition(node, "", parameters))
@@ -76,13 +76,13 @@ class DefinitionTranslator(ExpressionTranslator):
         owner = self._owner_of(node) if name else self._owner
         return Definition(line(node), name, parameters, statements, owner, results)
 
-    def _parameters(self, node: "Node") -> Iterator[Parameter]:
+    def _parameters(self, node: "Node") -> Iterator[FunctionParameter]:
         if self.role(node) == "name":
-            yield Parameter(self.word(node))
+            yield FunctionParameter(self.word(node))
             return
         for index, child in enumerate(self._given(node)):
             if self.role(child) in PATTERNS:
-                yield Parameter(_place(index))
+                yield FunctionParameter(_place(index))
                 continue
             name = child if self.role(child) == "name" else self._first(child, "name")
             default = next(
@@ -90,7 +90,7 @@ class DefinitionTranslator(ExpressionTranslator):
                 None,
             )
             value = self.tree(default) if default else None
-            yield Parameter(self.word(name) if name else _place(index), value)
+            yield FunctionParameter(self.word(name) if name else _place(index), value)
 
     def _given(self, node: "Node") -> list["Node"]:
         """The parameters in a list of them, also those without a name."""
@@ -104,7 +104,7 @@ class DefinitionTranslator(ExpressionTranslator):
                 yield from self.assigned(line(child), self.tree(child), "", value)
 
     def assigned(
-        self, number: int, target: Tree, operator: str, value: Tree
+        self, number: int, target: Expression, operator: str, value: Expression
     ) -> Iterator[Statement]:
         """The statements that give a target, or several, a value."""
         raise NotImplementedError
@@ -137,10 +137,10 @@ class DefinitionTranslator(ExpressionTranslator):
 def _with_return(statements: tuple[Statement, ...]) -> tuple[Statement, ...]:
     """The statements of a function whose value is its last expression."""
     match statements:
-        case (*rest, Evaluation(line=number, value=value)):
+        case (*rest, ExpressionStatement(line=number, value=value)):
             return (*rest, Return(number, value))
-        case (*rest, Branch(line=number, body=body, otherwise=otherwise)):
-            return (*rest, Branch(number, _with_return(body), _with_return(otherwise)))
+        case (*rest, Conditional(line=number, body=body, otherwise=otherwise)):
+            return (*rest, Conditional(number, _with_return(body), _with_return(otherwise)))
     return statements
 
 

@@ -13,18 +13,18 @@ from derive.reading.programs.languages.language import Language
 from derive.reading.programs.syntax.trees import (
     MAX_DEPTH,
     Array,
-    Call,
     Choice,
+    Expression,
+    FunctionCall,
     Item,
     Member,
     Name,
-    Number,
+    NumberLiteral,
     Opaque,
-    Operation,
+    OperatorExpression,
     Record,
     Slice,
-    Text,
-    Tree,
+    TextLiteral,
 )
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class ExpressionTranslator:
         self.language = language
         self._depth = 0
 
-    def tree(self, node: "Node") -> Tree:
+    def tree(self, node: "Node") -> Expression:
         """The expression at a node."""
         if self._depth > MAX_DEPTH:
             return Opaque(line(node), "the expression is nested too deeply")
@@ -65,10 +65,10 @@ class ExpressionTranslator:
         """The named children that are no comments."""
         return [one for one in node.named_children if not one.is_extra and one.type != "comment"]
 
-    def _trees(self, nodes: Sequence["Node"]) -> tuple[Tree, ...]:
+    def _trees(self, nodes: Sequence["Node"]) -> tuple[Expression, ...]:
         return tuple(map(self.tree, nodes))
 
-    def _name_tree(self, node: "Node") -> Tree:
+    def _name_tree(self, node: "Node") -> Expression:
         return Name(line(node), self.word(node))
 
     def word(self, node: "Node") -> str:
@@ -76,48 +76,48 @@ class ExpressionTranslator:
         word = text(node)
         return word if self.language.is_case_sensitive else word.lower()
 
-    def _number_tree(self, node: "Node") -> Tree:
+    def _number_tree(self, node: "Node") -> Expression:
         if text(node).startswith("-"):
-            return Operation(line(node), "-", (self._digits(node, text(node)[1:]),))
+            return OperatorExpression(line(node), "-", (self._digits(node, text(node)[1:]),))
         return self._digits(node, text(node))
 
-    def _digits(self, node: "Node", given: str) -> Tree:
+    def _digits(self, node: "Node", given: str) -> Expression:
         if not (match := DIGITS.fullmatch(given)):
             return Opaque(line(node), f"{shown(node)!r} is not followed")
         digits, exponent = match[1].replace("_", ""), match[2]
-        return Number(line(node), digits + (f"e{exponent}" if exponent else ""))
+        return NumberLiteral(line(node), digits + (f"e{exponent}" if exponent else ""))
 
-    def _text_tree(self, node: "Node") -> Tree:
-        return Text(line(node), text(node).strip("\"'`"))
+    def _text_tree(self, node: "Node") -> Expression:
+        return TextLiteral(line(node), text(node).strip("\"'`"))
 
-    def _wrapper_tree(self, node: "Node") -> Tree:
+    def _wrapper_tree(self, node: "Node") -> Expression:
         # a bracket, or a cast, whose value stands last
         inner = [one for one in self.children(node) if self.role(one) != "skip"]
         return self.tree(inner[-1]) if inner else Opaque(line(node), "an empty bracket")
 
-    def _first_tree(self, node: "Node") -> Tree:
+    def _first_tree(self, node: "Node") -> Expression:
         return self.tree(self.children(node)[0])
 
-    def _qualified_tree(self, node: "Node") -> Tree:
+    def _qualified_tree(self, node: "Node") -> Expression:
         return self.tree(self.children(node)[-1])
 
-    def _member_tree(self, node: "Node") -> Tree:
+    def _member_tree(self, node: "Node") -> Expression:
         base, *_, name = self.children(node)
         if self.language.has_bare_members and text(base) == "this":
             return self.tree(name)
         return Member(line(node), self.tree(base), self.word(name))
 
-    def _item_tree(self, node: "Node") -> Tree:
+    def _item_tree(self, node: "Node") -> Expression:
         base, *indices = self.children(node)
         if len(indices) == 1 and self.role(indices[0]) in ("arguments", "indices", "array"):
             indices = self.children(indices[0])
         found = self._trees(indices)
-        if len(found) == 1 and isinstance(found[0], Text):
+        if len(found) == 1 and isinstance(found[0], TextLiteral):
             return Member(line(node), self.tree(base), found[0].value)
         return Item(line(node), self.tree(base), found)
 
-    def _slice_tree(self, node: "Node") -> Tree:
-        bounds: list[Tree | None] = [None]
+    def _slice_tree(self, node: "Node") -> Expression:
+        bounds: list[Expression | None] = [None]
         for child in node.children:
             if child.type == ":":
                 bounds.append(None)
@@ -127,16 +127,16 @@ class ExpressionTranslator:
             return Opaque(line(node), "a range with a step is not followed")
         return Slice(line(node), bounds[0], bounds[-1])
 
-    def _all_tree(self, node: "Node") -> Tree:
+    def _all_tree(self, node: "Node") -> Expression:
         return Slice(line(node), None, None)
 
-    def _call_tree(self, node: "Node") -> Tree:
+    def _call_tree(self, node: "Node") -> Expression:
         function, *rest = [one for one in self.children(node) if self.role(one) != "skip"]
         nodes = [one for part in rest for one in self._arguments(part)]
         keywords = [one for one in nodes if self.role(one) == "keyword"]
         arguments = [one for one in nodes if self.role(one) != "keyword"]
         named = tuple((self.word(k), self.tree(v)) for k, v in map(self._pair, keywords))
-        return Call(line(node), self.tree(function), self._trees(arguments), named)
+        return FunctionCall(line(node), self.tree(function), self._trees(arguments), named)
 
     def _arguments(self, node: "Node") -> list["Node"]:
         return self.children(node) if self.role(node) == "arguments" else [node]
@@ -145,7 +145,7 @@ class ExpressionTranslator:
         children = self.children(node)
         return children[0], children[-1]
 
-    def _binary_tree(self, node: "Node") -> Tree:
+    def _binary_tree(self, node: "Node") -> Expression:
         left, sign, right = [one for one in node.children if not one.is_extra][:3]
         operator = text(sign).lstrip(".")
         operator = OPERATORS.get(operator, operator)
@@ -158,20 +158,22 @@ class ExpressionTranslator:
         operands = (self.tree(left), self.tree(right))
         if operator == "/" and self.language.has_whole_quotients:
             match operands:
-                case Number(digits=a), Number(digits=b) if f"{a}{b}".isdigit() and int(b):
-                    return Number(line(node), str(int(a) // int(b)))
-        return Operation(line(node), operator, operands)
+                case NumberLiteral(digits=a), NumberLiteral(digits=b) if (
+                    f"{a}{b}".isdigit() and int(b)
+                ):
+                    return NumberLiteral(line(node), str(int(a) // int(b)))
+        return OperatorExpression(line(node), operator, operands)
 
-    def _power(self, node: "Node") -> Tree:
+    def _power(self, node: "Node") -> Expression:
         """A power; grammars differ from their languages in -x^2, in 2x^2 and in x^y^z."""
         base, *exponents = self._powers(node)
         if self.role(base) == "unary" and text(base).startswith("-"):
             operand = self.children(base)[-1]
-            return Operation(line(node), "-", (self._raised(operand, exponents),))
+            return OperatorExpression(line(node), "-", (self._raised(operand, exponents),))
         if self.role(base) == "product":
             left, right = self.children(base)
             power = self._raised(right, exponents)
-            return Operation(line(node), "*", (self.tree(left), power))
+            return OperatorExpression(line(node), "*", (self.tree(left), power))
         return self._raised(base, exponents)
 
     def _powers(self, node: "Node", level: int = 0) -> list["Node"]:
@@ -182,51 +184,51 @@ class ExpressionTranslator:
             return [node]
         return [*self._powers(parts[0], level + 1), *self._powers(parts[2], level + 1)]
 
-    def _raised(self, base: "Node", exponents: Sequence["Node"]) -> Tree:
+    def _raised(self, base: "Node", exponents: Sequence["Node"]) -> Expression:
         trees = self._trees([base, *exponents])
         if self.language.has_left_powers:
-            return reduce(lambda a, b: Operation(a.line, "**", (a, b)), trees)
-        return reduce(lambda b, a: Operation(a.line, "**", (a, b)), reversed(trees))
+            return reduce(lambda a, b: OperatorExpression(a.line, "**", (a, b)), trees)
+        return reduce(lambda b, a: OperatorExpression(a.line, "**", (a, b)), reversed(trees))
 
-    def _conditional_tree(self, node: "Node") -> Tree:
+    def _conditional_tree(self, node: "Node") -> Expression:
         first, second, third = self.children(node)
         after = first if self.language.name == "Python" else second  # a if condition else b
         return Choice(line(node), self.tree(third), self.tree(after))
 
-    def _product_tree(self, node: "Node") -> Tree:
+    def _product_tree(self, node: "Node") -> Expression:
         left, right = self.children(node)
         if left.end_byte != right.start_byte:
             return Opaque(line(node), f"{shown(node)!r} is not understood")
-        return Operation(line(node), "*", (self.tree(left), self.tree(right)))
+        return OperatorExpression(line(node), "*", (self.tree(left), self.tree(right)))
 
-    def _unary_tree(self, node: "Node") -> Tree:
+    def _unary_tree(self, node: "Node") -> Expression:
         sign, operand = [one for one in node.children if not one.is_extra][:2]
         match text(sign):
             case "+":
                 return self.tree(operand)
             case "-":
-                return Operation(line(node), "-", (self.tree(operand),))
+                return OperatorExpression(line(node), "-", (self.tree(operand),))
             case "*" | "&":  # of a pointer
                 return self.tree(operand)
         return Opaque(line(node), f"{shown(node)!r} is not followed")
 
-    def _transpose_tree(self, node: "Node") -> Tree:
-        return Operation(line(node), "transpose", (self.tree(self.children(node)[0]),))
+    def _transpose_tree(self, node: "Node") -> Expression:
+        return OperatorExpression(line(node), "transpose", (self.tree(self.children(node)[0]),))
 
-    def _array_tree(self, node: "Node") -> Tree:
+    def _array_tree(self, node: "Node") -> Expression:
         return Array(line(node), self._trees(self.children(node)))
 
-    def _matrix_tree(self, node: "Node") -> Tree:
+    def _matrix_tree(self, node: "Node") -> Expression:
         rows = [self._trees(self.children(row)) for row in self.children(node)]
         if len(rows) == 1 or all(len(row) == 1 for row in rows):
             items = Array(line(node), tuple(one for row in rows for one in row))
-            return Call(line(node), Name(line(node), "vcat"), (items,))
+            return FunctionCall(line(node), Name(line(node), "vcat"), (items,))
         return Array(line(node), tuple(Array(one.line, row) for row in rows for one in row[:1]))
 
-    def _record_tree(self, node: "Node") -> Tree:
+    def _record_tree(self, node: "Node") -> Expression:
         return Record(line(node), tuple(self._fields(node)))
 
-    def _fields(self, node: "Node") -> Iterator[tuple[str, Tree]]:
+    def _fields(self, node: "Node") -> Iterator[tuple[str, Expression]]:
         for child in self.children(node):
             if self.role(child) == "pair":
                 key, value = self._pair(child)
@@ -234,7 +236,7 @@ class ExpressionTranslator:
             elif self.role(child) == "name":
                 yield self.word(child), self.tree(child)
 
-    def _names_tree(self, node: "Node") -> Tree:
+    def _names_tree(self, node: "Node") -> Expression:
         """Names of members, as in ``const {m1, l1} = p``."""
         return Record(line(node), tuple(self._fields(node)))
 

@@ -9,7 +9,7 @@ MAX_SIZE, MAX_DEPTH = 5_000, 120
 
 
 @dataclass(frozen=True)
-class Tree:
+class Expression:
     """An expression; equal ones can stand on different lines."""
 
     line: int = field(compare=False)
@@ -27,66 +27,66 @@ class Tree:
     depth: int = field(init=False, repr=False, compare=False)
 
     @property
-    def parts(self) -> tuple[Tree, ...]:
+    def parts(self) -> tuple[Expression, ...]:
         """The expressions that it consists of."""
         return ()
 
 
 @dataclass(frozen=True)
-class Number(Tree):
+class NumberLiteral(Expression):
     """A number in decimal digits."""
 
     digits: str
 
 
 @dataclass(frozen=True)
-class Text(Tree):
+class TextLiteral(Expression):
     """A quoted text."""
 
     value: str
 
 
 @dataclass(frozen=True)
-class Name(Tree):
+class Name(Expression):
     """A variable, or an entry or member of one, such as ``y[0]`` or ``self.theta``."""
 
     path: str
 
 
 @dataclass(frozen=True)
-class Member(Tree):
+class Member(Expression):
     """A member of an object."""
 
-    base: Tree
+    base: Expression
     name: str
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return (self.base,)
 
 
 @dataclass(frozen=True)
-class Item(Tree):
+class Item(Expression):
     """Entries of an array."""
 
-    base: Tree
-    indices: tuple[Tree, ...]
+    base: Expression
+    indices: tuple[Expression, ...]
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return (self.base, *self.indices)
 
 
 @dataclass(frozen=True)
-class Slice(Tree):
+class Slice(Expression):
     """A range of indices as an index; a bound that is not written is None."""
 
-    lower: Tree | None
-    upper: Tree | None
+    lower: Expression | None
+    upper: Expression | None
 
 
 @dataclass(frozen=True)
-class Operation(Tree):
+class OperatorExpression(Expression):
     """A sum, difference, product, quotient, power (``+ - * / **``), matrix product or solution.
 
     The matrix product is ``@`` and the solution of a linear system is ``solve``; one operand is
@@ -94,84 +94,84 @@ class Operation(Tree):
     """
 
     operator: str
-    operands: tuple[Tree, ...]
+    operands: tuple[Expression, ...]
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return self.operands
 
 
 @dataclass(frozen=True)
-class Call(Tree):
+class FunctionCall(Expression):
     """A function and its arguments."""
 
-    function: Tree
-    arguments: tuple[Tree, ...]
-    keywords: tuple[tuple[str, Tree], ...] = ()
+    function: Expression
+    arguments: tuple[Expression, ...]
+    keywords: tuple[tuple[str, Expression], ...] = ()
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return (self.function, *self.arguments, *(value for _, value in self.keywords))
 
 
 @dataclass(frozen=True)
-class Result(Tree):
+class Result(Expression):
     """The value of a call, or of an entry of it, that has been followed."""
 
-    call: Tree
-    value: Tree
+    call: Expression
+    value: Expression
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return (self.value,)
 
 
 @dataclass(frozen=True)
-class Array(Tree):
+class Array(Expression):
     """Several values in order: an array, a tuple, or a row of a matrix."""
 
-    items: tuple[Tree, ...]
+    items: tuple[Expression, ...]
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return self.items
 
 
 @dataclass(frozen=True)
-class Record(Tree):
+class Record(Expression):
     """Values with names: a dictionary or an object."""
 
-    fields: tuple[tuple[str, Tree], ...]
+    fields: tuple[tuple[str, Expression], ...]
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return tuple(value for _, value in self.fields)
 
 
 @dataclass(frozen=True)
-class Choice(Tree):
+class Choice(Expression):
     """A value that a conditional statement may change."""
 
-    before: Tree
-    after: Tree
+    before: Expression
+    after: Expression
 
     @property
-    def parts(self) -> tuple[Tree, ...]:  # noqa: D102
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
         return (self.before, self.after)
 
 
 @dataclass(frozen=True)
-class Opaque(Tree):
+class Opaque(Expression):
     """A value that cannot be followed, and why."""
 
     reason: str
 
 
-def replaced(tree: Tree, parts: tuple[Tree, ...]) -> Tree:
+def replaced(tree: Expression, parts: tuple[Expression, ...]) -> Expression:
     """The same kind of expression with other parts."""
     match tree:
-        case Operation():
-            return Operation(tree.line, tree.operator, parts)
+        case OperatorExpression():
+            return OperatorExpression(tree.line, tree.operator, parts)
         case Array():
             return Array(tree.line, parts)
         case Result():
@@ -185,9 +185,9 @@ def replaced(tree: Tree, parts: tuple[Tree, ...]) -> Tree:
         case Record():
             names = (name for name, _ in tree.fields)
             return Record(tree.line, tuple(zip(names, parts, strict=True)))
-        case Call():
+        case FunctionCall():
             count = 1 + len(tree.arguments)
             names = (name for name, _ in tree.keywords)
             keywords = tuple(zip(names, parts[count:], strict=True))
-            return Call(tree.line, parts[0], parts[1:count], keywords)
+            return FunctionCall(tree.line, parts[0], parts[1:count], keywords)
     return tree

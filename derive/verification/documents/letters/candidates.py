@@ -10,9 +10,9 @@ import sympy as sp
 
 from derive.system.parts import Parameter
 from derive.system.system import System
-from derive.verification.documents.letters.constraints import StatedConstraint
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.notation import FACTORS
+from derive.verification.documents.letters.stated_constraints import StatedConstraint
+from derive.verification.system_names import FACTORS
 
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
@@ -50,7 +50,7 @@ UNITS = {
 
 
 @dataclass(frozen=True)
-class Candidate:
+class SystemCandidate:
     """A system in the letters of a document.
 
     A coordinate of the system is a sum of those of the document with signs, plus an offset in
@@ -114,7 +114,7 @@ def kind_of(parameter: Parameter) -> str:
 
 def candidates(
     system: System, letters: Letters, numbers: Mapping[str, str] | None = None
-) -> Iterator[Candidate]:
+) -> Iterator[SystemCandidate]:
     """Yield the candidates of a system, the likeliest first.
 
     With `numbers`, by kinds of parameters, these have the numbers instead of letters.
@@ -137,11 +137,11 @@ def candidates(
             continue  # the letter of a force of the system
         stated = _numbers(system, mapping, numbers or {})
         if numbers is None or stated:
-            one = Candidate(system, order, signs, offsets, mapping, forces, friction, stated)
+            one = SystemCandidate(system, order, signs, offsets, mapping, forces, friction, stated)
             yield from constrained(one, letters)
 
 
-def constrained(candidate: Candidate, letters: Letters) -> Iterator[Candidate]:
+def constrained(candidate: SystemCandidate, letters: Letters) -> Iterator[SystemCandidate]:
     """The candidate with the constraints of its coordinates, and meanings of multipliers.
 
     A system with constraints has no others. There is none if a constraint of the document contains

@@ -2,13 +2,13 @@
 
 import sympy as sp
 
-from derive.verification.documents.letters.candidates import Candidate, kind_of
+from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
 
 #: Where angles are measured from, by their offset in right angles.
 ZEROS = {0: "hanging", 1: "the horizontal", -1: "the horizontal", 2: "upright"}
 
 
-def names_of(candidate: Candidate) -> dict[str, str]:
+def names_of(candidate: SystemCandidate) -> dict[str, str]:
     """Letters as formulas in the names of the system, as a file of names states them."""
     own = {letter: name for name, letter in reversed([*candidate.parameters.items()])}
     shifts = [
@@ -21,7 +21,7 @@ def names_of(candidate: Candidate) -> dict[str, str]:
     return dict(zip(candidate.coordinates, texts, strict=True)) | own
 
 
-def convention(candidate: Candidate) -> str:
+def convention(candidate: SystemCandidate) -> str:
     """The letters whose meanings are not the usual ones, in words; "" without any."""
     unusual = [
         f"{letter} = {text}"
@@ -31,7 +31,7 @@ def convention(candidate: Candidate) -> str:
     return ", ".join(unusual) + (_angles(candidate) if _zero(candidate) else "")
 
 
-def difference(candidate: Candidate, other: Candidate) -> str:
+def difference(candidate: SystemCandidate, other: SystemCandidate) -> str:
     """The meanings that another candidate does not have, in words."""
     names, others = names_of(candidate), names_of(other)
     changed = [f"{letter} = {text}" for letter, text in names.items() if others.get(letter) != text]
@@ -41,7 +41,7 @@ def difference(candidate: Candidate, other: Candidate) -> str:
     return ", ".join([*changed, *loads, *missing]) + angles
 
 
-def is_crossed(candidate: Candidate) -> bool:
+def is_crossed(candidate: SystemCandidate) -> bool:
     """Whether a letter with an index has the meaning of one with another index."""
     pairs = (*names_of(candidate).items(), *((b, a) for a, b in candidate.parameters.items()))
     return any(_is_crossed(letter, text) for letter, text in pairs)
@@ -52,19 +52,19 @@ def _is_crossed(letter: str, text: str) -> bool:
     return text.isidentifier() and all(indices) and indices[0] != indices[1]
 
 
-def _zero(candidate: Candidate) -> int:
+def _zero(candidate: SystemCandidate) -> int:
     """The offset of the first angle in right angles."""
     units = [one.unit for one in candidate.system.coordinates]
     offsets = zip(candidate.offsets, units, strict=True)
     return next((o for o, unit in offsets if unit == "rad" and isinstance(o, int)), 0)
 
 
-def _angles(candidate: Candidate) -> str:
+def _angles(candidate: SystemCandidate) -> str:
     has_gravity = any(kind_of(one) == "gravity" for one in candidate.system.parameters)
     return f" (angles from {ZEROS[_zero(candidate)]})" if has_gravity else ""
 
 
-def _loads(candidate: Candidate) -> list[str]:
+def _loads(candidate: SystemCandidate) -> list[str]:
     """Forces and friction in words."""
     forces = [f"{name} acts on {candidate.coordinates[i]}" for name, i in candidate.forces]
     damped = {

@@ -13,9 +13,9 @@ from derive.system.naming import check_name
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
-from derive.verification.documents.letters.candidates import Candidate, Damped
-from derive.verification.documents.letters.constraints import StatedConstraint
+from derive.verification.documents.letters.candidates import Damped, SystemCandidate
 from derive.verification.documents.letters.letters import KINDS
+from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.statements import WORD
 from derive.verification.documents.text import RATES
 
@@ -33,7 +33,7 @@ class Meaning:
     multipliers: Mapping[str, sp.Expr] = field(default_factory=dict)
 
 
-def meaning(candidate: Candidate) -> Meaning:
+def meaning(candidate: SystemCandidate) -> Meaning:
     """The system of a candidate with the document's coordinates and parameters."""
     template = candidate.system
     symbols: dict[str, sp.Symbol] = {}
@@ -120,7 +120,9 @@ def is_length(name: str) -> bool:
     return name.partition("_")[0].rstrip("0123456789") in KINDS["length"]
 
 
-def _conditions(candidate: Candidate, symbols: Mapping[str, sp.Symbol]) -> Iterator[Constraint]:
+def _conditions(
+    candidate: SystemCandidate, symbols: Mapping[str, sp.Symbol]
+) -> Iterator[Constraint]:
     """The constraints that the document states."""
     scope = {**FUNCTIONS, **symbols, "t": TIME}
     scope |= {f"{q}_dot": velocity(symbols[q]) for q in candidate.coordinates}
@@ -128,12 +130,12 @@ def _conditions(candidate: Candidate, symbols: Mapping[str, sp.Symbol]) -> Itera
         yield Constraint(parse(one.text, scope), multiplier(candidate, k))
 
 
-def multiplier(candidate: Candidate, index: int) -> str:
+def multiplier(candidate: SystemCandidate, index: int) -> str:
     """The name of the multiplier of a constraint that the document states."""
     return f"multiplier_{len(candidate.system.conditions) + index + 1}"
 
 
-def _assumptions(candidate: Candidate, index: int) -> dict[str, bool]:
+def _assumptions(candidate: SystemCandidate, index: int) -> dict[str, bool]:
     """Those of a coordinate of the system if that of the document has the same value."""
     for q, signs, offset in zip(
         candidate.system.q, candidate.signs, candidate.offsets, strict=True
@@ -143,7 +145,7 @@ def _assumptions(candidate: Candidate, index: int) -> dict[str, bool]:
     return {"real": True}
 
 
-def _damping(candidate: Candidate, damped: Damped) -> sp.Matrix:
+def _damping(candidate: SystemCandidate, damped: Damped) -> sp.Matrix:
     """The matrix D of friction Q = -b D q' on the document's coordinates, in template symbols."""
     n = len(candidate.coordinates)
     if isinstance(damped, int):
@@ -175,7 +177,7 @@ def derivation(template: System) -> Derivation:
 
 
 def _forces(
-    template: System, candidate: Candidate, values: Mapping[sp.Symbol, sp.Expr]
+    template: System, candidate: SystemCandidate, values: Mapping[sp.Symbol, sp.Expr]
 ) -> list[sp.Expr]:
     """Generalized forces on the document's coordinates: Aᵀ Q with q = A q' + c."""
     applied = [force.xreplace(dict(values)) for force in template.applied]
@@ -183,7 +185,7 @@ def _forces(
     return [sp.Add(*(candidate.signs[j][i] * applied[j] for j in range(n))) for i in range(n)]
 
 
-def _unit(candidate: Candidate, index: int, kinds: Mapping[str, str]) -> str:
+def _unit(candidate: SystemCandidate, index: int, kinds: Mapping[str, str]) -> str:
     names = [*kinds]
     row = next(k for k, signs in enumerate(candidate.signs) if signs[index])
     return kinds[names[row]]

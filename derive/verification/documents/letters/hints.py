@@ -9,9 +9,9 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
-from derive.system.files.tables import Table, read
+from derive.system.files.tables import TomlTable, read
 from derive.system.system import System
-from derive.verification.documents.letters.candidates import Candidate, candidates, kind_of
+from derive.verification.documents.letters.candidates import SystemCandidate, candidates, kind_of
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.templates import named
 from solvers.io.suggestion import did_you_mean
@@ -38,7 +38,7 @@ class Hints:
                     f"{did_you_mean(text, known)}; known are {', '.join(known)}"
                 )
 
-    def candidates(self, letters: Letters) -> Iterator[Sequence[Candidate]]:
+    def candidates(self, letters: Letters) -> Iterator[Sequence[SystemCandidate]]:
         """Yield the candidates that agree with the names."""
         kinds = {p.symbol.name: kind_of(p) for p in self.system.parameters}
         # letters that are spelled as parameters, such as c_1, or as in Fortran, need not be given
@@ -49,10 +49,10 @@ class Hints:
         hinted = {letter: kinds[text] for letter, text in pairs if text in kinds}
         yield [one for one in candidates(self.system, letters.hinted(hinted)) if self._agree(one)]
 
-    def _agree(self, candidate: Candidate) -> bool:
+    def _agree(self, candidate: SystemCandidate) -> bool:
         return all(self._agrees(candidate, letter) for letter in self.names)
 
-    def _agrees(self, candidate: Candidate, letter: str) -> bool:
+    def _agrees(self, candidate: SystemCandidate, letter: str) -> bool:
         value = parse(self.names[letter], self._scope)
         if value in self.system.params:
             return candidate.parameters.get(value.name) == letter
@@ -87,7 +87,7 @@ def hints(system: str | None, names: Path | None) -> Hints | None:
     """
     if names is None:
         return Hints(named(system), {}) if system else None
-    table = Table(str(names), read(names), ("system", "names"))
+    table = TomlTable(str(names), read(names), ("system", "names"))
     name = system or table.text("system")
     path = names.parent / name if name.endswith(".toml") and not system else name
     return Hints(named(path), _texts(table.entries("names").items()))

@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 
-from derive.verification.documents.letters.constraints import multipliers_of, stated_constraints
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -19,6 +18,10 @@ from derive.verification.documents.letters.letters import (
     SQUARES,
     TOTAL,
     Letters,
+)
+from derive.verification.documents.letters.stated_constraints import (
+    multipliers_of,
+    stated_constraints,
 )
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import order, stem

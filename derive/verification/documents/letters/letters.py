@@ -11,7 +11,7 @@ from itertools import product
 from typing import Self
 
 from derive.verification.documents.jets import FUNCTIONS
-from derive.verification.documents.letters.constraints import StatedConstraint
+from derive.verification.documents.letters.stated_constraints import StatedConstraint
 
 #: Names of energies and of the Lagrangian, without their index.
 QUANTITIES: dict[str, str] = {

@@ -12,7 +12,7 @@ from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import (
     UNITS,
-    Candidate,
+    SystemCandidate,
     constrained,
     frictions,
     loads,
@@ -64,7 +64,7 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
             yield system
 
 
-def stated_candidates(system: System, letters: Letters) -> Iterator[Candidate]:
+def stated_candidates(system: System, letters: Letters) -> Iterator[SystemCandidate]:
     """Yield the candidates of a system in the document's own letters: its forces alone vary."""
     names = {symbol.name: name for name in letters.coordinates for symbol in system.q
              if symbol.name == valid_name(name)}  # fmt: skip
@@ -75,7 +75,7 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[Candidate]:
                   if p.name == valid_name(name)}  # fmt: skip
     for forces in loads(letters, "force", n):
         for friction in frictions(letters, n):
-            one = Candidate(system, order, signs, (0,) * n, parameters, forces, friction)
+            one = SystemCandidate(system, order, signs, (0,) * n, parameters, forces, friction)
             yield from constrained(one, letters)
 
 

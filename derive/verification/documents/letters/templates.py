@@ -8,10 +8,10 @@ from pathlib import Path
 import sympy as sp
 from sympy import cos, sin, symbols
 
-from derive.system.catalogue import load
 from derive.system.parts import Coordinate, Parameter, PointMass
 from derive.system.rigid_body import RigidBody
 from derive.system.system import System
+from derive.system.system_catalogue import load
 
 #: Systems that ship and are tried, the commonest first.
 SHIPPED = (

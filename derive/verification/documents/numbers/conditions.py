@@ -8,14 +8,14 @@ import numpy as np
 import sympy as sp
 
 from derive.verification.documents.jets import Array, Jet, Value, evaluated
-from derive.verification.documents.letters.candidates import Candidate
-from derive.verification.documents.letters.constraints import (
+from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.document_system import derivation
+from derive.verification.documents.letters.stated_constraints import (
     StatedConstraint,
     expression_of,
     rate_of,
     symbol,
 )
-from derive.verification.documents.letters.document_system import derivation
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class _Row:
 
 
 def conditions(
-    tried: Sequence[Candidate],
+    tried: Sequence[SystemCandidate],
     names: Mapping[str, Value],
     letters: Mapping[str, Value],
     shape: tuple[int, int],
@@ -86,7 +86,7 @@ def _numbers(text: str, names: Mapping[str, Value], shape: tuple[int, int]) -> A
     return np.broadcast_to(evaluated(text, names).value, shape)
 
 
-def _of_system(candidate: Candidate) -> list[_Row]:
+def _of_system(candidate: SystemCandidate) -> list[_Row]:
     """The constraints of the system in its own names."""
     system, d = candidate.system, derivation(candidate.system)
     if not system.conditions:

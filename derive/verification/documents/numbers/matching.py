@@ -9,9 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from derive.verification.documents.letters.candidates import Candidate
+from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.documents.numbers.motions import ArbitraryMotion, Motions
+from derive.verification.documents.numbers.candidate_motions import (
+    ArbitraryMotion,
+    CandidateMotions,
+)
 from derive.verification.documents.numbers.numbers import Derivatives, Numbers
 from derive.verification.documents.statements import DocumentFormula
 
@@ -34,7 +37,7 @@ Comparison = tuple[int, str]
 class Match:
     """A candidate, how many comparisons hold with it, and how many were possible."""
 
-    candidate: Candidate
+    candidate: SystemCandidate
     holding: float
     compared: int
     #: Numbers of formulas that do not hold, and whether each holds but for one term.
@@ -69,7 +72,7 @@ def trivial_comparisons(
 
 
 def best_matches(
-    tried: Sequence[Candidate],
+    tried: Sequence[SystemCandidate],
     letters: Letters,
     formulas: Sequence[DocumentFormula],
     derivatives: Derivatives,
@@ -82,7 +85,7 @@ def best_matches(
     """
     if not tried:
         return []
-    numbers = Numbers(Motions(tried, letters), letters, derivatives)
+    numbers = Numbers(CandidateMotions(tried, letters), letters, derivatives)
     numbers.define(formulas)
     votes = [
         (index, side, vote)

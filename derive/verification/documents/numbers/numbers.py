@@ -7,7 +7,10 @@ from numpy.typing import NDArray
 
 from derive.verification.documents.jets import Array, Jet, UnknownNameError, Value, evaluated
 from derive.verification.documents.letters.letters import MATRICES, Letters
-from derive.verification.documents.numbers.motions import ArbitraryMotion, Motions
+from derive.verification.documents.numbers.candidate_motions import (
+    ArbitraryMotion,
+    CandidateMotions,
+)
 from derive.verification.documents.numbers.single_mistakes import is_near
 from derive.verification.documents.statements import DocumentFormula, definitions
 from derive.verification.documents.text import RATES, order, stem
@@ -29,7 +32,10 @@ class Numbers:
     """Values of a document's names for several candidates of one system."""
 
     def __init__(
-        self, motions: Motions | ArbitraryMotion, letters: Letters, derivatives: Derivatives
+        self,
+        motions: CandidateMotions | ArbitraryMotion,
+        letters: Letters,
+        derivatives: Derivatives,
     ) -> None:
         self._letters, self._motions = letters, motions
         self._definitions: dict[str, str] = {}

@@ -4,20 +4,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 from derive.verification.documents.jets import UnknownNameError, evaluated
-from derive.verification.documents.letters.candidates import Candidate
+from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import OPERATORS, Letters
-from derive.verification.documents.numbers.motions import Motions
+from derive.verification.documents.numbers.candidate_motions import CandidateMotions
 from derive.verification.documents.numbers.numbers import Numbers
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import RATES
-from derive.verification.notation import FACTORS
+from derive.verification.system_names import FACTORS
 
 #: Unknown letters of a formula that are sought at once, and comparisons that must hold.
 MAX_UNKNOWN, SUPPORT = 2, 2
 
 
 def resolved(
-    candidate: Candidate,
+    candidate: SystemCandidate,
     letters: Letters,
     formulas: Sequence[DocumentFormula],
     derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
@@ -27,7 +27,7 @@ def resolved(
     A meaning is accepted if at least two comparisons and more than half of them hold with it, so
     that a mistake in a single letter is not taken for another letter.
     """
-    numbers = Numbers(Motions([candidate], letters), letters, derivatives)
+    numbers = Numbers(CandidateMotions([candidate], letters), letters, derivatives)
     meanings: dict[str, str] = {}
     used = {
         *candidate.parameters.values(),
@@ -63,7 +63,7 @@ def resolved(
         numbers.define(formulas)
 
 
-def _aliases(names: Sequence[str], candidate: Candidate) -> Iterator[dict[str, str]]:
+def _aliases(names: Sequence[str], candidate: SystemCandidate) -> Iterator[dict[str, str]]:
     """Other letters with the same indices as the coordinates, such as phi_1 for theta_1."""
     indexed = {q.partition("_")[2]: q for q in candidate.coordinates}
     for letter in dict.fromkeys(name.partition("_")[0] for name in names):
@@ -114,7 +114,7 @@ def _unknown(formula: DocumentFormula, numbers: Numbers) -> tuple[str, ...]:
 def _meaning(
     names: tuple[str, ...],
     formulas: Sequence[DocumentFormula],
-    candidate: Candidate,
+    candidate: SystemCandidate,
     numbers: Numbers,
 ) -> dict[str, str] | None:
     pool = [*_pool(candidate)]
@@ -145,7 +145,7 @@ def _meaning(
     return None
 
 
-def _pool(candidate: Candidate) -> Iterator[str]:
+def _pool(candidate: SystemCandidate) -> Iterator[str]:
     """Quantities that a letter can stand for."""
     for signs, offset in zip(candidate.signs, candidate.offsets, strict=True):
         terms = [q for q, sign in zip(candidate.coordinates, signs, strict=True) if sign]
@@ -159,7 +159,7 @@ def _pool(candidate: Candidate) -> Iterator[str]:
     yield from dict.fromkeys(candidate.parameters.values())
 
 
-def _reactions(candidate: Candidate, numbers: Numbers) -> Iterator[str]:
+def _reactions(candidate: SystemCandidate, numbers: Numbers) -> Iterator[str]:
     """Forces that a letter can stand for: multipliers, times or over a letter."""
     letters = {word for one in candidate.constraints for word in WORD.findall(one.text)}
     letters &= {*numbers.parameters}

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from derive.reading.document import Document
 from derive.verification.documents.pages.latex_notes import latex_notes
-from derive.verification.documents.pages.page import page
+from derive.verification.documents.pages.verdict_page import page
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
 from solvers.io.atomic_write import write_text
 from solvers.io.toml_input import InputError

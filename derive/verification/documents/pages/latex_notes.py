@@ -8,7 +8,7 @@ from typing import get_args
 
 from derive.reading.document import Display, Document
 from derive.reading.formats.tex import BODY
-from derive.reading.latex.reader import Macro, macros_of
+from derive.reading.latex.display_reader import Macro, macros_of
 from derive.verification.documents.pages.latex_text import COMMANDS, code, escaped, formula
 from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
 from derive.verification.verdict import VerdictName

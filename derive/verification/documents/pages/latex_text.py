@@ -6,7 +6,7 @@ from string import ascii_letters
 from unicodedata import normalize
 
 from derive.formulas.typeset.lettering import GREEK
-from derive.reading.latex.reader import Macro, formulas
+from derive.reading.latex.display_reader import Macro, formulas
 from derive.reading.latex.tree import Statement
 from derive.verification.documents.pages.verdicts_in_place import one_line
 

@@ -29,7 +29,7 @@ from derive.reading.latex.tree import (
     Transpose,
     Tuple,
 )
-from derive.verification.documents.pages.symbols import letter_and_index, raised, symbol
+from derive.verification.documents.pages.letter_mathml import letter_and_index, raised, symbol
 
 RELATIONS = {":=": "≔", "~": "≈", "<=": "≤", ">=": "≥", "!=": "≠", "->": "→", "in": "∈"}
 FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "sign": "sgn", "log": "ln"}

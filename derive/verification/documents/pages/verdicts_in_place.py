@@ -59,7 +59,7 @@ class JudgedFormula:
 
 
 @dataclass(frozen=True)
-class Difference:
+class VerdictDifference:
     """A formula with another verdict or another correction if letters have another meaning.
 
     `instead_of` is its verdict in the document.
@@ -103,7 +103,7 @@ class Alternative:
     name: str
     names: Mapping[str, str]
     convention: str
-    differences: tuple[Difference, ...]
+    differences: tuple[VerdictDifference, ...]
 
     @property
     def text(self) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.verification.documents.statements import WORD, DocumentFormula
-from derive.verification.documents.text import Text
+from derive.verification.documents.text import FormulaText
 
 
 def without_unknown_terms(
@@ -23,7 +23,7 @@ def without_unknown_terms(
     if any(name in WORD.findall(text) for text in texts for name in unknown):
         return None
     relations = formula.relations[: len(texts) - 1]
-    return replace(formula, sides=tuple(map(Text, texts)), relations=relations)
+    return replace(formula, sides=tuple(map(FormulaText, texts)), relations=relations)
 
 
 def _reduced(node: ast.expr, unknown: Collection[str]) -> ast.expr | None:

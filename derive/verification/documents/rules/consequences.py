@@ -11,7 +11,7 @@ from derive.verification.documents.rules.known_values import DocumentScope
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.engine import joined
-from derive.verification.model import time_derivative
+from derive.verification.reference_system import time_derivative
 
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")

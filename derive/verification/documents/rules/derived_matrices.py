@@ -10,7 +10,7 @@ from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.entries import ENTRY
 from derive.verification.documents.rules.known_values import DocumentScope
-from derive.verification.documents.rules.small_motions import Linear
+from derive.verification.documents.rules.small_motions import SmallMotions
 
 #: Entries that a matrix must have, row by row; None for one that is correct.
 Required = Sequence[sp.Expr | None]
@@ -24,7 +24,7 @@ class DerivedMatrices:
     correct value.
     """
 
-    def __init__(self, scope: DocumentScope, linear: Linear) -> None:
+    def __init__(self, scope: DocumentScope, linear: SmallMotions) -> None:
         self._scope, self._linear = scope, linear
         self._known: dict[tuple[int, int], list[sp.Matrix]] = {}
         names = [name for name, (formula, _) in scope.defining.items() if formula.subject == name]

@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.evaluation.sampling import is_small
+from derive.formulas.evaluation.generic_values import is_small
 from derive.formulas.expression import Value, parse
 from derive.formulas.proofs.zero import vanishes
 from derive.formulas.syntax import ExpressionError
@@ -19,8 +19,13 @@ from derive.verification.documents.letters.entries import composed
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 from derive.verification.documents.text import RATES, stem
-from derive.verification.model import Model, depends_on, own_names, time_derivative
-from derive.verification.notation import usual_names, with_multipliers
+from derive.verification.reference_system import (
+    ReferenceSystem,
+    depends_on,
+    own_names,
+    time_derivative,
+)
+from derive.verification.system_names import usual_names, with_multipliers
 
 #: Generalized forces, such as Q_theta.
 FORCE = re.compile(r"[QF]_(\w+)\Z")
@@ -74,10 +79,10 @@ class DocumentScope:
         self.special_values = self._special_values(formulas)
         equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
         if meaning.multipliers:
-            self.model = Model(self.derivation, self.names)
+            self.model = ReferenceSystem(self.derivation, self.names)
             return
         others = {name: value for name, value in self.names.items() if name not in own}
-        self.model = with_multipliers(Model(self.derivation, others), equations)
+        self.model = with_multipliers(ReferenceSystem(self.derivation, others), equations)
         self.names = dict(self.model.names)
 
     @property
@@ -93,7 +98,7 @@ class DocumentScope:
         """Give names the values that they must have, whatever the document defines them to be."""
         for name, value in values.items():
             self._set(name, value)
-        self.model = Model(self.derivation, self.names)
+        self.model = ReferenceSystem(self.derivation, self.names)
 
     def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
         """Parameters in statements such as m = l = 1."""

@@ -11,8 +11,8 @@ from derive.formulas.syntax import ExpressionError, is_sum, python_source, summa
 from derive.verification.documents.rules.known_values import DocumentScope
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
-from derive.verification.documents.rules.small_motions import Linear
-from derive.verification.documents.text import Text
+from derive.verification.documents.rules.small_motions import SmallMotions
+from derive.verification.documents.text import FormulaText
 from derive.verification.verdict import Correction, Verdict
 
 #: The name that stands for a part, and operations of the largest formula that is solved for one.
@@ -24,11 +24,16 @@ MAX_DENOMINATOR = 100
 class MatrixTerms:
     """Seeks the one part of a side with which all rows of a formula hold."""
 
-    def __init__(self, scope: DocumentScope, linear: Linear, roles: Roles) -> None:
+    def __init__(self, scope: DocumentScope, linear: SmallMotions, roles: Roles) -> None:
         self._scope, self._linear, self._roles = scope, linear, roles
 
     def verdict(
-        self, first: Text, side: Text, left: sp.MatrixBase, right: sp.MatrixBase, witness: str
+        self,
+        first: FormulaText,
+        side: FormulaText,
+        left: sp.MatrixBase,
+        right: sp.MatrixBase,
+        witness: str,
     ) -> SideVerdict | None:
         """The verdict with the correction of a part; None if no part alone is wrong."""
         for one, other in ((side, left), (first, right)):
@@ -40,7 +45,13 @@ class MatrixTerms:
         return None
 
     def _of_part(
-        self, one: Text, start: int, end: int, is_whole: bool, other: sp.MatrixBase, witness: str
+        self,
+        one: FormulaText,
+        start: int,
+        end: int,
+        is_whole: bool,
+        other: sp.MatrixBase,
+        witness: str,
     ) -> SideVerdict | None:
         part, unknown = one.part(start, end), sp.Symbol(PART)
         own = self._scope.value(part.text)

@@ -13,22 +13,24 @@ from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.system.symbols import TIME
 from derive.verification.documents.rules.known_values import DocumentScope
 from derive.verification.documents.rules.side_verdict import SideVerdict
-from derive.verification.documents.rules.small_motions import Linear
+from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import WORD
-from derive.verification.documents.text import Text, order, stem
+from derive.verification.documents.text import FormulaText, order, stem
 from derive.verification.engine import joined
-from derive.verification.model import Model, depends_on
-from derive.verification.quantities import judge_formula
+from derive.verification.quantity_verdicts import judge_formula
+from derive.verification.reference_system import ReferenceSystem, depends_on
 from derive.verification.verdict import Correction, Verdict
 
 
 class Roles:
     """Verdicts of the judging engine, with corrections in the names of a side."""
 
-    def __init__(self, scope: DocumentScope, linear: Linear) -> None:
+    def __init__(self, scope: DocumentScope, linear: SmallMotions) -> None:
         self._scope, self._model, self._linear = scope, scope.model, linear
 
-    def judged(self, first: Text, side: Text, left: Value, right: Value) -> SideVerdict:
+    def judged(
+        self, first: FormulaText, side: FormulaText, left: Value, right: Value
+    ) -> SideVerdict:
         """The verdict on a side that is not equal to the first one."""
         system, subject = self._scope.derivation.system, first.text
         letters = self._scope.letters
@@ -69,7 +71,7 @@ class Roles:
                 return result
         return self.equation(first, side)
 
-    def _relates_energies(self, subject: str, side: Text) -> bool:
+    def _relates_energies(self, subject: str, side: FormulaText) -> bool:
         """Whether a side states H, or another energy by H, where this is not T + V."""
         quantities, d = self._scope.letters.quantities, self._scope.derivation
         words = (subject, *WORD.findall(side.text))
@@ -77,7 +79,9 @@ class Roles:
         has_hamiltonian = any(quantities.get(word) == "hamiltonian" for word in words)
         return has_hamiltonian and not self._model.context.is_small(total - d.energy)
 
-    def _energy(self, side: Text, subject: str, left: sp.Expr, right: sp.Expr) -> SideVerdict:
+    def _energy(
+        self, side: FormulaText, subject: str, left: sp.Expr, right: sp.Expr
+    ) -> SideVerdict:
         """The verdict on an energy that must be that of the document up to a constant."""
         system = self._scope.derivation.system
         rates = [(right - left).diff(s) for s in (*system.q, *system.qdot, TIME)]
@@ -86,7 +90,7 @@ class Roles:
         note = joined("it differs by a constant", note)
         return SideVerdict(Verdict("", "equivalent", side.text, note=note), ((0, side),), "energy")
 
-    def _inside_rate(self, first: Text, side: Text) -> SideVerdict | None:
+    def _inside_rate(self, first: FormulaText, side: FormulaText) -> SideVerdict | None:
         """The verdict on a wrong momentum whose rate is taken, if there is one."""
         system, names = self._scope.derivation.system, self._scope.all_names
         for one, other in ((first, side), (side, first)):
@@ -104,19 +108,21 @@ class Roles:
                             return SideVerdict(verdict, ((0, inner),), "momenta")
         return None
 
-    def _is_relation(self, first: Text) -> bool:
+    def _is_relation(self, first: FormulaText) -> bool:
         """Whether a side contains coordinates, velocities and parameters alone."""
         values = [self._scope.all_names[word] for word in WORD.findall(first.text)]
         return all(one.is_Symbol for one in values if isinstance(one, Value))
 
-    def equation(self, first: Text, side: Text) -> SideVerdict:
+    def equation(self, first: FormulaText, side: FormulaText) -> SideVerdict:
         """The verdict on an equation of motion."""
         text = f"{first.text} = {side.text}"
         verdict = judge_formula(self._model_of(first, side), "", text, "euler_lagrange")
         verdict = replace(verdict, corrections=self._in_place(verdict.corrections, first))
         return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
 
-    def _in_place(self, corrections: tuple[Correction, ...], side: Text) -> tuple[Correction, ...]:
+    def _in_place(
+        self, corrections: tuple[Correction, ...], side: FormulaText
+    ) -> tuple[Correction, ...]:
         """A missing term in place of one that vanishes, such as that with sin(q1 - q1)."""
         if len(corrections) != 1 or corrections[0].wrong:
             return corrections
@@ -126,7 +132,7 @@ class Roles:
                 return (Correction(f"-{text}" if sign < 0 else text, corrections[0].correct),)
         return corrections
 
-    def value(self, side: Text, name: str, value: sp.Expr) -> SideVerdict:
+    def value(self, side: FormulaText, name: str, value: sp.Expr) -> SideVerdict:
         """The verdict on a side that must have a value, to which a name is given."""
         name = name if name.isidentifier() else "left_side"
         model = self._model_of(side)
@@ -135,9 +141,9 @@ class Roles:
             judge_formula(model, "", side.text, "value", name), ((0, side),), "value"
         )
 
-    def _model_of(self, *sides: Text | str) -> Model:
+    def _model_of(self, *sides: FormulaText | str) -> ReferenceSystem:
         """The model with the names of these sides alone, in which corrections are written."""
-        texts = [one.text if isinstance(one, Text) else one for one in sides]
+        texts = [one.text if isinstance(one, FormulaText) else one for one in sides]
         words = {word for text in texts for word in WORD.findall(text)}
         words |= {f"p_{word}" for word in words}
         names = {name: value for name, value in self._scope.names.items() if name in words}

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.verification.documents.statements import DocumentFormula
-from derive.verification.documents.text import Text
+from derive.verification.documents.text import FormulaText
 from derive.verification.verdict import Verdict
 
 #: Verdicts on formulas that are correct.
@@ -16,7 +16,9 @@ class SideVerdict:
     """The verdict on a side of a formula, with the place of each of its characters."""
 
     verdict: Verdict
-    parts: tuple[tuple[int, Text], ...]  # the sides within the judged text, and where they start
+    parts: tuple[
+        tuple[int, FormulaText], ...
+    ]  # the sides within the judged text, and where they start
     kind: str
     is_understood: bool = True  # all its letters have a meaning
 

@@ -7,20 +7,20 @@ import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
-from derive.verification.model import Model
+from derive.verification.reference_system import ReferenceSystem
 
 #: Coordinates of the largest systems whose accelerations are solved for.
 MAX_INVERSE = 3
 EPSILON = sp.Symbol("epsilon", positive=True)
 
 
-class Linear:
+class SmallMotions:
     """The linearised equations of motion of a derivation, with forces that are small, too."""
 
     def __init__(self, derivation: Derivation) -> None:
         self._derivation = derivation
 
-    def agrees(self, difference: sp.Expr, model: Model) -> bool:
+    def agrees(self, difference: sp.Expr, model: ReferenceSystem) -> bool:
         """Whether a difference vanishes to first order at the origin."""
         scaled = self._scaled(difference)
         try:
@@ -29,7 +29,9 @@ class Linear:
         except (ExpressionError, NotImplementedError):
             return False
 
-    def holds(self, difference: sp.Expr, model: Model, *, is_displaced: bool = False) -> bool:
+    def holds(
+        self, difference: sp.Expr, model: ReferenceSystem, *, is_displaced: bool = False
+    ) -> bool:
         """Whether a difference that is linear in the state vanishes along small motions.
 
         With `is_displaced`, coordinates in it are displacements from the equilibrium.

@@ -1,0 +1,139 @@
+"""``holonomic derive``: write the generated modules, or check that they are up to date."""
+
+import sys
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from shlex import quote
+
+from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
+from derive.codegen.generated_folder import FileDifference, GeneratedFiles
+from derive.codegen.module_files import texts
+from derive.codegen.module_summary import mobility
+from derive.commands import write_document
+from derive.commands.derive_options import add_arguments
+from derive.mechanics.constraints.differentiated_constraints import Constraints
+from derive.mechanics.derivation import Derivation
+from derive.mechanics.reduced_coordinates import reduced
+from derive.system.parts import SystemDefinitionError
+from derive.system.shipped import names
+from derive.system.system_catalogue import UnknownSystemError, load
+from solvers.io.terminal import standard_streams
+
+PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""
+
+
+__all__ = [
+{names}
+]
+'''
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run ``python -m derive`` with command-line arguments."""
+    parser = ArgumentParser("holonomic derive", formatter_class=RawDescriptionHelpFormatter)
+    add_arguments(parser)
+    try:
+        with standard_streams():
+            return run(parser.parse_args(argv))
+    except BrokenPipeError:  # the reader needs no more
+        return 0
+    except OSError as error:
+        print(f"holonomic derive: {error}", file=sys.stderr)
+        return 4
+
+
+def run(arguments: Namespace, others: Iterable[GeneratedFiles] = ()) -> int:
+    """Run the command, also on `others`; return 0, 1 (differences), 2 (input) or 4 (files)."""
+    try:
+        if write_document.is_requested(arguments):
+            return write_document.run(arguments)
+        trees = [planned(arguments.systems, arguments.output), *others]
+        if not arguments.check:
+            _state(arguments.systems)
+        return max([_check(tree, arguments) if arguments.check else _write(tree) for tree in trees])
+    except (UnknownSystemError, SystemDefinitionError, UnsupportedFunctionError) as error:
+        print(f"holonomic derive: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        print(
+            f"holonomic derive: cannot write {error.filename or 'the messages'}: {error.strerror}; "
+            f"name a {'file' if arguments.document else 'folder'} that can be written to with "
+            f"{'--document' if arguments.document else '--output'}",
+            file=sys.stderr,
+        )
+        return 4
+
+
+def _state(systems: list[str]) -> None:
+    """Print degrees of freedom, and the decisions on constraints of velocities."""
+    for name in systems:
+        if (system := reduced(load(name))).all_conditions:
+            print(f"{name}: {mobility(Derivation(system))}")
+        if decision := str(Constraints(load(name)).integrability):
+            print(f"{name}: constraints of velocities: {decision}")
+
+
+def _write(tree: GeneratedFiles) -> int:
+    written = tree.write()
+    kept = len(tree.texts) - len(written)
+    for path in written:
+        print(f"wrote {path}")
+    if kept:
+        print(f"{_files(kept)} in {tree.folder} already up to date")
+    for path in tree.orphans():
+        print(f"nothing generates {path}; remove it with: {_removal(path)}")
+    return 0
+
+
+def planned(systems: list[str], output: Path | None) -> GeneratedFiles:
+    """The files that the command writes to a folder."""
+    files: dict[str, str] = {}
+    for name in systems or names():
+        system = load(name)
+        if output is None and name not in names():
+            raise SystemDefinitionError(
+                f"{name} is not part of the package generated: give a folder for its module, "
+                "with --output DIR"
+            )
+        files |= texts(Derivation(reduced(system)))
+    if output is not None:
+        return GeneratedFiles(output, files, complete=False)
+    modules = "\n".join(f'    "{name}",' for name in names())
+    files |= {"__init__.py": PACKAGE.format(names=modules), "py.typed": ""}
+    return GeneratedFiles(_package_folder(), files, complete=not systems)
+
+
+def _package_folder() -> Path:
+    # beside `derive`, whether or not it can be imported
+    return Path(__file__).parents[2] / "generated"
+
+
+def _check(tree: GeneratedFiles, arguments: Namespace) -> int:
+    differences = tree.differences()
+    for difference in differences:
+        print(f"{difference.path}: {difference.reason}")
+        print(difference.diff, end="")
+        print(f"  to update it: {_remedy(difference, arguments)}")
+    if not differences:
+        print(f"{_files(len(tree.texts))} in {tree.folder} up to date")
+    return 1 if differences else 0
+
+
+def _files(count: int) -> str:
+    return "1 file" if count == 1 else f"{count} files"
+
+
+def _removal(path: Path) -> str:
+    return f"rm {'-r ' if path.is_dir() else ''}{quote(str(path))}"
+
+
+def _remedy(difference: FileDifference, arguments: Namespace) -> str:
+    if difference.reason == "orphan":
+        return _removal(difference.path)
+    stem = difference.path.stem
+    systems = [name for name in arguments.systems or names() if Path(name).stem == stem]
+    output = ["--output", quote(str(arguments.output))] if arguments.output else []
+    return " ".join(["holonomic", "derive", *systems, *output])

@@ -1,0 +1,183 @@
+r"""The statements of a display in LaTeX.
+
+    tokens → without macros → without layout → statements → sides → symbols → syntax trees
+
+Implicit products, and functions without brackets, are read by these rules:
+
+- The bare argument of a function holds numbers and Latin letters up to and including the first
+  Greek letter, and a ``t`` behind it: ``\sin 2\theta l`` is sin(2θ) l, ``\cos\omega t`` is cos(ωt).
+  Without a Greek letter it ends with the first ``t``; several Latin letters without either are
+  ambiguous, unless no space is between them as in ``\sin kx``. It ends before letters with dots,
+  functions, fractions, roots and brackets, unless it starts with one of these. An exponent belongs
+  to the letter before it: ``\sin\theta^2`` is sin(θ²), ``\sin(\theta)^2`` is sin(θ)².
+- A letter before round brackets is an ``Application``, also with an exponent behind the brackets:
+  ``m(x + y)^2`` is the power of an application. Behind a bare argument brackets are a factor.
+- A slash divides the factor before it by the factor behind it. A number behind it takes the
+  factors that follow without a space: ``p^2/2m`` is p²/(2m), but ``1/2m`` is (1/2) m. ``k/mx`` and
+  ``\sin\theta/2`` are ambiguous.
+- A derivative without an operand, d/dt, applies to the brackets behind it, or else to the rest of
+  the term; so does a sum.
+
+The span of an expression in brackets includes the brackets.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from derive.reading.latex.grammar.build import Build
+from derive.reading.latex.grammar.terminals import Terminals
+from derive.reading.latex.grammar.written_nodes import Symbol
+from derive.reading.latex.layout.layout_removal import Layout
+from derive.reading.latex.layout.macro_expansion import expanded
+from derive.reading.latex.layout.macros import Macro, macros_of
+from derive.reading.latex.layout.pairs import pairs
+from derive.reading.latex.layout.rows import flattened, statements
+from derive.reading.latex.layout.spellings import with_new_fonts, with_unicode_scripts
+from derive.reading.latex.layout.tokens import Token, UnreadError, tokenize
+from derive.reading.latex.tree import Letter, Node, Span, Statement, Unreadable
+
+__all__ = ["Macro", "formulas", "macros_of"]
+
+#: Characters of a display.
+MAX_LENGTH = 100_000
+#: Nodes within nodes.
+MAX_TREE_DEPTH = 200
+
+
+def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | Unreadable]:
+    r"""The statements of a display, in order.
+
+    Parameters
+    ----------
+    latex
+        The text between the delimiters of the display. It may contain environments such as
+        ``aligned``.
+    macros
+        Macros of the document, of `macros_of`; definitions in the display are added.
+
+    Returns
+    -------
+    list
+        Statements, and in the place of each that cannot be read the reason. Of a chain with an
+        unreadable side the other sides are a statement.
+
+    Raises
+    ------
+    OSError
+        If lark is not installed.
+    """
+    whole = 0, len(latex)
+    if len(latex) > MAX_LENGTH:
+        return [Unreadable(f"a display of more than {MAX_LENGTH} characters", whole)]
+    try:
+        tokens = expanded(latex, tokenize(latex), macros)
+        pairs(tokens)  # refuses deep braces before anything descends into them
+        tokens = with_new_fonts(with_unicode_scripts(tokens))
+        tokens = Layout(tokens).tokens_without_layout()
+        found = statements(flattened(tokens))
+    except UnreadError as error:
+        return [Unreadable(str(error), whole)]
+    result: list[Statement | Unreadable] = []
+    for statement in found:
+        result += _read(latex, statement)
+    return result
+
+
+def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
+    """A statement without its unreadable sides, and these."""
+    sides, relations = _sides(tokens)
+    whole = _span(tokens, (0, len(latex)))
+    nodes: list[Node] = []
+    kept: list[str] = []
+    failures: list[Unreadable] = []
+    for number, side in enumerate(sides):
+        try:
+            tree = _tree(side)
+        except UnreadError as error:
+            failures.append(Unreadable(str(error), _span(side, whole)))
+        else:
+            if nodes:
+                kept.append(relations[number - 1])
+            nodes.append(tree)
+    if not failures:
+        yield Statement(tuple(nodes), tuple(kept), whole)
+    elif len(nodes) > 1 and set(relations) <= {"=", ":="}:
+        yield Statement(tuple(nodes), tuple(kept), whole)
+        yield from failures
+    else:
+        yield Unreadable(failures[0].reason, whole)
+
+
+def _sides(tokens: list[Token]) -> tuple[list[list[Token]], list[str]]:
+    partner = pairs(tokens)
+    sides: list[list[Token]] = [[]]
+    relations = []
+    at = 0
+    while at < len(tokens):
+        end = max(at, partner.get(at, at))
+        if tokens[at].kind == "relation":
+            relations.append(tokens[at].text)
+            sides.append([])
+        else:
+            sides[-1] += tokens[at : end + 1]
+        at = end + 1
+    return sides, relations
+
+
+def _span(tokens: list[Token], whole: Span) -> Span:
+    tokens = [token for token in tokens if token.kind not in ("space", "gap")]
+    if not tokens:
+        return whole
+    return min(t.span[0] for t in tokens), max(t.span[1] for t in tokens)
+
+
+def _tree(tokens: list[Token]) -> Node:
+    if all(token.kind in ("space", "gap") for token in tokens):
+        raise UnreadError("a side of a relation is missing")
+    lark, parser = _parser()
+    try:
+        parse = parser.parse_interactive("")
+        for symbol in Terminals(tokens).all():
+            parse.feed_token(symbol)
+        tree = parse.feed_token(Symbol("$END", "", (0, 0)))
+    except lark.UnexpectedToken as error:
+        raise UnreadError(_unexpected(error.token, tokens)) from error
+    _check(tree)
+    return tree
+
+
+def _unexpected(symbol: Any, tokens: list[Token]) -> str:
+    if symbol.type == "$END":
+        return "the expression ends too early"
+    text = next((t.text for t in tokens if t.span[0] == symbol.span[0]), "")
+    return f"{text or symbol.type.lower()!r} cannot stand here"
+
+
+def _check(tree: Node) -> None:
+    """Refuse a tree that is too deep, or has a ∂ outside of derivatives."""
+    waiting: list[tuple[Any, int]] = [(tree, 0)]
+    while waiting:
+        item, depth = waiting.pop()
+        if depth > MAX_TREE_DEPTH:
+            raise UnreadError(f"more than {MAX_TREE_DEPTH} expressions within one another")
+        if isinstance(item, Letter):
+            if item.name == "partial":
+                raise UnreadError("∂ outside of a derivative")
+        elif isinstance(item, tuple):
+            waiting += [(part, depth) for part in item]
+        elif is_dataclass(item):
+            waiting += [(getattr(item, f.name), depth + 1) for f in fields(item)]
+
+
+@cache
+def _parser() -> tuple[Any, Any]:
+    """The parsing library and the parser of the grammar."""
+    try:
+        import lark
+    except ImportError as error:
+        raise OSError("lark is not installed: pip install 'holonomic[documents]'") from error
+    grammar = (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8")
+    return lark, lark.Lark(grammar, parser="lalr", lexer="basic", transformer=Build())

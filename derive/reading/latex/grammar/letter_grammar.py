@@ -1,0 +1,166 @@
+r"""Letters with their accents, indices and primes."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from derive.reading.latex.grammar.function_commands import SPELLED, function_at
+from derive.reading.latex.layout.command_arguments import Arguments
+from derive.reading.latex.layout.latex_symbols import (
+    ACCENTS,
+    BOLD,
+    ELLIPSES,
+    FONTS,
+    GREEK,
+    LETTERS,
+    MARKS,
+)
+from derive.reading.latex.layout.tokens import Token, UnreadError
+from derive.reading.latex.tree import Letter
+
+
+class LetterTokens(Arguments):
+    """Tokens in which letters are found."""
+
+    is_bold = False  # whether a font around the tokens makes letters bold
+
+    def letter(self, at: int, end: int) -> tuple[Letter, int, int] | None:
+        """The letter at a place, the token after it, and where an exponent before its index is.
+
+        In ``x^2_1`` the exponent stands between the letter and its index; otherwise its place is 0.
+        """
+        found = self._base(at, end)
+        if found is None:
+            return None
+        letter, at = found
+        raised = 0
+        while at < end:
+            script = self.skip(at, end)
+            if [token.kind for token in self.tokens[script : script + 2]] == ["{", "}"]:
+                script = self.skip(script + 2, end)  # x{}_1
+            kind = self.kind(script, end)
+            if kind == "_":
+                start, stop, at = self.argument(script + 1, end)
+                letter = _with_index(letter, self.tokens[start:stop])
+                if self.kind(at, end) == "digit" and self.tokens[at - 1].kind == "digit":
+                    raise UnreadError("a digit behind an index without braces")
+            elif kind == "'":
+                at = script + 1
+                letter = replace(letter, primes=letter.primes + 1)
+            elif kind == "^" and not raised:
+                start, stop, after = self.argument(script + 1, end)
+                marks = self.texts(start, stop)
+                if marks and set(marks) <= {"prime", "'"}:
+                    letter = replace(letter, primes=letter.primes + len(marks))
+                elif self.kind(self.skip(after, end), end) == "_":
+                    raised = script
+                else:
+                    break
+                at = after
+            else:
+                break
+            letter = replace(letter, span=(letter.span[0], self.tokens[at - 1].span[1]))
+        return letter, at, raised
+
+    def _base(self, at: int, end: int) -> tuple[Letter, int] | None:
+        """A letter without scripts, and the token after it."""
+        token = self.tokens[at]
+        if token.kind == "{":
+            return self._in_braces(at, end)
+        if spelled := self._spelled(at, end):
+            return spelled
+        if token.kind in ("letter", "word"):
+            return Letter(token.text, token.span, is_bold=self.is_bold), at + 1
+        if token.kind != "command":
+            return None
+        if token.text in GREEK or token.text in LETTERS:
+            return Letter(token.text, token.span, is_bold=self.is_bold), at + 1
+        if token.text in ELLIPSES:
+            return Letter("dots", token.span), at + 1
+        return self._accented(at, end)
+
+    def _accented(self, at: int, end: int) -> tuple[Letter, int] | None:
+        """A letter in the argument of an accent or a font."""
+        token = self.tokens[at]
+        if token.text not in ACCENTS and token.text not in MARKS and token.text not in FONTS:
+            return None
+        start, stop, after = self.argument(at + 1, end)
+        inner = self._alone(start, stop)
+        if inner is None:
+            return None
+        letter = replace(inner, span=(token.span[0], self.tokens[after - 1].span[1]))
+        if token.text in ACCENTS:
+            letter = replace(letter, dots=letter.dots + ACCENTS[token.text])
+        elif token.text in MARKS:
+            letter = replace(letter, name=letter.name + MARKS[token.text])
+        elif token.text in BOLD:
+            letter = replace(letter, is_bold=True)
+        return letter, after
+
+    def _alone(self, start: int, stop: int) -> Letter | None:
+        """The letter that tokens are, with nothing beside it but braces."""
+        start = self.skip(start, stop)
+        if start >= stop or function_at(self.tokens, start, stop):
+            return None
+        with self.deeper():
+            if self.tokens[start].kind == "{" and self.partner.get(start, 0) == stop - 1:
+                return self._alone(start + 1, stop - 1)
+            found = self.letter(start, stop)
+        if found is None or found[2] or self.skip(found[1], stop) != stop:
+            return None
+        return found[0]
+
+    def _in_braces(self, at: int, end: int) -> tuple[Letter, int] | None:
+        r"""A letter in braces before an index or a prime, as in ``{\theta}_1``."""
+        if at not in self.partner or self.kind(self.partner[at] + 1, end) not in ("_", "'"):
+            return None
+        after = self.partner[at] + 1
+        letter = self._alone(at + 1, after - 1)
+        return None if letter is None else (replace(letter, span=self.tokens[at].span), after)
+
+    def _spelled(self, at: int, end: int) -> tuple[Letter, int] | None:
+        """A name such as ``t1`` or ``td2``, as in programs, with its digits as the index."""
+        tokens = self.tokens
+        if tokens[at].text in GREEK:
+            stop = at + 1
+        elif at and tokens[at - 1].kind == "letter":
+            return None
+        else:
+            stop = at
+            while self.kind(stop, end) == "letter":
+                stop += 1
+        last = stop
+        while self.kind(last, end) == "digit":
+            last += 1
+        run = "".join(token.text for token in tokens[at:stop])
+        if run == "const":
+            return Letter(run, (tokens[at].span[0], tokens[stop - 1].span[1])), stop
+        if stop in (at, last) or SPELLED.search(run):
+            return None
+        name, index = run, "".join(token.text for token in tokens[stop:last])
+        if name in ("e", "E") and at and tokens[at - 1].kind == "digit":
+            raise UnreadError("a number with an exponent behind e")
+        span = tokens[at].span[0], tokens[last - 1].span[1]
+        return Letter(name, span, index, is_bold=self.is_bold), last
+
+
+def _with_index(letter: Letter, tokens: list[Token]) -> Letter:
+    if letter.index:
+        raise UnreadError(f"two indices at the letter {letter.name}")
+    return replace(letter, index="".join(_index(tokens)).strip())
+
+
+def _index(tokens: list[Token]) -> Iterator[str]:
+    """The parts of an index as text, such as ``theta``, ``_`` and ``1``."""
+    for token in tokens:
+        if token.kind in ("space", "gap", "{", "}") or token.text in FONTS:
+            continue
+        is_name = token.kind == "command" and (token.text in INDICES or token.text in GREEK)
+        if not is_name and token.kind not in INDEX_KINDS:
+            raise UnreadError("an index that is neither letters, numbers nor a word")
+        yield token.text
+
+
+INDEX_KINDS = frozenset({"letter", "digit", "word", "prose", "+", "-", ",", "_", "'", "*"})
+INDICES = frozenset(
+    {*LETTERS, *ELLIPSES, *ACCENTS, *MARKS, "max", "min", "top", "perp", "parallel"}
+)

@@ -1,0 +1,226 @@
+"""The equations and findings of all regions of a program, each of them once."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from derive.reading.programs.evaluation.arrays import entries
+from derive.reading.programs.evaluation.calls import CONDITION, VariableValue
+from derive.reading.programs.evaluation.context import ProgramContext, statements, static_path
+from derive.reading.programs.evaluation.following import LOOP
+from derive.reading.programs.evaluation.numeric_values import number
+from derive.reading.programs.evaluation.values import root
+from derive.reading.programs.findings.degrees import (
+    angles,
+    named_in_degrees,
+    starts_in_degrees,
+    takes_degrees,
+)
+from derive.reading.programs.findings.equation_names import Names
+from derive.reading.programs.findings.function_equations import FunctionEquations
+from derive.reading.programs.findings.libraries import integrated, library_findings
+from derive.reading.programs.findings.rates import Rates, rates
+from derive.reading.programs.findings.regions import Region
+from derive.reading.programs.findings.step_methods import (
+    euler_findings,
+    runge_kutta_findings,
+    written_methods,
+    written_pairs,
+)
+from derive.reading.programs.findings.updates import Updates, without_time
+from derive.reading.programs.program import (
+    Finding,
+    NumericConstant,
+    Program,
+    RateFunction,
+    UnreadPart,
+)
+from derive.reading.programs.syntax.code import Assignment, Statement
+from derive.reading.programs.syntax.formula_text import UnwrittenError, Writer
+from derive.reading.programs.syntax.trees import Expression, Opaque
+
+
+class Findings:
+    """Collects what regions compute."""
+
+    def __init__(self, context: ProgramContext, body: tuple[Statement, ...]) -> None:
+        self._context = context
+        self._functions: list[RateFunction] = []
+        self._findings: list[Finding] = []
+        self._unread: list[UnreadPart] = []
+        #: Functions that are passed to integrators, and initial states.
+        self._integrated: dict[str, Expression] = {}
+        #: Whether sines are those of degrees, as a library for drawing allows.
+        self._takes_degrees = False
+        self._angles: dict[str, dict[int, str]] = {}
+        self._starts = [
+            (static_path(one.target), one.value)
+            for one in statements(body, inner=True)
+            if isinstance(one, Assignment) and not one.operator
+        ]
+
+    def add(self, region: Region) -> None:
+        """Add the equations and the method of a region."""
+        follower = region.follower
+        self._unread += [UnreadPart(line, why, region.name) for line, why in follower.faults]
+        self._findings += library_findings(follower.calls, region.name)
+        self._takes_degrees |= any(map(takes_degrees, follower.calls))
+        for path, state in integrated(follower.calls):
+            if entries(state) is not None:
+                self._integrated.setdefault(path.rpartition(".")[2], state)
+        found = rates(region.definition, region.follower)
+        if found and found.is_step:
+            lines = found.lines
+            follower.steps += [
+                VariableValue(lines[q], q, value) for q, value in found.values.items()
+            ]
+            follower.variables |= found.values
+        elif found:
+            self._add_rates(region, found)
+        for is_met in (False, True):
+            self._add_updates(region, is_met=is_met)
+        self._add_open(region)
+
+    def _add_open(self, region: Region) -> None:
+        """Note values that are open since they are computed in loops or under conditions."""
+        given = {one.name for one in region.definition.parameters}
+        values = [v for path, v in region.follower.variables.items() if root(path) in given]
+        if region.follower.returned is not None:
+            values.append(region.follower.returned)
+        result = region.follower.result(region.definition)
+        if region.follower.other_returns and isinstance(result, Opaque):
+            values.append(result)
+        for value in values:
+            for one in opaque(value):
+                if one.reason in (LOOP, CONDITION):
+                    self._unread.append(UnreadPart(one.line, one.reason, region.name))
+
+    def _add_rates(self, region: Region, found: Rates) -> None:
+        names = Names(region.follower.steps)
+        equations = FunctionEquations(region.name, names)
+        velocities = found.velocities
+        for q, v in velocities.items():
+            names.define(v, f"{names(q)}_dot")
+        for q, value in found.values.items():
+            if q in velocities:
+                v = velocities[q]
+                equations.acceleration(found.lines[v], q, v, found.values[v])
+            elif q not in velocities.values():
+                equations.rate(found.lines[q], q, value)
+        self._end(region, equations, names, [*found.values.values()])
+        angular = angles([*found.values.values()])
+        self._angles[region.definition.name] = {
+            i: q for i, q in enumerate(found.values) if q in angular
+        }
+
+    def _add_updates(self, region: Region, *, is_met: bool) -> None:
+        updates = Updates(region.follower, is_met=is_met)
+        written = written_methods(updates, region.follower.returned)
+        self._findings += runge_kutta_findings(written, region.name)
+        names = Names(region.follower.steps)
+        equations = FunctionEquations(region.name, names)
+        changed = {name for one in written for name in one.rates}
+        pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
+        self._unread += [UnreadPart(line, why, region.name) for line, why in updates.unread]
+        used, found = {}, list(written_pairs(updates, written))
+        for pair in pairs:
+            q = pair.coordinate.variable
+            value, used[q] = updates.acceleration(pair)
+            found.append((q, pair.velocity.variable, value))
+        for q, v, _ in found:
+            names.define(q, names(without_time(q)))
+            names.define(v, f"{names(q)}_dot")
+        for q, v, value in found:
+            equations.acceleration(value.line, q, v, value)
+        values = [value for *_, value in found]
+        self._end(region, equations, names, values)
+        self._findings += euler_findings(
+            pairs, used, region, self._context.constants, names.in_program
+        )
+        angular = angles(values) & {q for q, *_ in found}
+        for path, start in self._starts:
+            if path in angular:
+                self._findings += starts_in_degrees(
+                    path, start, self._context.constants, region.name
+                )
+
+    def _end(
+        self, region: Region, equations: FunctionEquations, names: Names, values: list[Expression]
+    ) -> None:
+        equations.end()
+        for value in values:
+            self._findings += named_in_degrees(value, region.name)
+        self._unread += equations.unread
+        found = tuple(equations.equations)
+        if found:
+            self._functions.append(RateFunction(region.name, region.line, found, names.read))
+
+    def program(self, file: str, language: str) -> Program:
+        """The program, with each equation in the function where it stands."""
+        for name, state in self._integrated.items():
+            items = entries(state) or ()
+            for index, q in self._angles.get(name, {}).items():
+                if index < len(items):
+                    self._findings += starts_in_degrees(
+                        q, items[index], self._context.constants, name
+                    )
+        functions = self._own_equations()
+        read = {equation.line for one in functions for equation in one.equations}
+        unread = {(one.line, one.reason): one for one in self._unread if one.line not in read}
+        starts = {one.name: one.line for one in self._functions}
+        findings: dict[tuple[int, str], Finding] = {}
+        for one in self._findings:
+            if one.kind == "degrees" and self._takes_degrees:
+                continue
+            known = findings.get((one.line, one.kind))
+            if known is None or starts.get(known.function, 0) < starts.get(one.function, 0):
+                findings[one.line, one.kind] = one
+        constants = [
+            NumericConstant(name, text, value.line)
+            for name, value in self._context.constants.items()
+            if number(value) is not None and (text := _written(value))
+        ]
+        return Program(
+            file,
+            language,
+            functions,
+            tuple(constants),
+            tuple(sorted(findings.values(), key=lambda one: one.line)),
+            tuple(sorted(unread.values(), key=lambda one: one.line)),
+        )
+
+    def _own_equations(self) -> tuple[RateFunction, ...]:
+        """The functions without equations that they take from functions that they call."""
+        best: dict[int, RateFunction] = {}
+        for function in self._functions:
+            for equation in function.equations:
+                line, known = equation.line, best.get(equation.line)
+                if known is None or _nearness(known, line) < _nearness(function, line):
+                    best[line] = function
+        found = []
+        for function in self._functions:
+            own = tuple(e for e in function.equations if best[e.line] is function)
+            if own:
+                found.append(replace(function, equations=own))
+        return tuple(found)
+
+
+def _nearness(function: RateFunction, line: int) -> int:
+    """The larger, the nearer a function begins before a line."""
+    return function.line if function.line <= line else -function.line
+
+
+def opaque(tree: Expression) -> Iterator[Opaque]:
+    """The parts of a value that cannot be followed."""
+    if isinstance(tree, Opaque):
+        yield tree
+    for part in tree.parts:
+        yield from opaque(part)
+
+
+def _written(value: Expression) -> str:
+    writer = Writer(lambda path: path)
+    try:
+        writer.write(value)
+    except UnwrittenError:
+        return ""
+    return writer.text

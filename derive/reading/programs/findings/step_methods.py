@@ -1,0 +1,147 @@
+"""The method by which coordinates are changed step by step, and its faults."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+from derive.reading.programs.evaluation.sums import inner, terms, total
+from derive.reading.programs.findings.regions import Region
+from derive.reading.programs.findings.runge_kutta import Method, method, value_at
+from derive.reading.programs.findings.updates import Pair, Update, Updates
+from derive.reading.programs.program import Finding
+from derive.reading.programs.syntax.trees import Array, Expression, Name, NumberLiteral
+
+#: Functions that a browser or a drawing library calls once a picture.
+DRAWING = {"draw", "animate", "animation", "render", "redraw", "tick", "frame", "drawframe"}
+
+
+@dataclass
+class WrittenMethod:
+    """A method that is written out, and the rates of the variables that it changes."""
+
+    line: int
+    method: Method
+    rates: dict[str, Expression]
+
+
+def written_methods(updates: Updates, returned: Expression | None) -> list[WrittenMethod]:
+    """The Runge-Kutta methods by which variables, or a value that is returned, are changed."""
+    changes = [
+        (name, one.line, total(one.line, one.increment)) for name, one in updates.updates.items()
+    ]
+    value = None if returned is None else inner(returned)
+    for entry in value.items if isinstance(value, Array) else () if value is None else (value,):
+        parts = [*terms(entry, lambda _: False)]
+        own = next((one for one in parts if one[0] == 1 and isinstance(one[1], Name)), None)
+        if own and isinstance(own[1], Name):
+            rest = [one for one in parts if one is not own]
+            changes.append((own[1].path, entry.line, total(entry.line, rest)))
+    found: list[WrittenMethod] = []
+    for name, line, increment in changes:
+        if (result := method(increment)) is not None:
+            one = next((other for other in found if other.method == result[0]), None)
+            if one is None:
+                found.append(one := WrittenMethod(line, result[0], {}))
+            one.rates[name] = result[1]
+    return found
+
+
+def written_pairs(
+    updates: Updates, written: Sequence[WrittenMethod]
+) -> Iterator[tuple[str, str, Expression]]:
+    """Coordinates, velocities and accelerations of methods that are written for each of them.
+
+    The first stage of a coordinate is its velocity: its increment is proportional to it.
+    """
+    rates = {name: value for one in written for name, value in one.rates.items()}
+    at_rest = dict.fromkeys(updates.updates, 0.0)
+    for name, update in updates.updates.items():
+        if name in rates:
+            continue
+        increment = total(update.line, update.increment)
+        for velocity, value in rates.items():
+            with suppress(ArithmeticError, ValueError):
+                if value_at(increment, at_rest) or not value_at(
+                    increment, at_rest | {velocity: 1.0}
+                ):
+                    continue
+                yield name, velocity, value
+
+
+def runge_kutta_findings(written: Sequence[WrittenMethod], function: str) -> Iterator[Finding]:
+    """Remarks on the methods that are written out."""
+    for found in written:
+        one, possible = found.method, min(found.method.stages, 4)
+        text = f"a Runge-Kutta method of {one.stages} stages and order {one.order} is written out"
+        is_fault = one.order < possible
+        if is_fault:
+            weights = ", ".join(f"{x:.4g}" for x in one.b)
+            nodes = ", ".join(f"{sum(row):.4g}" for row in one.A)
+            text += f": weights {weights}, stages at {nodes} of the step"
+            text += f"; order {possible} is possible"
+        yield Finding(found.line, "runge_kutta", function, text, is_fault)
+
+
+def euler_findings(
+    pairs: tuple[Pair, ...],
+    used: Mapping[str, frozenset[str]],
+    region: Region,
+    constants: Mapping[str, Expression],
+    shown: Callable[[str], str],
+) -> Iterator[Finding]:
+    """Remarks on coordinates and velocities that are changed by their rates.
+
+    `used` has the variables after their update that the acceleration of each coordinate uses.
+    """
+    coordinates = {pair.coordinate.variable for pair in pairs}
+    velocities = {pair.velocity.variable for pair in pairs}
+    function = region.name
+    for pair in pairs:
+        q, v = pair.coordinate, pair.velocity
+        x, rate = shown(q.variable), shown(v.variable)
+        new = used.get(q.variable, frozenset())
+        moved = new & coordinates
+        if pair.has_other_terms:
+            continue
+        if pair.uses_new_velocity:
+            text = f"semi-implicit Euler: {rate} first (line {v.line}), then {x}"
+            yield Finding(q.line, "semi_implicit_euler", function, text)
+        elif q.variable in moved:
+            text = f"semi-implicit Euler: {x} first, then {rate} (line {v.line})"
+            yield Finding(q.line, "semi_implicit_euler", function, text)
+        else:
+            text = f"explicit Euler: {x} grows by the old value of {rate}"
+            yield Finding(q.line, "explicit_euler", function, text, True)
+        partly = (new & velocities) | (moved if moved != coordinates else frozenset())
+        if partly:
+            changed = ", ".join(sorted(map(shown, partly)))
+            text = f"the acceleration for {rate} uses values after the step: {changed}"
+            yield Finding(v.line, "mixed_update", function, text, True)
+    yield from _steps(pairs, region, constants)
+    for pair in pairs:
+        yield from _damping(pair.velocity, function, shown)
+
+
+def _steps(
+    pairs: tuple[Pair, ...], region: Region, constants: Mapping[str, Expression]
+) -> Iterator[Finding]:
+    for pair in pairs:
+        line, step = pair.coordinate.line, pair.step
+        value = constants.get(step.path, step) if isinstance(step, Name) else step
+        if step is None:
+            text = "no step size: each call advances the motion by one unit of time"
+        elif isinstance(value, NumberLiteral) and float(value.digits) >= 1:
+            text = f"the step size is {value.digits}"
+        elif not region.is_loop and region.name.rpartition(".")[2].lower() in DRAWING:
+            text = "one step a picture: the step size is that of the pictures"
+        else:
+            continue
+        is_fault = step is None or isinstance(value, NumberLiteral)
+        yield Finding(line, "frame_step", region.name, text, is_fault)
+        return
+
+
+def _damping(velocity: Update, function: str, shown: Callable[[str], str]) -> Iterator[Finding]:
+    if velocity.damping is not None:
+        text = f"{shown(velocity.variable)} is multiplied by a factor each step: damping"
+        yield Finding(velocity.damping_line or velocity.line, "damping", function, text, True)

@@ -1,0 +1,219 @@
+"""From the syntax tree of a grammar to statements."""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from derive.reading.programs.syntax.code import (
+    Assignment,
+    Conditional,
+    Definition,
+    ExpressionStatement,
+    Fault,
+    FunctionParameter,
+    Lambda,
+    Loop,
+    Return,
+    Statement,
+    VariableDeclaration,
+)
+from derive.reading.programs.syntax.definitions import DefinitionTranslator
+from derive.reading.programs.syntax.expressions import DIGITS, line, shown, text
+from derive.reading.programs.syntax.trees import (
+    Array,
+    Expression,
+    FunctionCall,
+    Item,
+    Member,
+    Name,
+    NumberLiteral,
+    Record,
+)
+
+if TYPE_CHECKING:
+    from tree_sitter import Node
+
+#: Levels of blocks in blocks.
+MAX_BLOCKS = 60
+#: Variables that a text assigns, and characters of the text in which they are searched.
+ASSIGNED = re.compile(
+    r"([^\W\d][\w.]{0,50})(?:\[[^\]]{0,30}\]|\([^)]{0,30}\))?\s{0,9}[-+*/^]?=(?!=)"
+)
+MAX_FAULT = 5_000
+
+
+class StatementTranslator(DefinitionTranslator):
+    """Translates statements."""
+
+    _blocks = 0
+
+    def statements(self, nodes: Sequence["Node"]) -> tuple[Statement, ...]:
+        """The statements at nodes, with those of blocks among them in one row."""
+        return tuple(one for node in nodes for one in self._statement(node))
+
+    def _statement(self, node: "Node") -> Iterator[Statement]:
+        role = self.role(node)
+        if role == "skip":
+            return
+        method: Callable[[Node], Iterator[Statement]] | None
+        method = getattr(self, f"_{role}_statements", None)
+        if self._blocks > MAX_BLOCKS:
+            yield _fault(node, "the blocks are nested too deeply")
+        elif node.has_error and (method is None or role in ("assign", "update", "return", "")):
+            yield _fault(node, f"{shown(node)!r} is not understood")
+        elif method is None:
+            yield ExpressionStatement(line(node), self.tree(node))
+        else:
+            self._blocks += 1
+            yield from method(node)
+            self._blocks -= 1
+
+    def _block_statements(self, node: "Node") -> Iterator[Statement]:
+        yield from self.statements(self.children(node))
+
+    def _declaration_statements(self, node: "Node") -> Iterator[Statement]:
+        for child in self.children(node):
+            if self._is_assigned(child):
+                for one in self._statement(child):
+                    if isinstance(one, Assignment):
+                        one = Assignment(one.line, one.target, one.operator, one.value, True)
+                    yield one
+            elif self.role(child) != "skip" and (name := self._name_in(child)):
+                yield VariableDeclaration(line(child), self.word(name))
+
+    def _name_in(self, node: "Node") -> "Node | None":
+        return node if self.role(node) == "name" else self._first(node, "name")
+
+    def _is_assigned(self, node: "Node") -> bool:
+        return self.role(node) == "assign" and len(self.children(node)) > 1
+
+    def _class_statements(self, node: "Node") -> Iterator[Statement]:
+        name = node.child_by_field_name("name")
+        outer, self._owner = self._owner, self.word(name) if name else "?"
+        body = node.child_by_field_name("body")
+        if body:
+            yield from self._statement(body)
+        self._owner = outer
+
+    def _field_statements(self, node: "Node") -> Iterator[Statement]:
+        """Members of a class with their values; of C++, several in one statement."""
+        name = None
+        for index, child in enumerate(node.children):
+            match node.field_name_for_child(index):
+                case "property" | "declarator" | "name":
+                    name = self._name_in(child)
+                case "value" | "default_value" if name:
+                    target: Expression = Name(line(child), self.word(name))
+                    if not self.language.has_bare_members:
+                        target = Member(target.line, Name(target.line, "this"), self.word(name))
+                    yield from self.assigned(line(child), target, "", self.tree(child))
+
+    def _assign_statements(self, node: "Node") -> Iterator[Statement]:
+        children = [one for one in self.children(node) if self.role(one) != "skip"]
+        left, right = children[0], children[-1]
+        if left == right:
+            return
+        signs = [text(one) for one in node.children if one not in (left, right)]
+        operator = next((one[:-1].lstrip(".") for one in signs if one.endswith("=")), "")
+        if self.role(right) == "assign":  # a = b = 1
+            yield from self._statement(right)
+            right = next(one for one in self.children(right) if self.role(one) != "skip")
+        target = self.tree(left)
+        if text(left).startswith("(;") and isinstance(target, Array):  # members by their names
+            names = [(one.path, one) for one in target.items if isinstance(one, Name)]
+            target = Record(target.line, tuple(names))
+        yield from self.assigned(line(node), target, operator, self.tree(right))
+
+    def assigned(
+        self, number: int, target: Expression, operator: str, value: Expression
+    ) -> Iterator[Statement]:
+        """The statements that give a target, or several, a value."""
+        match target, value:
+            case Name(path=name) | Member(name=name), Lambda(function=one):
+                yield Definition(one.line, name, one.parameters, one.body, self._owner)
+            case FunctionCall(function=Name(path=name), arguments=given), _ if self._is_function(
+                value
+            ):
+                parameters = tuple(FunctionParameter(p.path) for p in given if isinstance(p, Name))
+                yield Definition(number, name, parameters, (Return(number, value),))
+            case FunctionCall(line=at, function=base, arguments=indices), _:
+                yield Assignment(number, Item(at, base, indices), operator, value)
+            case _, Record(fields=fields):
+                yield from self._members(number, target, fields)
+            case Record(fields=fields), _:
+                for name, to in fields:
+                    yield Assignment(number, to, "", Member(number, value, name), True)
+            case _:
+                yield Assignment(number, target, operator, value)
+
+    def _is_function(self, value: Expression) -> bool:
+        """Whether ``f(x) = value`` defines a function, not an entry of an array."""
+        return not self.language.has_round_indices
+
+    def _members(
+        self, number: int, target: Expression, fields: tuple[tuple[str, Expression], ...]
+    ) -> Iterator[Statement]:
+        for name, value in fields:
+            yield from self.assigned(number, Member(number, target, name), "", value)
+
+    def _update_statements(self, node: "Node") -> Iterator[Statement]:
+        operator = "+" if "++" in text(node) else "-"
+        target = self.tree(self.children(node)[0])
+        yield Assignment(line(node), target, operator, NumberLiteral(line(node), "1"))
+
+    def _macro_statements(self, node: "Node") -> Iterator[Statement]:
+        name, *value = self.children(node)
+        if value and DIGITS.fullmatch(text(value[0]).strip("() ")):
+            number = NumberLiteral(line(node), text(value[0]).strip("() "))
+            yield Assignment(line(node), Name(line(node), self.word(name)), "", number)
+
+    def _initializers_statements(self, node: "Node") -> Iterator[Statement]:
+        """Members with their values, before the body of a constructor."""
+        for one in self.children(node):
+            name, *rest = self.children(one)
+            values = [value for part in rest for value in self.children(part)]
+            if len(values) == 1:
+                yield Assignment(line(one), self.tree(name), "", self.tree(values[0]))
+
+    def _keyword_statements(self, node: "Node") -> Iterator[Statement]:
+        if text(node).lower() == "return":
+            yield Return(line(node), None)
+
+    def _return_statements(self, node: "Node") -> Iterator[Statement]:
+        values = [self.tree(one) for one in self.children(node)]
+        value = Array(line(node), tuple(values)) if len(values) > 1 else None
+        yield Return(line(node), values[0] if len(values) == 1 else value)
+
+    def _branch_statements(self, node: "Node") -> Iterator[Statement]:
+        _condition, *rest = self.children(node)
+        body = self.statements([one for one in rest if self.role(one) != "otherwise"])
+        others = [one for one in rest if self.role(one) == "otherwise"]
+        yield Conditional(line(node), body, self._otherwise(others))
+
+    def _otherwise(self, nodes: list["Node"]) -> tuple[Statement, ...]:
+        if not nodes:
+            return ()
+        first, *rest = nodes
+        children = self.children(first)
+        if first.type.startswith(("elif", "elseif")):
+            body = self.statements(children[1:])
+            return (Conditional(line(first), body, self._otherwise(rest)),)
+        return self.statements(children)
+
+    def _choice_statements(self, node: "Node") -> Iterator[Statement]:
+        yield _fault(node, "a choice between cases is not followed")
+
+    def _loop_statements(self, node: "Node") -> Iterator[Statement]:
+        body = node.child_by_field_name("body")
+        blocks = [one for one in self.children(node) if one.type == "block"]
+        nodes = [body] if body else blocks or self._body(node)
+        header = next((one for one in self.children(node) if one not in nodes), None)
+        name = self._first(header, "name") if header else None
+        is_while = "while" in text(node)[:10].lower()
+        variable = "" if is_while or name is None else self.word(name)
+        yield Loop(line(node), variable, self.statements(nodes))
+
+
+def _fault(node: "Node", reason: str) -> Fault:
+    names = dict.fromkeys(ASSIGNED.findall(text(node)[:MAX_FAULT]))
+    return Fault(line(node), reason, tuple(names))

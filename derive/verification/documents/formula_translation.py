@@ -1,0 +1,286 @@
+"""Syntax trees of LaTeX as formulas in the syntax of `derive.formulas.expression`."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import assert_never
+
+from derive.reading.latex.tree import (
+    Application,
+    AtPlace,
+    Call,
+    Derivative,
+    Dotted,
+    Letter,
+    Matrix,
+    Node,
+    Norm,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Root,
+    Sum,
+    Summation,
+    Transpose,
+    Tuple,
+)
+from derive.reading.latex.walking import indexed, letters, nodes
+from derive.verification.documents.text import (
+    ATOM,
+    POWER,
+    PRODUCT,
+    RATES,
+    SUM,
+    FormulaText,
+    joined_text,
+    order,
+    stem,
+)
+
+#: Reciprocals of functions that formulas have.
+RECIPROCALS = {"sec": "cos", "csc": "sin"}
+
+#: Most terms of a sum that is written out.
+MAX_TERMS = 20
+
+
+class UntranslatableError(ValueError):
+    """A formula that has no translation; the message states why."""
+
+
+@dataclass(frozen=True)
+class LetterNotation:
+    """What the letters of a document are, as far as a translation depends on it."""
+
+    functions: frozenset[str] = frozenset()  # identifiers before brackets that hold arguments
+    times: frozenset[str] = frozenset()  # those of them that time alone is the argument of
+    matrices: frozenset[str] = frozenset()  # identifiers of matrices and columns
+    count: int = 1  # values of an index without bounds
+    primes_are_rates: bool = False
+    calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
+    factors: frozenset[str] = frozenset()  # identifiers before brackets that hold a column
+
+
+@dataclass
+class FormulaTranslator:
+    """Translations of trees; collects derivatives of letters, which become names."""
+
+    notation: LetterNotation = LetterNotation()
+    #: Names such as ``dL_dtheta_1_dot``, with the identifier of L and the texts of variables.
+    derivatives: dict[str, tuple[str, tuple[str, ...]]] = field(default_factory=dict)
+
+    def text(self, node: Node, least: int = SUM) -> FormulaText:
+        """The translation of a tree, in brackets if it binds less than `least`."""
+        result = self._text(node)
+        if not any(span == node.span for *_, span in result.parts):
+            whole = (0, len(result.text), node.span)
+            result = replace(result, parts=(*result.parts, whole))
+        return result if result.binding >= least else joined_text(ATOM, "(", result, ")")
+
+    def name(self, letter: Letter) -> str:
+        """The identifier of a letter with its dots."""
+        primes = letter.primes if self.notation.primes_are_rates else 0
+        name = identifier(letter) + "_prime" * (letter.primes - primes)
+        name = f"{name}_column" if letter.is_bold else name
+        return name + RATES[letter.dots + primes]
+
+    def _text(self, node: Node) -> FormulaText:
+        match node:
+            case Number(digits=digits):
+                return FormulaText(digits)
+            case Letter():
+                return FormulaText(self.name(node))
+            case Sum(terms=terms):
+                return self._sum(terms)
+            case Product(factors=factors):
+                return self._product(factors)
+            case Quotient(numerator=above, denominator=below):
+                return joined_text(PRODUCT, self.text(above, PRODUCT), "/", self.text(below, POWER))
+            case Power(base=base, exponent=exponent):
+                return self._power(base, exponent)
+            case Root(radicand=radicand, degree=2):
+                return joined_text(ATOM, "sqrt(", self.text(radicand), ")")
+            case Root(radicand=radicand, degree=degree):
+                return joined_text(POWER, self.text(radicand, ATOM), f"**(1/{degree})")
+            case Call(function=name, argument=argument):
+                return self._call(name, argument)
+            case Application():
+                return self._application(node)
+            case Derivative():
+                return self._derivative(node)
+            case Dotted(operand=Power(base=Letter() as base, exponent=exponent), dots=dots):
+                # a dot over a power is that of the letter, which is wide enough for both
+                return self._power(replace(base, dots=base.dots + dots), exponent)
+            case Dotted(operand=operand, dots=dots):
+                return self._rate(self._text(operand), dots)
+            case Matrix(rows=rows):
+                return self._matrix(rows)
+            case Tuple(items=items):
+                return self._matrix([(item,) for item in items])
+            case Transpose(operand=Tuple() as column):
+                return self._text(column)
+            case Transpose(operand=operand):
+                return joined_text(ATOM, "transpose(", self.text(operand), ")")
+            case Norm(operand=operand):
+                return joined_text(ATOM, "norm(", self.text(operand), ")")
+            case Summation():
+                return self._summation(node)
+            case AtPlace():
+                raise UntranslatableError("a value at a place")
+        assert_never(node)
+
+    def _sum(self, terms: Sequence[tuple[int, Node]]) -> FormulaText:
+        pieces: list[FormulaText | str] = []
+        for sign, term in terms:
+            between = "-" if sign < 0 else "+"
+            pieces.append(f" {between} " if pieces else between * (sign < 0))
+            pieces.append(self.text(term, PRODUCT))
+        return joined_text(SUM, *pieces)
+
+    def _product(self, factors: Sequence[Node]) -> FormulaText:
+        pieces: list[FormulaText | str] = []
+        for factor in self._factors(factors):
+            # a quotient behind a factor is one factor: a*(b/c) keeps its parts
+            text = self.text(factor, PRODUCT if not pieces else POWER)
+            pieces += ["*", text] if pieces else [text]
+        return joined_text(PRODUCT, *pieces)
+
+    def _factors(self, factors: Sequence[Node]) -> Iterator[Node]:
+        """The factors, also those of letters before brackets that are products."""
+        for number, factor in enumerate(factors):
+            before = factors[number - 1] if number else None
+            if isinstance(before, Power) and self._holds_time(before, factor):
+                continue  # the power of a function: f^2(t)
+            if isinstance(factor, Application) and not self._is_function(factor):
+                yield from (factor.head, _in_brackets(factor))
+            else:
+                yield factor
+
+    def _holds_time(self, before: Power, factor: Node) -> bool:
+        """Whether a factor is (t) behind the power of a function of time."""
+        base, length = before.base, factor.span[1] - factor.span[0]
+        is_time = isinstance(factor, Letter) and factor.identifier == "t" and length > 1
+        return is_time and isinstance(base, Letter) and self.name(base) in self.notation.times
+
+    def _power(self, base: Node, exponent: Node) -> FormulaText:
+        if isinstance(base, Application) and not self._is_function(base):
+            power = Power(_in_brackets(base), exponent, (base.head.span[1], base.span[1]))
+            return self._product([base.head, power])
+        inverse = isinstance(exponent, Sum) and len(exponent.terms) == 1 and exponent.terms[0]
+        if inverse and inverse[0] < 0 and getattr(inverse[1], "digits", "") == "1":
+            is_matrix = isinstance(base, Matrix) or (
+                isinstance(base, Letter) and self.name(base) in self.notation.matrices
+            )
+            if is_matrix:
+                return joined_text(ATOM, "inverse(", self.text(base), ")")
+        if isinstance(base, Letter) and self.name(base) in self.notation.matrices:
+            if getattr(exponent, "digits", "") != "2":
+                raise UntranslatableError("a power of a matrix")
+            return joined_text(ATOM, "square(", self.text(base), ")")
+        return joined_text(POWER, self.text(base, ATOM), "**", self.text(exponent, ATOM))
+
+    def _call(self, name: str, argument: Node) -> FormulaText:
+        if name in RECIPROCALS:
+            return joined_text(PRODUCT, f"1/{RECIPROCALS[name]}(", self.text(argument), ")")
+        if name == "cot":
+            inner = self.text(argument)
+            return joined_text(PRODUCT, "cos(", inner, ")/sin(", inner, ")")
+        arguments = argument.items if isinstance(argument, Tuple) else (argument,)
+        pieces = [piece for one in arguments for piece in (", ", self.text(one))]
+        return joined_text(ATOM, f"{name}(", *pieces[1:], ")")
+
+    def _application(self, node: Application) -> FormulaText:
+        name = self.name(node.head)
+        if name in self.notation.calls:
+            pieces = [piece for one in node.arguments for piece in (", ", self.text(one))]
+            return joined_text(ATOM, f"{name}(", *pieces[1:], ")")
+        if self._is_function(node):
+            return FormulaText(name)
+        return self._product([node.head, _in_brackets(node)])
+
+    def _is_function(self, node: Application) -> bool:
+        name = self.name(node.head)
+        if name in self.notation.times and not any(map(_is_of_time, node.arguments)):
+            return False
+        if name in self.notation.functions | self.notation.calls:
+            return True
+        return len(node.arguments) > 1 and name not in self.notation.factors
+
+    def _derivative(self, node: Derivative) -> FormulaText:
+        times = [one for one in node.variables if isinstance(one, Letter) and one.name == "t"]
+        if len(times) == len(node.variables) and not (
+            node.is_partial and isinstance(node.operand, Letter) and not node.operand.dots
+        ):
+            return self._rate(self._text(node.operand), len(times))
+        variables = tuple(self._text(one).text for one in node.variables)
+        operand = self._text(node.operand)
+        if isinstance(node.operand, Letter | Application) and operand.text.isidentifier():
+            name = "d".join(["", operand.text]) + "".join(f"_d{one}" for one in variables)
+            self.derivatives[name] = operand.text, variables
+            return FormulaText(name)
+        for variable in variables:
+            operand = joined_text(ATOM, "diff(", operand, f", {variable})")
+        return operand
+
+    def _rate(self, operand: FormulaText, times: int) -> FormulaText:
+        name = operand.text
+        is_letter = name.isidentifier() and name not in self.derivatives and name != "t"
+        if is_letter and order(name) + times < len(RATES):
+            return FormulaText(stem(name) + RATES[order(name) + times])
+        for _ in range(times):
+            operand = joined_text(ATOM, "ddt(", operand, ")")
+        return operand
+
+    def _matrix(self, rows: Sequence[Sequence[Node]]) -> FormulaText:
+        pieces: list[FormulaText | str] = ["["]
+        entries: list[FormulaText] = []
+        if len(rows) > 1 and all(len(row) == 1 for row in rows):
+            entries = [self.text(entry) for (entry,) in rows]
+            pieces = [piece for entry in entries for piece in (", ", entry)]
+            return replace(joined_text(ATOM, "(", *pieces[1:], ")"), entries=tuple(entries))
+        for i, row in enumerate(rows):
+            pieces.append(", [" if i else "[")
+            for j, entry in enumerate(row):
+                entries.append(self.text(entry))
+                pieces += [", " * bool(j), entries[-1]]
+            pieces.append("]")
+        return replace(joined_text(ATOM, *pieces, "]"), entries=tuple(entries))
+
+    def _summation(self, node: Summation) -> FormulaText:
+        first, last = _whole(node.lower, 1), _whole(node.upper, self.notation.count)
+        if node.index is None or not 0 <= last - first < MAX_TERMS:
+            raise UntranslatableError("a sum without an index, or of too many terms")
+        terms = [(1, indexed(node.body, node.index.name, k)) for k in range(first, last + 1)]
+        return self._sum(terms)
+
+
+def identifier(letter: Letter) -> str:
+    """The name of a letter, of word characters alone: ``s_1_plus_2`` of s with the index 1 + 2."""
+    name = letter.identifier.replace("+", "_plus_").replace("-", "_minus_")
+    name = re.sub(r"\W", "_", name)
+    return name if name[:1].isalpha() else f"letter_{name}"
+
+
+def _is_of_time(argument: Node) -> bool:
+    """Whether an argument is a time: a letter, a number, or t with others such as t + h."""
+    if isinstance(argument, Letter | Number):
+        return True
+    names = [one.identifier for one in letters(argument)]
+    return "t" in names and not any(isinstance(one, Call) for one in nodes(argument))
+
+
+def _in_brackets(node: Application) -> Node:
+    """The contents of the brackets behind a letter: an expression, or a column of several."""
+    if len(node.arguments) == 1:
+        return node.arguments[0]
+    return Tuple(node.arguments, (node.head.span[1], node.span[1]))
+
+
+def _whole(node: Node | None, default: int) -> int:
+    match node:
+        case Number(digits=digits) if digits.isdigit():
+            return int(digits)
+        case None | Letter():
+            return default
+    raise UntranslatableError("a sum with bounds that are not whole numbers")

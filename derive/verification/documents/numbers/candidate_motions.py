@@ -1,0 +1,339 @@
+"""The motion of a system in numbers, for many meanings of a document's letters at once.
+
+Arrays have the shape (candidates, states), or (candidates, states, coordinates) in the document's
+coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.verification.documents.jets import Array, Jet, Value, evaluated
+from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.document_system import (
+    derivation,
+    drag,
+    mass_matrix,
+    multiplier,
+)
+from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.numbers.conditions import Conditions, conditions
+
+#: Number of states.
+STATES = 3
+#: Steps of Newton's method onto constraints, and residuals of order 1 that count as none.
+NEWTON_STEPS, TINY = 20, 1e-14
+
+
+class ArbitraryMotion:
+    """Random values in place of those of a motion: formulas that hold with them say nothing."""
+
+    def __init__(self, letters: Letters) -> None:
+        self._random = np.random.default_rng(1)
+        self.shape = (1, STATES)
+        size = self.shape
+        self.places = {q: self._random.uniform(0.3, 1.3, size) for q in letters.coordinates}
+        self.speeds = {q: self._random.uniform(-1, 1, size) for q in letters.coordinates}
+        self.parameters = {p: float(self._random.uniform(0.5, 1.5)) for p in letters.parameters}
+        self.accelerations = {q: self._array() for q in letters.coordinates}
+        self._gradients: dict[tuple[str, str, int], Array] = {}
+        energies = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
+        self.energies = {kind: self._array() for kind in energies}
+        self.positions: Sequence[Array] = ()
+        self.multipliers: Mapping[str, Array] = {}
+        self.reactions: Mapping[str, Array] = {}
+        self.time = Jet.of(self._array(), 1.0)
+
+    def momentum(self, coordinate: str) -> Jet:
+        """A random momentum, whose rate is ∂L/∂q: that is true of every system."""
+        momentum, rate = (self.gradient("lagrangian", coordinate, order) for order in (1, 0))
+        return Jet.of(momentum, rate, np.nan)
+
+    def gradient(self, kind: str, coordinate: str, order: int) -> Array:
+        """A random derivative."""
+        return self._gradients.setdefault((kind, coordinate, order), self._array())
+
+    def mass_matrix(self, order: Sequence[str]) -> Value:
+        """A random matrix."""
+        matrix = np.empty((len(order), len(order)), dtype=object)
+        for index in np.ndindex(matrix.shape):
+            matrix[index] = Jet.of(self._array(), np.nan, np.nan)
+        return matrix
+
+    def _array(self) -> Array:
+        return self._random.uniform(0.5, 1.5, self.shape)
+
+
+class CandidateMotions:
+    """Motions of candidates of one system at random states of the document's coordinates."""
+
+    def __init__(self, tried: Sequence[SystemCandidate], letters: Letters) -> None:
+        self._system, self._tried = tried[0].system, tried
+        self._derivation = derivation(self._system)
+        self.shape = (len(tried), STATES)
+        random = np.random.default_rng(0)
+        names = sorted({*letters.coordinates} | {q for one in tried for q in one.coordinates})
+        #: Places and speeds of the document's coordinates, and values of its parameters. Those
+        #: of candidates differ if these have constraints.
+        self.places = {q: random.uniform(0.3, 1.3, (1, STATES)) for q in names}
+        self.speeds = {q: random.uniform(-1, 1, (1, STATES)) for q in names}
+        self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
+        own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
+        self._signs = np.array([one.signs for one in tried], float)
+        self._names = self._system_names(own)
+        if tried[0].condition_count:
+            self._move(own)
+
+    @property
+    def time(self) -> Jet:
+        """Time at all states."""
+        jet: Jet = self._names["t"]
+        return jet
+
+    @cached_property
+    def accelerations(self) -> Mapping[str, Array]:
+        """The accelerations of each coordinate of the document; NaN where it is none."""
+        return self._by_coordinate(self._solution[..., : len(self._system.q)])
+
+    @cached_property
+    def multipliers(self) -> Mapping[str, Array]:
+        """The values of letters of multipliers."""
+        reactions = self._solution[..., len(self._system.q) :]
+        values: dict[str, Array] = {}
+        for b, one in enumerate(self._tried):
+            for name, index, factor in one.multipliers:
+                table = values.setdefault(name, np.full(self.shape, np.nan))
+                table[b] = float(factor) * reactions[b, :, index]
+        return values
+
+    @cached_property
+    def reactions(self) -> Mapping[str, Array]:
+        """The multipliers of all constraints by their names."""
+        names = [one.name for one in self._system.conditions]
+        names += [multiplier(self._tried[0], k) for k in range(len(self._tried[0].constraints))]
+        return dict(
+            zip(names, np.moveaxis(self._solution, -1, 0)[len(self._system.q) :], strict=True)
+        )
+
+    @cached_property
+    def _solution(self) -> Array:
+        """Accelerations and multipliers of M q̈ - Gᵀ λ = f and G q̈ = γ."""
+        M, f = self._mass_matrix, np.array([*map(self._numbers, self._derivation.forcing)])
+        f = np.einsum("bji,jbk->bki", self._signs, f) + self._loads
+        if self._tried[0].condition_count:
+            now = self._conditions
+            G = now.gradients
+            zero = np.zeros((*self.shape, G.shape[2], G.shape[2]))
+            M = np.block([[M, -G.transpose(0, 1, 3, 2)], [G, zero]])
+            f = np.concatenate([f, now.forcing], axis=-1)
+        with np.errstate(all="ignore"):
+            try:
+                return np.asarray(np.linalg.solve(M, f[..., None])[..., 0])
+            except np.linalg.LinAlgError:
+                return np.full_like(f, np.nan)
+
+    @property
+    def _conditions(self) -> Conditions:
+        """The constraints at the states."""
+        return conditions(self._tried, self._names, self._letters, self.shape)
+
+    @property
+    def _letters(self) -> dict[str, Value]:
+        """Letters of the document at the states, without accelerations."""
+        letters: dict[str, Value] = {"t": self._names["t"]}
+        letters |= {p: Jet.of(np.array([[value]])) for p, value in self.parameters.items()}
+        for q, place in self.places.items():
+            speed = self.speeds[q]
+            letters |= {q: Jet.of(place, speed), f"{q}_dot": Jet.of(speed)}
+        return letters
+
+    def _move(self, own: Mapping[str, float]) -> None:
+        """Move the states onto the constraints: coordinates by Newton's method, then velocities."""
+        # constraints in letters are the same for all candidates
+        tried = self._tried if self._system.conditions else self._tried[:1]
+        shape = (len(tried), STATES)
+        for _ in range(NEWTON_STEPS):
+            now = conditions(tried, self._names, self._letters, shape)
+            if not np.any(np.abs(now.residuals) > TINY):
+                break
+            self._shift(self.places, tried, _shortest(now.gradients, now.residuals))
+            if self._system.conditions:
+                self._names = self._system_names(own)
+        now = conditions(tried, self._names, self._letters, shape)
+        self._shift(self.speeds, tried, _shortest(now.gradients, now.rates))
+        self._names = self._system_names(own)
+
+    def _shift(
+        self, table: dict[str, Array], tried: Sequence[SystemCandidate], change: Array
+    ) -> None:
+        """Subtract a change of the coordinates of candidates, or of velocities."""
+        for q, values in table.items():
+            table[q] = np.broadcast_to(values, change.shape[:2]).copy()
+            for order, rows in self._orders.items():
+                if q in order:
+                    own = rows[rows < len(tried)]
+                    table[q][own] -= change[own, :, order.index(q)]
+
+    @cached_property
+    def _orders(self) -> Mapping[tuple[str, ...], NDArray[np.intp]]:
+        """The numbers of the candidates with each order of coordinates."""
+        found: dict[tuple[str, ...], list[int]] = {}
+        for b, one in enumerate(self._tried):
+            found.setdefault(one.coordinates, []).append(b)
+        return {order: np.array(rows) for order, rows in found.items()}
+
+    @cached_property
+    def _mass_matrix(self) -> Array:
+        """M' of all candidates: candidates, states, rows, columns."""
+        return self._transformed(mass_matrix(self._system))
+
+    @cached_property
+    def _drag(self) -> Array:
+        return self._transformed(drag(self._system))
+
+    def _transformed(self, matrix: sp.Matrix) -> Array:
+        """Aᵀ M A of all candidates."""
+        n = range(len(self._system.q))
+        M = np.array([[self._numbers(matrix[i, j]) for j in n] for i in n])
+        return np.asarray(np.einsum("bji,jlbk,blm->bkim", self._signs, M, self._signs))
+
+    def mass_matrix(self, order: Sequence[str]) -> Value:
+        """The mass matrix with rows and columns in an order of the document's coordinates."""
+        names = [q for q in order if q in self._tried[0].coordinates]
+        matrix = np.empty((len(names), len(names)), dtype=object)
+        for i, j in np.ndindex(matrix.shape):
+            entry = np.full(self.shape, np.nan)
+            for b, one in enumerate(self._tried):
+                if names[i] in one.coordinates and names[j] in one.coordinates:
+                    row, column = (one.coordinates.index(names[k]) for k in (i, j))
+                    entry[b] = self._mass_matrix[b, :, row, column]
+            matrix[i, j] = Jet.of(entry, np.nan, np.nan)
+        return matrix
+
+    @cached_property
+    def energies(self) -> Mapping[str, Array]:
+        """Kinetic and potential energy, Lagrangian and energy."""
+        d = self._derivation
+        T, V, E = map(self._numbers, (d.kinetic_energy, d.potential_energy, d.energy))
+        return {
+            "kinetic_energy": T,
+            "potential_energy": V,
+            "lagrangian": T - V,
+            "energy": E,
+            "hamiltonian": E,
+        }
+
+    @cached_property
+    def positions(self) -> Sequence[Array]:
+        """The components of the positions of all masses."""
+        return [self._numbers(r) for mass in self._system.masses for r in mass.position]
+
+    def momentum(self, coordinate: str) -> Jet:
+        """∂L/∂q̇ and its rate ∂L/∂q + Q."""
+        rate = self.gradient("lagrangian", coordinate, 0) + self._forces[coordinate]
+        return Jet.of(self.gradient("lagrangian", coordinate, 1), rate, np.nan)
+
+    def gradient(self, kind: str, coordinate: str, order: int) -> Array:
+        """The derivative of an energy by a coordinate (order 0) or its velocity (1)."""
+        return self._gradients[kind][order][coordinate]
+
+    @cached_property
+    def _gradients(self) -> Mapping[str, Sequence[Mapping[str, Array]]]:
+        d = self._derivation
+        values = {
+            "kinetic_energy": d.kinetic_energy,
+            "potential_energy": d.potential_energy,
+            "lagrangian": d.lagrangian,
+        }
+        return {
+            kind: [self._gradient(value, by) for by in (self._system.q, self._system.qdot)]
+            for kind, value in values.items()
+        }
+
+    def _gradient(self, value: sp.Expr, symbols: Sequence[sp.Symbol]) -> Mapping[str, Array]:
+        own = np.array([self._numbers(value.diff(symbol)) for symbol in symbols])
+        return self._by_coordinate(np.einsum("bji,jbk->bki", self._signs, own))
+
+    @cached_property
+    def _forces(self) -> Mapping[str, Array]:
+        """Forces of the document on its coordinates."""
+        return self._by_coordinate(self._loads)
+
+    @cached_property
+    def _loads(self) -> Array:
+        return np.stack([self._load(b, one) for b, one in enumerate(self._tried)])
+
+    def _load(self, number: int, candidate: SystemCandidate) -> Array:
+        loads = np.zeros((STATES, len(candidate.coordinates)))
+        for name, i in candidate.forces:
+            loads[:, i] += self.parameters[name]
+        speeds = np.stack([_row(self.speeds[q], number) for q in candidate.coordinates], axis=-1)
+        for name, damped in candidate.friction:
+            if isinstance(damped, int):
+                rates = speeds * (np.arange(speeds.shape[-1]) == damped)
+            elif damped == "coordinates":
+                rates = speeds
+            else:
+                matrix = self._mass_matrix if damped == "motion" else self._drag
+                rates = np.einsum("kij,kj->ki", matrix[number], speeds)
+            loads -= self.parameters[name] * rates
+        return loads
+
+    def _by_order(self, table: Mapping[str, Array]) -> Array:
+        """The values of the coordinates of each candidate in its order."""
+        result = np.empty((len(self._tried), len(self._system.q), STATES))
+        for order, rows in self._orders.items():
+            for i, q in enumerate(order):
+                result[rows, i] = np.broadcast_to(table[q], self.shape)[rows]
+        return result
+
+    def _by_coordinate(self, table: Array) -> Mapping[str, Array]:
+        result = {q: np.full(self.shape, np.nan) for q in self.places}
+        for b, one in enumerate(self._tried):
+            for i, q in enumerate(one.coordinates):
+                result[q][b] = table[b, :, i]
+        return result
+
+    def _numbers(self, expression: sp.Expr) -> Array:
+        value = evaluated(sp.sstr(expression), self._names).value
+        return np.asarray(np.broadcast_to(value, self.shape))
+
+    def _parameter(self, candidate: SystemCandidate, name: str, default: float) -> float:
+        """The value of a parameter of the system."""
+        if name in candidate.numbers:
+            return float(candidate.numbers[name])
+        return self.parameters.get(candidate.parameters.get(name, ""), default)
+
+    def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
+        """Coordinates, velocities and parameters of the system."""
+        place, speed = (self._by_order(table) for table in (self.places, self.speeds))
+        offsets = [[one.offset(i, self.parameters) for i in range(len(one.offsets))]
+                   for one in self._tried]  # fmt: skip
+        q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
+        qdot = np.einsum("bij,bjk->bik", self._signs, speed)
+        time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates
+        names: dict[str, Value] = {"t": Jet.of(time, 1.0)}
+        for i, (symbol, rate) in enumerate(zip(self._system.q, self._system.qdot, strict=True)):
+            names[symbol.name], names[rate.name] = Jet.of(q[:, i]), Jet.of(qdot[:, i])
+        for p in own:
+            column = [[self._parameter(one, p, own[p])] for one in self._tried]
+            names[p] = Jet.of(np.broadcast_to(np.array(column), self.shape))
+        return names
+
+
+def _row(table: Array, candidate: int) -> Array:
+    """The values of a candidate in a table that can be the same for all."""
+    return np.asarray(table[candidate if len(table) > 1 else 0])
+
+
+def _shortest(gradients: Array, residuals: Array) -> Array:
+    """The shortest solutions x of G x = r; zeros where constraints depend on each other."""
+    rows = np.einsum("bkci,bkdi->bkcd", gradients, gradients)
+    try:
+        factors = np.linalg.solve(rows, residuals[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        return np.zeros((*gradients.shape[:2], gradients.shape[3]))
+    return np.nan_to_num(np.einsum("bkci,bkc->bki", gradients, factors))

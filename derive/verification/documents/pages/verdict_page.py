@@ -1,0 +1,147 @@
+"""A page that shows the formulas of documents with their verdicts, in one file."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import TypeAlias, get_args
+
+from derive.reading.document import Document
+from derive.reading.latex.display_reader import Macro, formulas, macros_of
+from derive.reading.latex.tree import Span, Statement
+from derive.verification.documents.pages.mathml import statement_html
+from derive.verification.documents.pages.verdicts_in_place import (
+    JudgedDocument,
+    JudgedFormula,
+    one_line,
+)
+from derive.verification.verdict import VerdictName
+
+#: The macros of a document in LaTeX; None for a program.
+Macros: TypeAlias = Mapping[str, Macro] | None
+
+STYLE = Path(__file__).with_name("page.css")
+#: Parts of LaTeX that are compared.
+TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\s\\]")
+
+
+def page(documents: Sequence[tuple[JudgedDocument, Document]]) -> str:
+    """The page, as HTML without references to other files.
+
+    Parameters
+    ----------
+    documents
+        The verdicts on each document, and the document as read.
+    """
+    names = ", ".join(Path(judged.file).name for judged, _ in documents)
+    title = f"Verdicts on {escape(names)}"
+    sections = "\n".join(
+        _section(*one, f"<h2>{escape(Path(one[0].file).name)}</h2>" if len(documents) > 1 else "")
+        for one in documents
+    )
+    counts = Counter(one.verdict for judged, _ in documents for one in judged.formulas)
+    style = STYLE.read_text(encoding="utf-8") + "\n".join(map(_hidden, counts))
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; \
+img-src data:">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<header>
+<h1>{title}</h1>
+<p>Each formula is judged by computation. A term that is <span class="wrong-term">wrong</span> is
+marked, and below it stands the <span class="right-term">correct</span> formula.</p>
+<form aria-label="Verdicts that are shown">{"".join(_switches(counts))}</form>
+</header>
+<main>
+{sections}
+</main>
+</body>
+</html>
+"""
+
+
+def _switches(counts: Mapping[VerdictName, int]) -> Iterator[str]:
+    """A switch with its number for each verdict."""
+    for verdict in get_args(VerdictName):
+        if number := counts.get(verdict):
+            box = f'<input type="checkbox" id="show-{verdict}" checked>'
+            yield f'<label class="{verdict}">{box} <b>{number}</b> {verdict}</label> '
+
+
+def _hidden(verdict: VerdictName) -> str:
+    return f"body:has(#show-{verdict}:not(:checked)) li.{verdict} {{ display: none; }}"
+
+
+def _section(judged: JudgedDocument, document: Document, title: str) -> str:
+    is_program = document.kind == "program"
+    macros = None if is_program else macros_of("\n".join(document.definitions))
+    remarks = [f"System: {judged.system}" if judged.system else "", *judged.remarks]
+    remarks += [] if judged.formulas else ["It has no formulas."]
+    notes = "".join(f"<p>{escape(one)}</p>" for one in remarks if one)
+    items = "\n".join(_item(one, macros) for one in judged.formulas)
+    return f"<section>{title}{notes}<ol>\n{items}\n</ol></section>"
+
+
+def _item(one: JudgedFormula, macros: Macros) -> str:
+    """A formula, with its verdict in the margin and details below it."""
+    cell = f"cell {one.cell}, " if one.cell else ""
+    display = f", display {one.display}" if one.display else ""
+    margin = (
+        f'<div class="margin"><span class="word">{one.verdict}</span> '
+        f"<span>{cell}line {one.line}{display}</span></div>"
+    )
+    wrong = [(a - one.span[0], b - one.span[0]) for a, b in one.wrong_spans]
+    shown = _math(one.latex, macros, wrong, "wrong-term")
+    details = "".join(
+        f"<div><dt>{title}</dt><dd>{text}</dd></div>"
+        for title, text in _details(one, macros)
+        if text
+    )
+    return (
+        f'<li class="{one.verdict}">{margin}<div class="statement">{shown}'
+        f"{f'<dl>{details}</dl>' if details else ''}</div></li>"
+    )
+
+
+def _details(one: JudgedFormula, macros: Macros) -> Iterator[tuple[str, str]]:
+    if one.correction:
+        changed = _changed(one.latex, one.correction)
+        yield "should be", _math(one.correction, macros, changed, "right-term")
+    yield "value", escape(one.witness)
+    yield "state", _math(one.state, macros, (), "") if one.state else ""
+    yield "note", escape(one.note)
+
+
+def _math(latex: str, macros: Macros, marked: Sequence[Span], word: str) -> str:
+    """The statements of a formula as MathML; its source if it is a program or cannot be read."""
+    if macros is None:
+        return f"<code>{escape(latex)}</code>"
+    statements = formulas(latex, macros)
+    read = [one for one in statements if isinstance(one, Statement)]
+    if not read or len(read) < len(statements):
+        return f"<code>{escape(one_line(latex))}</code>"
+    lines = (statement_html(latex, one, marked, word) for one in read)
+    return "".join(f'<div class="formula">{line}</div>' for line in lines)
+
+
+def _changed(latex: str, correction: str) -> list[Span]:
+    """The part of a correction between the parts that it shares with the formula."""
+    old, new = TOKEN.findall(latex), list(TOKEN.finditer(correction))
+    words = [one.group() for one in new]
+    start = 0
+    while start < min(len(old), len(words)) and old[start] == words[start]:
+        start += 1
+    end = 0
+    while end < min(len(old), len(words)) - start and old[-1 - end] == words[-1 - end]:
+        end += 1
+    last = len(words) - end
+    return [(new[start].start(), new[last - 1].end())] if start < last else []

@@ -1,0 +1,200 @@
+"""Verdicts on the formulas of a document whose letters are known."""
+
+from collections.abc import Collection, Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.formulas.expression import parse
+from derive.formulas.proofs.zero import vanishes
+from derive.formulas.syntax import ExpressionError
+from derive.verification.documents.letters.stated_constraints import WAY_OUT
+from derive.verification.documents.rules.applied_forces import without_unknown_terms
+from derive.verification.documents.rules.consequences import Consequences
+from derive.verification.documents.rules.derived_matrices import DerivedMatrices
+from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.manipulator import Manipulator
+from derive.verification.documents.rules.mass_positions import MassPositions
+from derive.verification.documents.rules.partial_energies import PartialEnergies
+from derive.verification.documents.rules.roles import Roles
+from derive.verification.documents.rules.side_comparison import SideComparison
+from derive.verification.documents.rules.side_verdict import (
+    CORRECT,
+    SideVerdict,
+    not_understood,
+    plain,
+)
+from derive.verification.documents.rules.small_motions import SmallMotions
+from derive.verification.documents.statements import INDICES, WORD, DocumentFormula, Occurrence
+from derive.verification.documents.text import FormulaText
+from derive.verification.engine import joined
+from derive.verification.reference_system import depends_on
+
+
+class Judge:
+    """Verdicts on formulas in the scope of a document."""
+
+    def __init__(self, scope: DocumentScope, given: Collection[Occurrence] = ()) -> None:
+        self._given = given
+        linear = SmallMotions(scope.derivation)
+        # these give names their correct values, and the scope another model
+        self._positions = MassPositions(scope)
+        self._matrices, self._energies = DerivedMatrices(scope, linear), PartialEnergies(scope)
+        self._scope, self._model = scope, scope.model
+        self._roles = Roles(scope, linear)
+        self._comparison = SideComparison(scope, linear, self._roles)
+        self._manipulator = Manipulator(scope)
+
+    def verdicts(
+        self, formulas: Sequence[DocumentFormula]
+    ) -> list[tuple[DocumentFormula, SideVerdict]]:
+        """The verdicts on formulas in their order, with what follows from wrong ones."""
+        judged = [(formula, self.verdict(formula)) for formula in formulas]
+        return Consequences(self._scope).marked(judged)
+
+    def verdict(self, formula: DocumentFormula) -> SideVerdict:
+        """The verdict on a formula: that on its first side that is not correct."""
+        if not formula.relations:
+            return plain("context", formula, "it is no statement")
+        if any(one not in ("=", ":=", "~") for one in formula.relations):
+            return plain("context", formula, "it is no equation")
+        if formula.is_update:
+            return plain("context", formula, "it is a step in time")
+        if formula.subject in INDICES or self._is_special(formula):
+            return plain("context", formula, "it states a value")
+        if formula.occurrence in self._given:
+            return plain("definition", formula, "it states the system")
+        unknown = self._unknown(formula.sides)
+        if unknown and self._is_identity(formula, unknown):
+            return plain("verified", formula, f"for any {', '.join(unknown)}")
+        if unknown and self._is_equation_without(formula, unknown):
+            return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
+        if self._unknown(formula.sides[:1]):
+            return self._not_understood(formula, unknown)
+        known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
+        results = [self._side(formula, k) for k in known]
+        for result in results:
+            if result.verdict.verdict not in CORRECT:
+                return self._first_side(formula) or result
+        if unknown:
+            return self._not_understood(formula, unknown)
+        notes = dict.fromkeys(one.verdict.note for one in results)
+        best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
+        return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
+
+    def _not_understood(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
+        result = not_understood(formula, unknown)
+        if not {*unknown} & {*self._scope.letters.multipliers}:
+            return result
+        note = joined(result.verdict.note, f"if this is a multiplier, {WAY_OUT}")
+        return replace(result, verdict=replace(result.verdict, note=note))
+
+    def _is_identity(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
+        """Whether neighbouring sides are equal for all values of letters without a meaning."""
+        scope = {**self._scope.all_names, **{name: sp.Symbol(name) for name in unknown}}
+        sides = [one for one in formula.sides if one.text != "0"]  # det(K - omega**2*M) = 0
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            first, *others = (parse(one.text, scope) for one in sides)
+            differences = [one - first for one in others]
+            numbers = all(not isinstance(one, sp.MatrixBase) for one in differences)
+            return bool(others) and numbers and all(map(vanishes, differences))
+        return False
+
+    def _is_equation_without(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
+        """Whether a formula is an equation of motion but for terms with unknown letters."""
+        system = self._scope.derivation.system
+        if {*unknown} & {*self._scope.letters.multipliers}:  # all reactions would be correct
+            return False
+        known = without_unknown_terms(formula, unknown)
+        if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
+            return False
+        with suppress(ExpressionError, NotImplementedError, ValueError):
+            left, right = (self._scope.value(one.text) for one in known.sides)
+            if not depends_on(sp.Tuple(left, right), system.qddot):
+                return False
+            result = self._comparison.compared(known, *known.sides, left, right)
+            return result.verdict.verdict == "verified"
+        return False
+
+    def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on the first side if all others agree, so that it is the wrong one."""
+        first, *others = formula.sides
+        if len(others) < 2 or "~" in formula.relations or self._unknown(others):
+            return None
+        with suppress(ExpressionError, NotImplementedError):
+            required, *rest = (self._scope.value(one.text) for one in others)
+            if all(not isinstance(one, sp.MatrixBase) for one in (required, *rest)) and all(
+                self._model.agreement(one - required) is not None for one in rest
+            ):
+                result = self._roles.value(first, "first_side", required)
+                return result if result.verdict.corrections else None
+        return None
+
+    def _is_special(self, formula: DocumentFormula) -> bool:
+        """Whether a formula states the value of a coordinate, of its rate or of a parameter."""
+        names, last = self._scope.all_names, formula.sides[-1].text
+        try:
+            value = self._scope.value(last)
+        except ExpressionError:
+            return False
+        others = [side.text for side in formula.sides[:-1]]
+        return (
+            not isinstance(value, sp.MatrixBase)
+            and value.is_number
+            and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
+        )
+
+    def _unknown(self, sides: Sequence[FormulaText]) -> list[str]:
+        """The names in some sides of a formula that have no meaning."""
+        words = dict.fromkeys(word for side in sides for word in WORD.findall(side.text))
+        return [name for name in words if name not in self._scope.all_names]
+
+    def _side(self, formula: DocumentFormula, k: int) -> SideVerdict:
+        first, side = formula.sides[0], formula.sides[k]
+        defined = self._scope.defining.get(formula.subject)
+        if defined and defined[0] is formula and defined[1] == side.text:
+            required = self._energies.required(formula.subject)
+            if required is not None:
+                return self._roles.value(side, formula.subject, required)
+            return self._position(formula, side) or self._definition(formula, side)
+        if first.entries and (position := self._position(formula, side)):
+            return position
+        last = self._scope.defining.get(side.text)
+        if last and last[0] is formula:
+            return plain("definition", formula, "")
+        is_approximate = formula.relations[k - 1] == "~"
+        first = formula.sides[k - 1] if is_approximate else first
+        try:
+            values = [self._scope.value(one.text) for one in (first, side)]
+            if is_approximate:
+                return self._comparison.approximated(formula, *values)
+            return self._comparison.compared(formula, first, side, *values)
+        except (ExpressionError, NotImplementedError) as error:
+            return plain("context", formula, f"not judged: {error}")
+
+    def _position(self, formula: DocumentFormula, side: FormulaText) -> SideVerdict | None:
+        """The verdict on a definition of a position with a wrong component, if one is known."""
+        first = formula.sides[0]
+        names = [one.text for one in first.entries] or [first.text] * max(1, len(side.entries))
+        for index, (name, entry) in enumerate(zip(names, side.entries or (side,), strict=False)):
+            value = self._positions.required(name, 0 if first.entries else index)
+            if value is not None:
+                return self._roles.value(entry, "position", value)
+        return None
+
+    def _definition(self, formula: DocumentFormula, side: FormulaText) -> SideVerdict:
+        """The verdict on a definition, which can be that of a matrix of the system."""
+        name, entries = formula.subject, side.entries
+        required = self._manipulator.required(name) or self._matrices.required(name)
+        if required is None:
+            required, entries = self._matrices.entry(name), (side,)
+        if required is None:
+            return plain("definition", formula, "")
+        wrong = [k for k, value in enumerate(required) if value is not None]
+        if not wrong:
+            return plain("verified", formula, "")
+        results = [self._roles.value(entries[k], "entry", required[k]) for k in wrong if entries]
+        found = [one for one in results if one.verdict.corrections]
+        shortest = min(found, key=lambda one: len(one.verdict.corrections[0].correct), default=None)
+        return shortest or plain("wrong", formula, "it has not the forces of this system")

@@ -1,0 +1,201 @@
+"""Verdicts on two sides of a formula, from their values."""
+
+import ast
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.formulas.expression import Value
+from derive.formulas.syntax import syntax_tree
+from derive.verification.corrections.source_names import SourceNames
+from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.matrix_terms import MatrixTerms
+from derive.verification.documents.rules.roles import Roles
+from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
+from derive.verification.documents.rules.small_motions import SmallMotions
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.text import FormulaText
+from derive.verification.engine import UNDECIDED
+from derive.verification.reference_system import depends_on
+from derive.verification.verdict import Correction
+
+#: The largest denominator of a factor that is looked for.
+MAX_DENOMINATOR = 100
+
+
+class SideComparison:
+    """Compares sides: as numbers, as matrices, for small motions, and in units of a system."""
+
+    def __init__(self, scope: DocumentScope, linear: SmallMotions, roles: Roles) -> None:
+        self._scope, self._model, self._linear, self._roles = scope, scope.model, linear, roles
+        self._terms = MatrixTerms(scope, linear, roles)
+
+    def approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
+        """The verdict on an approximation, which is never wrong: others can be meant."""
+        if self._linear.agrees(left - right, self._model):
+            return plain("verified", formula, "it holds to first order at the origin")
+        return plain("context", formula, "it is an approximation")
+
+    def compared(
+        self,
+        formula: DocumentFormula,
+        first: FormulaText,
+        side: FormulaText,
+        left: Value,
+        right: Value,
+    ) -> SideVerdict:
+        """The verdict on a side by its value and that of the first side."""
+        is_product = getattr(right, "shape", ()) == (1, 1)
+        left, right = _number(left), _number(right)
+        if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
+            return self._matrices(formula, first, side, left, right)
+        # a Lagrangian of motions alone has other equations
+        is_lagrangian = self._scope.letters.quantities.get(first.text) == "lagrangian"
+        about = self._model.about(left - right)
+        model = about.context if is_lagrangian else about
+        has_reactions = is_lagrangian and depends_on(
+            right, self._scope.derivation.system.multipliers
+        )
+        if has_reactions:
+            left += self._reactions
+        if (note := model.agreement(left - right)) is not None:
+            return plain("context" if note == UNDECIDED else "verified", formula, note)
+        if has_reactions:
+            result = self._roles.value(side, first.text, left)
+            if result.verdict.verdict not in CORRECT:
+                return result
+            # it has the value along motions alone
+            note = "the multipliers have not the signs and factors of the equations of motion"
+            return plain("wrong", formula, note, *self._witness(formula, right, left))
+        small = "it holds for small motions about the origin"
+        if is_product:
+            return self._scaled(formula, side, left, right)
+        result = self._roles.judged(first, side, left, right)
+        if result.verdict.verdict in CORRECT:
+            return result
+        if self._linear.holds(left - right, self._model):
+            return plain("verified", formula, small)
+        if isinstance(syntax_tree(side.text), ast.Call) and side.text.startswith("sqrt("):
+            inside = self._roles.value(side.part(5, len(side.text) - 1), "square", left**2)
+            if inside.verdict.verdict in CORRECT:
+                return plain("verified", formula, "it holds for one sign of the root")
+            is_relation = result.kind == "euler_lagrange"
+            result = inside if inside.verdict.corrections and not is_relation else result
+        if values := self._special_values(left, right):
+            text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
+            return plain("equivalent", formula, f"it holds for {text}")
+        return result
+
+    def _witness(
+        self, formula: DocumentFormula, value: sp.Expr, derived: sp.Expr
+    ) -> tuple[str, str]:
+        """Two values at a state, and the numbers with which they can be computed again."""
+        context = self._model.context
+        names = SourceNames(formula.text, self._scope.all_names)
+        quantities = names.quantities((value - derived).free_symbols)
+        numbers = context.state(value, derived, quantities)
+        state = ", ".join(f"{name} = {number}" for name, number in numbers.items())
+        return context.witness(value, derived), state
+
+    @property
+    def _reactions(self) -> sp.Expr:
+        """The terms Σ λ φ that the constraints of coordinates add to a Lagrangian."""
+        derivation = self._scope.derivation
+        pairs = zip(derivation.system.multipliers, derivation.system.conditions, strict=True)
+        holonomic = derivation.holonomic
+        return sp.Add(*(name * one.formula for name, one in pairs if one.formula in holonomic))
+
+    def _scaled(
+        self, formula: DocumentFormula, side: FormulaText, left: sp.Expr, right: sp.Expr
+    ) -> SideVerdict:
+        """The verdict on a wrong scalar product of columns, perhaps but for a factor."""
+        context = self._model.context
+        result = plain("wrong", formula, "", *self._witness(formula, right, left))
+        ratio = sp.nsimplify(context.value(left) / context.value(right), rational=True)
+        if ratio.q < MAX_DENOMINATOR and self._model.agreement(left - ratio * right) is not None:
+            correction = Correction(side.text, f"{ratio}*{side.text}")
+            verdict = replace(result.verdict, corrections=(correction,))
+            return SideVerdict(verdict, ((0, side),), "value")
+        return result
+
+    def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
+        """Values of parameters for which two sides are equal; empty if there are none.
+
+        They are those that the document states, or units, if the right side has no parameters.
+        """
+        difference = (left - right).xreplace(self._model.momenta)
+        if stated := self._scope.special_values:
+            moving = difference
+            for values in self._model.motions.substitutions:
+                moving = moving.xreplace(values)
+            if self._agree(moving.xreplace(stated)):
+                return stated
+        parameters = left.free_symbols & {*self._scope.derivation.system.params}
+        units = dict.fromkeys(sorted(parameters, key=str), sp.S.One)
+        # one parameter that is lacking is a mistake
+        if len(parameters) > 1 and not right.free_symbols & parameters:
+            return units if self._agree(difference.xreplace(units)) else {}
+        return {}
+
+    def _agree(self, difference: sp.Expr) -> bool:
+        """Whether a difference is zero, by proof or at states between which it keeps its form."""
+        return self._model.about(difference).agreement(difference) not in (None, UNDECIDED)
+
+    def _matrices(
+        self,
+        formula: DocumentFormula,
+        first: FormulaText,
+        side: FormulaText,
+        left: Value,
+        right: Value,
+    ) -> SideVerdict:
+        """The verdict on the first entries that differ, or on the whole."""
+        if _is_state(first, side):
+            return plain("definition", formula, f"{first.text} denotes a state here")
+        left, right = self._with_shape(left, right), self._with_shape(right, left)
+        shapes = [getattr(one, "shape", None) for one in (left, right)]
+        if shapes[0] != shapes[1]:
+            return plain("context", formula, "it compares quantities of different shapes")
+        is_displaced = any(name in self._scope.displacements for name in formula.words)
+        undecided = ""
+        for index, (a, b) in enumerate(zip(left, right, strict=True)):
+            note = self._model.about(a - b).agreement(a - b)
+            undecided = UNDECIDED if note == UNDECIDED else undecided
+            if note is not None or self._linear.holds(
+                a - b, self._model, is_displaced=is_displaced
+            ):
+                continue
+            mine, other = (
+                one.entries[index] if len(one.entries) == len(left) else None
+                for one in (first, side)
+            )
+            witness, state = self._witness(formula, b, a)
+            if other is None and (result := self._terms.verdict(first, side, left, right, witness)):
+                own = result.verdict.state or state
+                return replace(result, verdict=replace(result.verdict, state=own))
+            if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
+                return self._roles.equation(mine, other)
+            if other:
+                return self._roles.value(other, "entry", a)
+            if mine:
+                return self._roles.value(mine, "entry", b)
+            return plain("wrong", formula, "", witness, state)
+        return plain("context" if undecided else "verified", formula, undecided)
+
+    def _with_shape(self, value: Value, other: Value) -> Value:
+        """Zeros in place of zero on one side of a set of equations of motion."""
+        is_zero = not isinstance(value, sp.MatrixBase) and value == 0
+        is_equation = depends_on(other, self._scope.derivation.system.qddot)
+        return sp.zeros(*other.shape) if is_zero and is_equation else value
+
+
+def _number(value: Value) -> Value:
+    """The entry of a matrix that has one, such as a scalar product."""
+    return value[0] if getattr(value, "shape", ()) == (1, 1) else value
+
+
+def _is_state(first: FormulaText, side: FormulaText) -> bool:
+    """Whether a side is a state, such as (x, x_dot, theta, theta_dot), and the first its name."""
+    names = [entry.text for entry in side.entries]
+    is_name = first.text.isidentifier() and all(map(str.isidentifier, names))
+    return is_name and bool({first.text, f"{first.text}_dot"} & {*names})

@@ -1,0 +1,26 @@
+"""The equations of the report: its LaTeX, with the details that the text does not state."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+from derive.reading.documents import read_document
+from derive.verification.report.details import DETAILS
+from derive.verification.report.equation import Details, ReportEquation
+
+FILE = Path(__file__).with_name("equations.md")
+TAG = re.compile(r"\s*\\tag\{(\w+)\}\s*$")
+
+
+@cache
+def equations() -> dict[str, ReportEquation]:
+    """The equations by id, in printed order."""
+    table = {}
+    for display in read_document(FILE).displays:
+        tag = TAG.search(display.latex)
+        if tag is None:
+            raise ValueError(f"{FILE}, line {display.line}: a display without a tag")
+        name = f"eq{tag[1]}" if tag[1].isdecimal() else tag[1]
+        details = vars(DETAILS.get(name, Details()))
+        table[name] = ReportEquation(name, display.latex[: tag.start()], **details)
+    return table

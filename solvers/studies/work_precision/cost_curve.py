@@ -1,0 +1,120 @@
+"""Work-precision curves, cost against global error, and the cheapest combinations."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from solvers.integration.timing import work_at
+from solvers.io.figures import columns
+
+#: Names of a method, a form and a backend.
+Combination = tuple[str, str, str]
+#: Requested global errors.
+ERRORS = tuple(10.0**-k for k in range(1, 14))
+
+
+@dataclass(frozen=True)
+class MeasuredRun:
+    """One run."""
+
+    setting: dict[str, float]  # `rtol` for controlled steps, else `h`
+    work_seconds: float  # without preparation
+    work_rhs: int | None  # evaluations of the right-hand side, where they are known
+    global_error: float  # largest component of the final state's error, in rad and rad/s
+    energy_error: float  # of the final state, in the unit of `measurement.unit_of_energy`
+
+
+@dataclass(frozen=True)
+class CostCurve:
+    """Runs of one combination on one scene, by rising cost."""
+
+    scene: str
+    method: str
+    form: str
+    backend: str
+    points: list[MeasuredRun]
+    failure: str = ""  # the exception that ended the runs of another program
+
+    @property
+    def combination(self) -> Combination:
+        """Method, form and backend."""
+        return self.method, self.form, self.backend
+
+    @property
+    def program(self) -> str:
+        """Backend and method, as another program is called."""
+        return f"{self.backend} {self.method}".rstrip()
+
+    def costs(self, work: str) -> list[list[float]]:
+        """Work and global errors of the runs whose work is known."""
+        known = [p for p in self.points if getattr(p, work) is not None]
+        return columns(known, work, "global_error")
+
+    def at(self, error: float, work: str = "work_seconds") -> float:
+        """Work for this global error; NaN beyond the curve."""
+        works, errors = self.costs(work)
+        return work_at(error, errors, works)
+
+
+def select(curves: Iterable[CostCurve], *combinations: Combination) -> Iterator[CostCurve]:
+    """The curves of these combinations, in the order of the combinations."""
+    by_combination = {curve.combination: curve for curve in curves}
+    return (by_combination[one] for one in combinations if one in by_combination)
+
+
+@dataclass(frozen=True)
+class FrontierPoint:
+    """The cheapest combination for an error.
+
+    `cost_ratios` has an entry for ``"method"``, ``"form"`` and ``"backend"``, and in it for each
+    other value: the cost of the best combination with that value relative to this one.
+    """
+
+    scene: str
+    global_error: float  # the requested error
+    work: str  # the cost that is minimised, "work_seconds" or "work_rhs"
+    method: str
+    form: str
+    backend: str
+    work_seconds: float  # interpolated between runs
+    work_rhs: float
+    cost_ratios: dict[str, dict[str, float]]
+
+
+def frontier(curves: Sequence[CostCurve], work: str = "work_seconds") -> list[FrontierPoint]:
+    """The cheapest combination for each error that some combination reaches.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Curves of one scene.
+    work : {"work_seconds", "work_rhs"}
+        The cost to minimise: time in s, or evaluations of the right-hand side.
+
+    Returns
+    -------
+    list of FrontierPoint
+        One for each of `ERRORS` that is reached, the largest first.
+    """
+    results = []
+    for error in ERRORS:
+        costs = [(cost, curve) for curve in curves if isfinite(cost := curve.at(error, work))]
+        if costs:
+            _, best = min(costs, key=lambda pair: pair[0])
+            ratios = {name: _ratios(costs, name, best) for name in ("method", "form", "backend")}
+            row = error, work, *best.combination, best.at(error), best.at(error, "work_rhs")
+            results.append(FrontierPoint(best.scene, *row, ratios))
+    return results
+
+
+def _ratios(
+    costs: Sequence[tuple[float, CostCurve]], name: str, best: CostCurve
+) -> dict[str, float]:
+    """Cost of the best combination with each other value of an attribute, over the least cost."""
+    cheapest: dict[str, float] = {}
+    for cost, curve in costs:
+        value = getattr(curve, name)
+        cheapest[value] = min(cheapest.get(value, inf), cost)
+    least = min(cheapest.values())
+    ordered = sorted(cheapest.items(), key=lambda pair: pair[1])
+    return {value: cost / least for value, cost in ordered if value != getattr(best, name)}
