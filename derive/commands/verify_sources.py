@@ -12,7 +12,7 @@ from derive.reading.document import Document
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.annotation import annotate, check_annotation
 from derive.verification.documents.pages.verdict_table import document_lines, document_record
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.files import judge_file
 from derive.verification.hand import HandDerivation, judge
 from derive.verification.report.report_judgement import OrderOf
@@ -26,7 +26,7 @@ FILE_WIDTH = 26
 #: Endings of system names and of files with typed equations.
 NOT_DOCUMENTS = ("", ".toml")
 
-Judged: TypeAlias = HandDerivation | JudgedDocument
+SourceVerdicts: TypeAlias = HandDerivation | DocumentVerdicts
 
 
 def verify(
@@ -48,17 +48,17 @@ def verify(
         check_annotation(annotation, files)
     if hints and not files:
         raise InputError("--system, --names: give a document, such as my_paper.tex")
-    results: dict[str, Judged | None] = {}
-    documents: list[tuple[JudgedDocument, Document]] = []
+    results: dict[str, SourceVerdicts | None] = {}
+    documents: list[tuple[DocumentVerdicts, Document]] = []
     for name in names:
         try:
             if name in files:
-                judged, document = judge_file(name, order_of, hints)
-                results[name] = judged
-                documents.append((judged, document))
+                judgement, document = judge_file(name, order_of, hints)
+                results[name] = judgement
+                documents.append((judgement, document))
             else:
                 results[name] = judge(name)
-        except ValueError as error:  # the other files are still judged
+        except ValueError as error:  # the other files still get verdicts
             results[name] = None
             print(f"holonomic verify: {error}", file=sys.stderr)
     if annotation and documents:
@@ -77,22 +77,22 @@ def verify(
     return 2 if "unreadable" in verdicts or None in results.values() else 0
 
 
-def _records(results: Mapping[str, Judged | None]) -> Any:
+def _records(results: Mapping[str, SourceVerdicts | None]) -> Any:
     """The verdicts for JSON: of derivations a list, with documents a table of both."""
     derivations = [asdict(one) for one in results.values() if isinstance(one, HandDerivation)]
-    documents = [document_record(d) for d in results.values() if isinstance(d, JudgedDocument)]
+    documents = [document_record(d) for d in results.values() if isinstance(d, DocumentVerdicts)]
     if not documents:
         return derivations
     return {"documents": documents} | ({"derivations": derivations} if derivations else {})
 
 
-def _verdicts(one: Judged) -> list[VerdictName]:
+def _verdicts(one: SourceVerdicts) -> list[VerdictName]:
     formulas = one.equations if isinstance(one, HandDerivation) else one.formulas
     return [formula.verdict for formula in formulas]
 
 
-def _lines(one: Judged, width: int) -> Iterator[str]:
-    if isinstance(one, JudgedDocument):
+def _lines(one: SourceVerdicts, width: int) -> Iterator[str]:
+    if isinstance(one, DocumentVerdicts):
         yield from document_lines(one, width)
         return
     head = dict.fromkeys((one.file, one.system, one.source))
@@ -102,14 +102,14 @@ def _lines(one: Judged, width: int) -> Iterator[str]:
     yield from verdict_rows(one.equations, width)
 
 
-def _marks(results: Mapping[str, Judged | None]) -> Iterator[str]:
+def _marks(results: Mapping[str, SourceVerdicts | None]) -> Iterator[str]:
     """Numbers of verdicts for each file, dashes for an unreadable one, and the totals."""
     total: Counter[VerdictName] = Counter()
     rows: list[list[object]] = []
-    for name, judged in results.items():
-        marks = Counter(_verdicts(judged) if judged else ())
+    for name, verdicts in results.items():
+        marks = Counter(_verdicts(verdicts) if verdicts else ())
         file = name if len(name) <= FILE_WIDTH else f"...{name[3 - FILE_WIDTH :]}"
-        rows.append([file, *(marks[verdict] if judged else None for verdict in COUNTED)])
+        rows.append([file, *(marks[verdict] if verdicts else None for verdict in COUNTED)])
         total.update(marks)
     rows.append(["total", *(total[verdict] for verdict in COUNTED)])
     return text_table({"file": "", **dict.fromkeys(COUNTED, "d")}, rows)

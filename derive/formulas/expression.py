@@ -22,7 +22,7 @@ from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from solvers.io.suggestion import did_you_mean
 
 Value: TypeAlias = sp.Expr | sp.MatrixBase
-Scope = Mapping[str, Any]
+Namespace = Mapping[str, Any]
 
 #: The functions and constants available in every formula.
 FUNCTIONS: dict[str, Any] = function_table.FUNCTIONS | {"pi": sp.pi}
@@ -34,8 +34,10 @@ COMPARISONS = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge}
 PARTIAL = (sp.tan, sp.log)
 
 
-def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
-    """Parse the formula `text`; its names and functions are those of `scope`, its value is finite.
+def parse(text: str, namespace: Namespace, budget: Budget | None = None) -> Value:
+    """Parse the formula `text`, whose names and functions are those of `namespace`.
+
+    Its value is finite.
 
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
     column, also of columns below each other, and ``[[a, b], [c, d]]`` a matrix. `budget` is
@@ -43,7 +45,7 @@ def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
     """
     text, budget = text.strip(), budget or Budget()
     try:
-        value = _Evaluator(scope, budget).value(syntax_tree(text))
+        value = _Evaluator(namespace, budget).value(syntax_tree(text))
         budget.spend(value)
     except ExpressionError:
         raise
@@ -60,17 +62,17 @@ def parse(text: str, scope: Scope, budget: Budget | None = None) -> Value:
     return value
 
 
-def number(text: str, scope: Scope, budget: Budget | None = None) -> sp.Expr:
+def number(text: str, namespace: Namespace, budget: Budget | None = None) -> sp.Expr:
     """Parse a formula whose value is a number: neither a column nor a matrix."""
-    value = parse(text, scope, budget)
+    value = parse(text, namespace, budget)
     if isinstance(value, sp.MatrixBase):  # which is an expression, too, if it is immutable
         raise ExpressionError(f"{text.strip()[:50]!r} is a column or matrix, not a number")
     return value
 
 
 class _Evaluator:
-    def __init__(self, scope: Scope, budget: Budget) -> None:
-        self._scope, self._budget = scope, budget
+    def __init__(self, namespace: Namespace, budget: Budget) -> None:
+        self._namespace, self._budget = namespace, budget
 
     def value(self, node: ast.expr) -> Any:
         value = self._value(node)
@@ -183,11 +185,11 @@ class _Evaluator:
         return (_divisor(base) if exponent < 0 else base) ** exponent
 
     def _lookup(self, name: str, *, function: bool) -> Any:
-        if name not in self._scope:
-            known = ", ".join(sorted(self._scope))
-            suggestion = did_you_mean(name, self._scope)
+        if name not in self._namespace:
+            known = ", ".join(sorted(self._namespace))
+            suggestion = did_you_mean(name, self._namespace)
             raise ExpressionError(f"unknown name {name[:50]!r}{suggestion}; known are: {known}")
-        value = self._scope[name]
+        value = self._namespace[name]
         if isinstance(value, sp.Expr | sp.MatrixBase) == function:
             reason = "is not a function; write products with *" if function else "needs arguments"
             raise ExpressionError(f"{name!r} {reason}")

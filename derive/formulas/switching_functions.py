@@ -20,13 +20,13 @@ def decisive_numbers(
 
     Of two that differ in their sign alone there is one. It comes after those in its own formula.
     """
-    found: dict[sp.Expr, None] = {}
+    result: dict[sp.Expr, None] = {}
     for expression in expressions:
         for part in sorted(expression.atoms(*CHOICES), key=sp.default_sort_key):
             for number in _decisive(part):
-                if number.free_symbols & {*variables} and -number not in found:
-                    found[number] = None
-    return tuple(sorted(found, key=lambda number: len(number.atoms(*CHOICES))))
+                if number.free_symbols & {*variables} and -number not in result:
+                    result[number] = None
+    return tuple(sorted(result, key=lambda number: len(number.atoms(*CHOICES))))
 
 
 def turning_arguments(expression: sp.Basic) -> tuple[tuple[sp.Expr, str], ...]:
@@ -35,7 +35,7 @@ def turning_arguments(expression: sp.Basic) -> tuple[tuple[sp.Expr, str], ...]:
     They are decisive numbers, of the kind "choice", bases of roots, and arguments of functions
     other than sine, cosine and tangent: ``tanh(300*x)`` is close to 1 or -1 but near x = 0.
     """
-    found: dict[tuple[sp.Expr, str], None] = {}
+    result: dict[tuple[sp.Expr, str], None] = {}
     for part in sp.preorder_traversal(expression):
         numbers: Iterable[sp.Expr] = ()
         kind = ""
@@ -45,8 +45,8 @@ def turning_arguments(expression: sp.Basic) -> tuple[tuple[sp.Expr, str], ...]:
             numbers, kind = (part.base,), f"power {part.exp}"
         elif isinstance(part, sp.Function) and not isinstance(part, sp.sin | sp.cos | sp.tan):
             numbers, kind = part.args, part.func.__name__
-        found |= {(number, kind): None for number in numbers if not number.is_number}
-    return tuple(found)
+        result |= {(number, kind): None for number in numbers if not number.is_number}
+    return tuple(result)
 
 
 def switching_functions(

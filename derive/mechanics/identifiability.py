@@ -275,9 +275,9 @@ def _integers(row: Sequence[int]) -> list[int]:
     for residue in row:
         pairs = ((residue * below % PRIME, below) for below in range(1, LARGEST))
         signed = ((above - PRIME * (2 * above > PRIME), below) for above, below in pairs)
-        found = next((pair for pair in signed if abs(pair[0]) < LARGEST), None)
-        if found is None:
+        result = next((pair for pair in signed if abs(pair[0]) < LARGEST), None)
+        if result is None:
             return []
-        fractions.append(Fraction(*found))
+        fractions.append(Fraction(*result))
     common = lcm(*(fraction.denominator for fraction in fractions))
     return [int(fraction * common) for fraction in fractions]

@@ -31,12 +31,12 @@ def outputs(kinetics: Kinetics, formulas: Sequence[Formula]) -> tuple[sp.Expr, .
     """Formulas, or names of `named_outputs`, as expressions; `SystemDefinitionError` if invalid."""
     system, named = kinetics.system, named_outputs(kinetics)
     symbols = {s.name: s for s in (*system.params, TIME)}
-    scope, results = FUNCTIONS | symbols | named, []
+    namespace, results = FUNCTIONS | symbols | named, []
     for given in formulas:
-        if isinstance(given, str) and given.isidentifier() and given not in scope:
+        if isinstance(given, str) and given.isidentifier() and given not in namespace:
             raise SystemDefinitionError(
                 f"{shortened(given)} is no output{did_you_mean(given, named)}; known are "
                 f"{', '.join(named)}, and formulas of these and of parameters"
             )
-        results.append(expression(f"output {shortened(given)}", given, scope))
+        results.append(expression(f"output {shortened(given)}", given, namespace))
     return tuple(results)

@@ -68,12 +68,12 @@ def with_inputs(system: System, formulas: Mapping[str, sp.Expr | float | str]) -
                 f"system {system.name!r} has no input {str(name)[:50]!r}{hint}; inputs are {known}"
             )
     others = [symbol for symbol in system.params if symbol.name not in formulas]
-    scope = FUNCTIONS | {s.name: s for s in (*system.q, *system.qdot, *others, TIME)}
+    namespace = FUNCTIONS | {s.name: s for s in (*system.q, *system.qdot, *others, TIME)}
 
     def value(name: str) -> sp.Expr:
         given = formulas[name]
         try:
-            return formula(number(given, scope) if isinstance(given, str) else given)
+            return formula(number(given, namespace) if isinstance(given, str) else given)
         except (ExpressionError, SystemDefinitionError) as error:
             raise SystemDefinitionError(f"input {name}: {error}") from error
 

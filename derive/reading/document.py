@@ -97,8 +97,8 @@ class Document:
     def _lines(self) -> list[int]:
         """The position at which each line starts."""
         starts = [0]
-        while found := self.text.find("\n", starts[-1]) + 1:
-            starts.append(found)
+        while result := self.text.find("\n", starts[-1]) + 1:
+            starts.append(result)
         return starts
 
     def place(self, position: int) -> Place:

@@ -102,8 +102,8 @@ def _scanned(
     form = known_formats()[document.kind]
     displays: list[Display] = []
     unread: dict[str, list[Place]] = {}
-    found = ((offset, part, one) for offset, part in parts for one in form.excerpts(part))
-    for count, (offset, part, one) in enumerate(found):
+    result = ((offset, part, one) for offset, part in parts for one in form.excerpts(part))
+    for count, (offset, part, one) in enumerate(result):
         if count == MAX_FORMULAS:
             raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
         if isinstance(one, UnreadDisplay):

@@ -29,11 +29,11 @@ def names() -> tuple[str, ...]:
 
 def large_names() -> tuple[str, ...]:
     """Names of the systems that are derived when they are first used: their modules are long."""
-    found = iter_modules(large.__path__)
-    return tuple(sorted(module.name for module in found))
+    result = iter_modules(large.__path__)
+    return tuple(sorted(module.name for module in result))
 
 
 def stems() -> set[str]:
     """Names of the files of the systems whose modules ship."""
-    found = iter_modules(systems.__path__)
-    return {module.name for module in found if not module.ispkg}
+    result = iter_modules(systems.__path__)
+    return {module.name for module in result if not module.ispkg}

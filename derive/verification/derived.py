@@ -10,7 +10,7 @@ from derive.verification.routhians import routhian, value_of
 
 
 def _acceleration(model: ReferenceSystem, name: str) -> sp.Expr:
-    system, value = model.derivation.system, model.context.scope[name]
+    system, value = model.derivation.system, model.context.namespace[name]
     return time_derivative(system, time_derivative(system, value))
 
 
@@ -24,7 +24,7 @@ def _hamilton(model: ReferenceSystem, name: str) -> sp.Expr:
 def _rate(
     model: ReferenceSystem, name: str, velocities: Iterable[sp.Expr], forces: Iterable[sp.Expr]
 ) -> sp.Expr:
-    system, value = model.derivation.system, model.context.scope[name]
+    system, value = model.derivation.system, model.context.namespace[name]
     rates = zip((*system.q, *system.p), (*velocities, *forces), strict=True)
     return sp.Add(value.diff(TIME), *(value.diff(symbol) * rate for symbol, rate in rates))
 
@@ -39,11 +39,11 @@ QUANTITIES: dict[str, Callable[[ReferenceSystem, str], sp.Expr]] = {
     "lagrangian": lambda model, _: model.lagrangian,
     "energy": lambda model, _: model.energy,
     "hamiltonian": lambda model, _: model.energy,
-    "momenta": lambda model, name: model.context.scope[f"p_{name}"],
+    "momenta": lambda model, name: model.context.namespace[f"p_{name}"],
     "accelerations": _acceleration,
     "hamilton": _hamilton,
     "routhian": value_of,
-    "value": lambda model, name: model.context.scope[name],
+    "value": lambda model, name: model.context.namespace[name],
 }
 
 #: Quantities that are functions of momenta instead of velocities.

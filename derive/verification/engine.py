@@ -14,7 +14,7 @@ import sympy as sp
 
 from derive.formulas.evaluation.generic_values import STATES
 from derive.formulas.evaluation.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
-from derive.formulas.expression import Scope, parse
+from derive.formulas.expression import Namespace, parse
 from derive.formulas.proofs.zero import is_positive, vanishes
 from derive.formulas.syntax import RELATION, ExpressionError
 
@@ -60,14 +60,14 @@ class Context:
     velocities and, if the equations of motion are assumed, accelerations. States agree with them.
     """
 
-    scope: Scope
+    namespace: Namespace
     states: tuple[State, ...]
     substitutions: tuple[State, ...] = ()
     index_count: int = 0  # an index takes the values 1 to index_count
     implicit: frozenset[sp.Symbol] = frozenset()  # dependent, but without a substitution
     unproved: str = IN_NUMBERS  # the note on what no proof decides
 
-    def check(self, text: str, definitions: Scope | None = None) -> Check:
+    def check(self, text: str, definitions: Namespace | None = None) -> Check:
         """Check every part of `text`, with additional names from `definitions`."""
         for index, comparison in enumerate(self.comparisons(text, definitions)):
             residual = comparison.residual
@@ -78,14 +78,14 @@ class Context:
                 return Check(False, index, sp.sstr(self.value(residual).n(6)))
         return Check(holds=True)
 
-    def comparisons(self, text: str, definitions: Scope | None = None) -> list[Comparison]:
+    def comparisons(self, text: str, definitions: Namespace | None = None) -> list[Comparison]:
         """Split `text` into comparisons of two numbers each."""
-        scope = {**self.scope, **(definitions or {})}
+        namespace = {**self.namespace, **(definitions or {})}
         return [
             comparison
             for part in text.split(";")
             for index in (range(1, self.index_count + 1) if INDEXED.search(part) else (0,))
-            for comparison in _compared(INDEXED.sub(rf"\g<1>{index}", part), scope)
+            for comparison in _compared(INDEXED.sub(rf"\g<1>{index}", part), namespace)
         ]
 
     def is_zero(self, expression: sp.Expr) -> bool:
@@ -202,11 +202,11 @@ def joined(*notes: str) -> str:
     return "; ".join(filter(None, notes))
 
 
-def _compared(text: str, scope: Scope) -> Iterator[Comparison]:
+def _compared(text: str, namespace: Namespace) -> Iterator[Comparison]:
     pieces = RELATION.split(text)
     if len(pieces) == 1:
         raise ExpressionError(f"{text.strip()[:80]!r} is not a statement: it has no =, < or >")
-    sides = [parse(piece, scope) for piece in pieces[::2]]
+    sides = [parse(piece, namespace) for piece in pieces[::2]]
     for left, relation, right in zip(sides, pieces[1::2], sides[1:], strict=False):
         pair = (right, left) if "<" in relation else (left, right)
         shapes = [side.shape for side in pair if isinstance(side, sp.MatrixBase)]

@@ -9,7 +9,7 @@ from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.program_reader import known_languages, read_program
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import Hints
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.documents.program_judgement import judge_program
 from derive.verification.report.report_document import judge_report
 from derive.verification.report.report_judgement import OrderOf
@@ -28,7 +28,7 @@ def is_program(name: str) -> bool:
 
 def judge_file(
     name: str, order_of: OrderOf, hints: Hints | None = None
-) -> tuple[JudgedDocument, Document]:
+) -> tuple[DocumentVerdicts, Document]:
     """Judge the formulas of a document, also in the programs of a notebook, or of a program.
 
     Without hints, the report is recognised by its displays; the orders of Runge–Kutta methods in
@@ -73,5 +73,5 @@ def _program(path: Path) -> Program:
         raise InputError(f"{path}: {error.strerror or error}") from error
 
 
-def _in_cell(formula: JudgedFormula, cell: int) -> JudgedFormula:
+def _in_cell(formula: FormulaVerdict, cell: int) -> FormulaVerdict:
     return replace(formula, cell=cell)

@@ -104,7 +104,7 @@ def _verdicts(table: TomlTable, model: ReferenceSystem) -> list[Verdict]:
         ]
         if kind == "lagrangian" and judged[kind][0].verdict == "equivalent":
             text = table.formula(kind)
-            source = model.with_lagrangian(parse(text, model.context.scope))
+            source = model.with_lagrangian(parse(text, model.context.namespace))
         if kind == "euler_lagrange":
             judged[kind] = judge_set(model, judged[kind])
     return [verdict for kind in table.values for verdict in judged[kind]]

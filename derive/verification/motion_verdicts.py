@@ -27,7 +27,7 @@ def judge_equation(model: ReferenceSystem, label: str, text: str) -> Verdict:
     """Judge an equation that must hold along every motion, and determine accelerations."""
     if text.count("=") > 1:
         raise ExpressionError(f"an equation has one equals sign, not {text.count('=')}")
-    value = difference(text, model.context.scope)
+    value = difference(text, model.context.namespace)
     inner = without_outer_function(model, value)
     if inner is not None:
         result = _judged(model, label, text, inner)
@@ -146,7 +146,7 @@ def fits(
 def _values(model: ReferenceSystem, texts: Sequence[str]) -> Iterator[sp.Expr]:
     for text in texts:
         with suppress(ExpressionError):
-            yield difference(text, model.context.scope)
+            yield difference(text, model.context.namespace)
 
 
 def judge_set(model: ReferenceSystem, judged: Sequence[Verdict]) -> list[Verdict]:
@@ -164,7 +164,7 @@ def judge_set(model: ReferenceSystem, judged: Sequence[Verdict]) -> list[Verdict
     kept = [k - (size - n) for k in independent([*units[n:], *rows.values(), *units[:n]])]
     missing = [k - len(rows) for k in kept if k >= len(rows)]
     if not any(
-        depends_on(difference(one.printed, model.context.scope), system.multipliers)
+        depends_on(difference(one.printed, model.context.namespace), system.multipliers)
         for one in judged
     ):
         missing = missing[size - n :]  # equations without multipliers do not determine these
@@ -187,7 +187,7 @@ def _is_conserved(model: ReferenceSystem, k: int, judged: Sequence[Verdict]) -> 
     system = model.derivation.system
     if system.q[k] not in model.derivation.cyclic_coordinates:
         return False
-    values = (difference(one.printed, model.context.scope) for one in judged)
+    values = (difference(one.printed, model.context.namespace) for one in judged)
     return any(depends_on(value, (system.p[k],)) for value in values)
 
 
@@ -197,7 +197,7 @@ def _row(model: ReferenceSystem, text: str) -> tuple[sp.Expr, ...]:
     The definition of a conserved momentum implies that its rate is zero.
     """
     system, L = model.derivation.system, model.lagrangian
-    value = difference(text, model.context.scope)
+    value = difference(text, model.context.namespace)
     unknown = (*system.qddot, *system.multipliers)
     if depends_on(value.xreplace(model.momenta), unknown):
         return _factors(model, [value.diff(a) for a in unknown])

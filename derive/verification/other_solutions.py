@@ -68,8 +68,8 @@ def has_other_solutions(model: ReferenceSystem, value: sp.Expr) -> bool | None:
     if the equation is no polynomial on the line, and no other solution is known.
     """
     places = islice(model.motions.states, STATES)
-    found = [_on_line(model, value, state) for state in places]
-    return True if any(found) else None if None in found else False
+    result = [_on_line(model, value, state) for state in places]
+    return True if any(result) else None if None in result else False
 
 
 def _on_line(model: ReferenceSystem, value: sp.Expr, state: State) -> bool | None:

@@ -42,7 +42,7 @@ def judge_formula(
     if kind == "routhian":
         name = eliminated_names(model, text)
     with suppress(ExpressionError):
-        value = difference(text, model.context.scope)
+        value = difference(text, model.context.namespace)
         model, source = model.about(value), source and source.about(value)
     verdict = _judged(model, label, text, kind, name)
     if verdict.verdict == "wrong" and source and kind in FROM_LAGRANGIAN:
@@ -60,7 +60,7 @@ def judge_formula(
 
     result = advised(verdict, own, kind, name, holds, others)
     if verdict.witness:
-        value = difference(text, model.context.scope)
+        value = difference(text, model.context.namespace)
         reasons = (find(model, kind, value) for find in MISTAKES)
         return replace(result, note=joined(result.note, *reasons))
     return result
@@ -69,7 +69,7 @@ def judge_formula(
 def _judged(model: ReferenceSystem, label: str, text: str, kind: str, name: str) -> Verdict:
     """Judge a formula without advice; what is undecided is `context`."""
     try:
-        about = model.about(difference(text, model.context.scope))
+        about = model.about(difference(text, model.context.namespace))
         if kind == "euler_lagrange":
             verdict = judge_equation(about, label, text)
         else:
@@ -81,7 +81,7 @@ def _judged(model: ReferenceSystem, label: str, text: str, kind: str, name: str)
 
 
 def _judge_quantity(model: ReferenceSystem, label: str, text: str, kind: str, name: str) -> Verdict:
-    value = number(text, model.context.scope)
+    value = number(text, model.context.namespace)
     derivation, system = model.derivation, model.derivation.system
     verdict = partial(Verdict, label, printed=text)
     context = model.motions if kind == "accelerations" else model.context

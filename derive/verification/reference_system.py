@@ -11,7 +11,7 @@ import sympy as sp
 from derive.formulas.derivative import derivative
 from derive.formulas.evaluation.generic_values import STATES, is_small, near_zeros, sample
 from derive.formulas.evaluation.numeric import Evaluator, NoValueError, solved
-from derive.formulas.expression import FUNCTIONS, Scope, Value
+from derive.formulas.expression import FUNCTIONS, Namespace, Value
 from derive.formulas.switching_functions import turning_arguments
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
@@ -41,7 +41,7 @@ class ReferenceSystem:
     """
 
     derivation: Derivation
-    names: Scope
+    names: Namespace
     source_lagrangian: sp.Expr | None = None
     #: A formula near whose own turning arguments there are further states, if it has any.
     printed: sp.Expr | None = None
@@ -118,10 +118,10 @@ class ReferenceSystem:
     def context(self) -> Context:
         """The names of formulas, and generic states with any accelerations."""
         system = self.derivation.system
-        scope = {**own_names(system), **self.names}
+        namespace = {**own_names(system), **self.names}
         rates = {f"{p}_dot": time_derivative(system, value) for p, value in self.momenta.items()}
         states = (*(self._state(index) for index in range(STATES)), *self._further_states)
-        names = {**rates, **scope}
+        names = {**rates, **namespace}
         if self.printed is None:
             return Context(names, states, (self.momenta,))
         states = (*states, *islice(self._turning_states(self.printed), MOST_TURNING))
@@ -210,7 +210,7 @@ def variables(system: System) -> tuple[sp.Symbol, ...]:
     return (*system.q, *system.qdot, *system.qddot, *system.p, TIME, *system.multipliers)
 
 
-def own_names(system: System) -> Scope:
+def own_names(system: System) -> Namespace:
     """Names of the system's variables, of its parameters, and of functions."""
     return {s.name: s for s in (*variables(system), *system.params)} | FUNCTIONS
 

@@ -26,7 +26,7 @@ def eliminated(model: ReferenceSystem, value: sp.Expr) -> tuple[int, ...]:
 def eliminated_names(model: ReferenceSystem, text: str) -> str:
     """The name of the Routhian that a formula states: that of its eliminated coordinates."""
     try:
-        value = number(text, model.context.scope)
+        value = number(text, model.context.namespace)
     except ExpressionError:
         return ""
     return names_of(model.derivation.system, eliminated(model, value))

@@ -7,7 +7,7 @@ from unicodedata import normalize
 
 import sympy as sp
 
-from derive.formulas.expression import Scope, Value, parse
+from derive.formulas.expression import Namespace, Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -47,10 +47,12 @@ def normalised(name: str) -> str:
     return normalize("NFKC", name)
 
 
-def parsed(key: str, text: str, scope: Scope, read: Callable[[str, Scope], Value] = parse) -> Value:
+def parsed(
+    key: str, text: str, namespace: Namespace, read: Callable[[str, Namespace], Value] = parse
+) -> Value:
     """The value of the formula at a key of a file; an `InputError` names the key."""
     try:
-        return read(text, scope)
+        return read(text, namespace)
     except ExpressionError as error:
         raise InputError(f"{key}: {error}") from error
 
@@ -60,11 +62,11 @@ def names_of_coordinates(kind: str, model: ReferenceSystem) -> list[str]:
 
     Functions of several coordinates have accelerations, but no momentum.
     """
-    system, scope = model.derivation.system, model.context.scope
+    system, namespace = model.derivation.system, model.context.namespace
     names = dict.fromkeys([*(q.name for q in system.q), *model.names])
     if kind == "accelerations":
-        return [name for name in names if _is_position(system, scope[name])]
-    single = [name for name in names if _coordinate(system, scope[name])]
+        return [name for name in names if _is_position(system, namespace[name])]
+    single = [name for name in names if _coordinate(system, namespace[name])]
     return [*single, *(f"p_{name}" for name in single)] if kind == "hamilton" else single
 
 
@@ -92,14 +94,14 @@ def with_multipliers(model: ReferenceSystem, equations: Sequence[str]) -> Refere
         return model
     motions = model.motions
 
-    def holding(names: Scope) -> int:
-        return sum(_holds(motions, text, {**motions.scope, **names}) for text in equations)
+    def holding(names: Namespace) -> int:
+        return sum(_holds(motions, text, {**motions.namespace, **names}) for text in equations)
 
-    found = max(usual_names(system), key=holding)
-    return replace(model, names={**found, **model.names})
+    result = max(usual_names(system), key=holding)
+    return replace(model, names={**result, **model.names})
 
 
-def usual_names(system: System) -> Iterator[Scope]:
+def usual_names(system: System) -> Iterator[Namespace]:
     """Names of the multipliers with each of the factors."""
     for factor in FACTORS:
         names = {f"lambda_{k}": factor * one for k, one in enumerate(system.multipliers, 1)}
@@ -108,8 +110,8 @@ def usual_names(system: System) -> Iterator[Scope]:
         yield names
 
 
-def _holds(motions: Context, text: str, scope: Scope) -> bool:
+def _holds(motions: Context, text: str, namespace: Namespace) -> bool:
     try:
-        return motions.is_small(difference(text, scope))
+        return motions.is_small(difference(text, namespace))
     except ExpressionError:
         return False

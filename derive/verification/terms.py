@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.expression import Scope, number
+from derive.formulas.expression import Namespace, number
 from derive.mechanics.energies.harmonics import Harmonics
 from derive.mechanics.energies.reduction import collected
 
@@ -22,10 +22,10 @@ class Term:
     side: int  # -1 on the right of an equation
 
 
-def difference(text: str, scope: Scope) -> sp.Expr:
+def difference(text: str, namespace: Namespace) -> sp.Expr:
     """Left minus right side of an equation; the value of a formula without an equals sign."""
     left, equals, right = text.partition("=")
-    return number(left, scope) - (number(right, scope) if equals else sp.S.Zero)
+    return number(left, namespace) - (number(right, namespace) if equals else sp.S.Zero)
 
 
 def coefficients(expression: sp.Expr, state: Symbols) -> Coefficients:

@@ -147,7 +147,7 @@ MARKERS: dict[str, Callable[[str], str]] = {"api": api, "commands": commands, "s
 def replace_markers(app: Sphinx, document: str, source: list[str]) -> None:
     """Replace ``<!-- marker: argument -->`` in a page of the site."""
     markers = rf"<!-- ({'|'.join(MARKERS)}):? ?(\w*) -->"
-    source[0] = re.sub(markers, lambda found: MARKERS[found[1]](found[2]), source[0])
+    source[0] = re.sub(markers, lambda result: MARKERS[result[1]](result[2]), source[0])
 
 
 def add_contents(app: Sphinx, document: str, source: list[str]) -> None:

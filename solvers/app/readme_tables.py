@@ -71,8 +71,8 @@ def readmes() -> list[GeneratedFiles]:
             text = texts.get(name) or (ROOT / name).read_text(encoding="utf-8")
             start, end = f"<!-- {title} -->\n", f"<!-- end of {title} -->"
             before, _, rest = text.partition(start)
-            _, found, after = rest.partition(end)
-            if not found:
+            _, result, after = rest.partition(end)
+            if not result:
                 raise ValueError(
                     f"{ROOT / name} has no table of {title}: write the lines {start.strip()!r} and "
                     f"{end!r} where it belongs"

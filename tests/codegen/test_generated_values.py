@@ -331,10 +331,10 @@ def test_every_mutation_of_a_function_changes_its_values(module: ModuleType, nam
         tree = mutation.visit(ast.parse(inspect.getsource(function)))
         if mutation.count <= mutated:
             break
-        scope = dict(vars(module))
+        namespace = dict(vars(module))
         code = compile(ast.fix_missing_locations(tree), name, "exec", flags=annotations)
-        exec(code, scope)
-        assert np.abs(np.ravel(called(scope[name], y, params)) - expected).max() > 1e-9
+        exec(code, namespace)
+        assert np.abs(np.ravel(called(namespace[name], y, params)) - expected).max() > 1e-9
         mutated += 1
     assert mutated == operations(source)
 

@@ -164,12 +164,14 @@ def test_the_cells_of_a_notebook_run(documents, derivation) -> None:
 def test_the_python_code_has_the_values_of_the_generated_module(documents, name: str) -> None:
     module = __import__(f"generated.{name}", fromlist=["rhs"])
     codes = [b for s in documents(name).sections for b in s.blocks if isinstance(b, Code)]
-    scope: dict[str, object] = {}
+    namespace: dict[str, object] = {}
     for code in codes:
         if code.is_executable:
-            exec(code.text, scope)
-    state = scope["y"]
-    assert scope["rhs"](0.3, state, scope["params"]) == module.rhs(0.3, state, module.DEFAULTS)  # type: ignore[operator]
+            exec(code.text, namespace)
+    state = namespace["y"]
+    assert namespace["rhs"](0.3, state, namespace["params"]) == module.rhs(
+        0.3, state, module.DEFAULTS
+    )  # type: ignore[operator]
 
 
 @needs_latex
@@ -363,8 +365,8 @@ def test_the_key_names_the_part_that_is_wrong_and_the_right_one(documents) -> No
     for text in texts:
         number, *parts = re.findall(r"\((\d+)\).*`(.*)` instead of `(.*)`\.", text)[0]
         solution, exercise = right[int(number)], wrong[int(number)]
-        scope = FUNCTIONS | {symbol.name: symbol for symbol in solution.order.kinds}
-        bad, good = (parse(part, scope) for part in parts)
+        namespace = FUNCTIONS | {symbol.name: symbol for symbol in solution.order.kinds}
+        bad, good = (parse(part, namespace) for part in parts)
         assert exercise.value.has(bad)
         assert solution.value.has(good)
 

@@ -12,7 +12,7 @@ from derive.handout.sections import document
 from derive.reading.documents import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 
 SWING = """
 title = "Pendulum in Cartesian coordinates"
@@ -66,7 +66,7 @@ def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     return path
 
 
-def judged(path: Path, *changes: tuple[str, str]) -> JudgedDocument:
+def judged(path: Path, *changes: tuple[str, str]) -> DocumentVerdicts:
     """Verdicts on the document of a system, after changes of its LaTeX."""
     (written,) = write_document(Derivation(load(path)), path.with_suffix(".tex"))
     text = written.read_text(encoding="utf-8")
@@ -89,7 +89,7 @@ def test_a_document_is_verified_from_its_own_latex(path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def crank(tmp_path_factory: pytest.TempPathFactory) -> list[JudgedFormula]:
+def crank(tmp_path_factory: pytest.TempPathFactory) -> list[FormulaVerdict]:
     """Verdicts on the document of the slider-crank, with formulas that follow it."""
     path = tmp_path_factory.mktemp("crank") / "crank.tex"
     write_document(Derivation(load("slider_crank")), path)
@@ -101,7 +101,7 @@ def crank(tmp_path_factory: pytest.TempPathFactory) -> list[JudgedFormula]:
 
 @pytest.mark.long("the document of a large system")
 def test_formulas_of_eliminated_coordinates_are_listed_and_verified(
-    crank: list[JudgedFormula],
+    crank: list[FormulaVerdict],
 ) -> None:
     listed = [one for one in crank if re.match(r"[wu] & = ", one.latex)]
     assert {one.latex: one.verdict for one in listed} == {
@@ -112,7 +112,7 @@ def test_formulas_of_eliminated_coordinates_are_listed_and_verified(
 
 @pytest.mark.long("the document of a large system")
 def test_formulas_that_follow_from_the_constraints_are_verified(
-    crank: list[JudgedFormula],
+    crank: list[FormulaVerdict],
 ) -> None:
     verdicts = {one.latex: one.verdict for one in crank}
     assert {verdicts[one] for one in FOLLOWING} == {"verified"}
@@ -121,7 +121,7 @@ def test_formulas_that_follow_from_the_constraints_are_verified(
 @pytest.mark.long("the document of a large system")
 @pytest.mark.parametrize(("wrong", "term", "correction"), AGAINST)
 def test_a_formula_against_the_constraints_is_wrong(
-    wrong: str, term: str, correction: str, crank: list[JudgedFormula]
+    wrong: str, term: str, correction: str, crank: list[FormulaVerdict]
 ) -> None:
     (verdict,) = (one for one in crank if one.latex == wrong)
     assert (verdict.verdict, verdict.wrong_term) == ("wrong", term)

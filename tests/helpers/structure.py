@@ -1,4 +1,4 @@
-"""The structure of the packages: files, lines, floors, arrows and circles of every folder.
+"""The structure of the packages: floors, arrows and circles of every folder; repeated names.
 
 ``python tests/helpers/structure.py`` prints them.
 """
@@ -11,6 +11,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("derive", "solvers", "notebooks/benchmarks")
+#: Folders of which each file is found by its name.
+REGISTERS = ("backends", "commands", "formats", "languages", "maps", "methods", "models", "systems")
 Arrows = dict[str, set[str]]
 
 
@@ -112,8 +114,25 @@ def folders(package: str) -> list[Folder]:
     return [Folder.of(path) for path in sorted(paths)]
 
 
+def repeated_names() -> dict[str, list[str]]:
+    """Names of classes, and of files, that stand in more than one file, with these files.
+
+    Names of files in a register are those of its entries, such as a format.
+    """
+    paths: dict[str, list[str]] = {}
+    for package in ("derive", "solvers"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            names = [node.name for node in tree.body if isinstance(node, ast.ClassDef)]
+            if path.name != "__init__.py" and path.parent.name not in REGISTERS:
+                names.append(path.name)
+            for name in names:
+                paths.setdefault(name, []).append(path.relative_to(ROOT).as_posix())
+    return {name: files for name, files in paths.items() if files[1:]}
+
+
 def main() -> None:
-    """Print a table."""
+    """Print a table, and the names that are repeated."""
     rows = [row for package in PACKAGES for row in folders(package)]
     print("folder                              files   lines  floors  arrows  circles")
     for row in rows:
@@ -122,6 +141,8 @@ def main() -> None:
         print(f"{name:<36}{numbers}".rstrip())
     files, lines = sum(row.files for row in rows), sum(row.lines for row in rows)
     print(f"{'all':<36}{files:>5}{lines:>8}")
+    for name, places in repeated_names().items():
+        print(f"{name} stands in {', '.join(places)}")
 
 
 if __name__ == "__main__":

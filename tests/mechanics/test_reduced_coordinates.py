@@ -172,10 +172,10 @@ def differences(system: System) -> dict[str, float]:
 
 def functions(system: System) -> dict[str, Any]:
     """The names of a module with few functions."""
-    scope: dict[str, Any] = {}
+    namespace: dict[str, Any] = {}
     names = (*COMPARED, "outputs", "constraints", "correction")
-    exec(texts(Derivation(system), names)[f"{system.name}.py"], scope)
-    return scope
+    exec(texts(Derivation(system), names)[f"{system.name}.py"], namespace)
+    return namespace
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)

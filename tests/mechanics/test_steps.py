@@ -50,7 +50,7 @@ def test_every_formula_is_the_derived_one(name: str) -> None:
     symbols = set().union(*(sp.Matrix([v]).free_symbols for v in values.values()))
     system = derivation.system
     symbols |= {*system.qdot, *system.qddot, *system.multipliers}
-    scope = {**FUNCTIONS, **{s.name: s for s in symbols}}
+    namespace = {**FUNCTIONS, **{s.name: s for s in symbols}}
     names_shown, residuals = set(), []
     for step in derivation.steps:
         for formula in step.formulas:
@@ -59,11 +59,11 @@ def test_every_formula_is_the_derived_one(name: str) -> None:
                 residuals.append(left)
                 continue
             names_shown.add(left)
-            apart = sp.Matrix([parse(right, scope)]) - sp.Matrix([values[left]])
+            apart = sp.Matrix([parse(right, namespace)]) - sp.Matrix([values[left]])
             assert apart.expand().is_zero_matrix or sp.simplify(apart).is_zero_matrix, left
     assert names_shown == {*values}
     products = [residual for residual in residuals if "*[[" in residual]
-    equations = [parse(one, scope) for one in residuals if one not in products]
+    equations = [parse(one, namespace) for one in residuals if one not in products]
     conditions = [one.formula for one in system.conditions]
     reduced = [*derivation.routh_equations] if "R" in values else []
     assert equations[: len(equations) - len(reduced)] == [*conditions, *derivation.euler_lagrange]

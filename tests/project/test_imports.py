@@ -88,6 +88,10 @@ def test_folders_have_few_files_and_floors() -> None:
     assert np.mean([row.floors for row in rows]) < 5
 
 
+def test_no_name_of_a_class_or_file_stands_in_two_places() -> None:
+    assert structure.repeated_names() == {}
+
+
 def test_rooms_for_documents_have_few_arrows() -> None:
     row = Folder.of(ROOT / "derive" / "verification" / "documents")
     assert (row.floors, row.files) == (7, 7)

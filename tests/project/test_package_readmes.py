@@ -15,7 +15,7 @@ from snippets import assert_is_printed, run_snippet
 import generated.double_pendulum as dp
 from derive.codegen.generated_folder import GeneratedFiles
 from derive.verification.documents.pages.verdict_table import document_record
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.hand import EQUATIONS, HEADER
 from derive.verification.verdict import Verdict, VerdictName
 from solvers.app.cli import main
@@ -195,7 +195,7 @@ def test_the_letters_of_the_readme_are_those_of_a_document(
 def test_the_keys_fields_and_verdicts_of_the_readme_are_those_of_the_code() -> None:
     assert sorted(first_column(VERIFICATION, "key")) == sorted((*HEADER, *EQUATIONS))
     assert first_column(VERIFICATION, "field") == [field.name for field in fields(Verdict)]
-    document = JudgedDocument("", "latex", "", (JudgedFormula(1, 1, 1, "", "wrong"),))
+    document = DocumentVerdicts("", "latex", "", (FormulaVerdict(1, 1, 1, "", "wrong"),))
     (formula,) = document_record(document)["formulas"]
     assert first_column(VERIFICATION, "of a formula") == list(formula)
     assert first_column(VERIFICATION, "verdict") == [*get_args(VerdictName)]

@@ -38,16 +38,18 @@ def values(system: str, rng: random.Random) -> dict[str, sp.Expr]:
 def residuals(program: Program, system: str, names: Mapping[str, str]) -> list[float]:
     """Left minus right side of each equation; `names` has the formulas of its names."""
     own = values(system, random.Random(20))
-    scope = FUNCTIONS | {name: sp.sympify(value) for name, value in own.items()}
+    namespace = FUNCTIONS | {name: sp.sympify(value) for name, value in own.items()}
     for name, formula in names.items():
         sign = "-" if formula.startswith("-") else ""
         for order in ("", "_dot", "_ddot"):
             if not order or f"{formula.removeprefix('-')}{order}" in own:
-                scope[name + order] = parse(f"{sign}{formula.removeprefix('-')}{order}", scope)
+                namespace[name + order] = parse(
+                    f"{sign}{formula.removeprefix('-')}{order}", namespace
+                )
     found = []
     for equation in program.equations:
         left, right = equation.text.split(" = ")
-        found.append(float(abs((parse(left, scope) - parse(right, scope)).evalf(20))))
+        found.append(float(abs((parse(left, namespace) - parse(right, namespace)).evalf(20))))
     return found
 
 

@@ -20,9 +20,9 @@ def test_right_hand_sides_of_chains_are_short(n: int, operations: int) -> None:
 def test_generated_chains_solve_the_textbook_equations(n: int) -> None:
     # M_ij = μ l_i l_j cos(θ_i - θ_j), f_i = -Σ μ l_i l_j sin(θ_i - θ_j) θ̇_j² - μ_i g l_i sin θ_i,
     # with μ the mass at or below the lower of the two joints
-    scope: dict[str, object] = {}
+    namespace: dict[str, object] = {}
     text = texts(Derivation(load(f"chain_{n}")))[f"chain_{n}.py"]
-    exec(compile(text, "chain", "exec"), scope)
+    exec(compile(text, "chain", "exec"), namespace)
     generator = random.Random(n)
     theta, omega = (np.array([generator.uniform(-3, 3) for _ in range(n)]) for _ in range(2))
     m, lengths = (np.array([generator.uniform(0.5, 2) for _ in range(n)]) for _ in range(2))
@@ -33,7 +33,7 @@ def test_generated_chains_solve_the_textbook_equations(n: int) -> None:
     f = -(mu * np.outer(lengths, lengths) * np.sin(delta)) @ omega**2
     f -= below * 9.81 * lengths * np.sin(theta)
     params = [*m, *lengths, 9.81]
-    rhs, positions = scope["rhs"], scope["positions"]
+    rhs, positions = namespace["rhs"], namespace["positions"]
     result = rhs(0.0, [*theta, *omega], params)  # type: ignore[operator]
     np.testing.assert_allclose(result[n:], np.linalg.solve(M, f), rtol=1e-10)
     tip = positions(0.0, [*theta, *omega], params)[-1]  # type: ignore[operator]

@@ -181,9 +181,9 @@ def test_mistakes_break_the_constraint(
         nothing = property(lambda form: [form._graph.node(0)])
         monkeypatch.setattr(LagrangianForm, "_constraint_forcing", nothing)
     write(swing(), tmp_path)
-    scope: dict[str, object] = {}
-    exec((tmp_path / "swing.py").read_text(), scope)
-    *_, ax, ay = scope["rhs"](0.0, (0.48, -0.64, 2.0, 1.5), (1.5, 0.8, 9.81))  # type: ignore[operator]
+    namespace: dict[str, object] = {}
+    exec((tmp_path / "swing.py").read_text(), namespace)
+    *_, ax, ay = namespace["rhs"](0.0, (0.48, -0.64, 2.0, 1.5), (1.5, 0.8, 9.81))  # type: ignore[operator]
     second = 2 * (0.48 * ax - 0.64 * ay + 2.0**2 + 1.5**2)
     assert (abs(second) < 1e-12) == (mistake == "none")
 

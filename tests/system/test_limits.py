@@ -26,9 +26,9 @@ G = 9.81
 
 def made(name: str) -> dict[str, object]:
     """A module that does not ship."""
-    scope: dict[str, object] = {"__name__": name}
-    exec(compile(texts(Derivation(load(name)))[f"{name}.py"], name, "exec"), scope)
-    return scope
+    namespace: dict[str, object] = {"__name__": name}
+    exec(compile(texts(Derivation(load(name)))[f"{name}.py"], name, "exec"), namespace)
+    return namespace
 
 
 def test_a_chain_of_two_is_the_double_pendulum() -> None:

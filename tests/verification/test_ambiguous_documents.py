@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from derive.verification.documents.letters.hints import hints
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.files import judge_file
 from solvers.app.cli import main
 from solvers.runge_kutta.order_conditions import order
@@ -20,13 +20,13 @@ WRONG_SECOND = SECOND.replace("+ g", "- g")
 PENDULUM = r"$$\ddot\theta = -\frac gl\sin\theta$$"
 
 
-def judged(folder: Path, text: str) -> JudgedDocument:
+def judged(folder: Path, text: str) -> DocumentVerdicts:
     path = folder / "document.md"
     path.write_text(text)
     return judge_file(str(path), order)[0]
 
 
-def verdicts(document: JudgedDocument) -> list[str]:
+def verdicts(document: DocumentVerdicts) -> list[str]:
     return [one.verdict for one in document.formulas]
 
 

@@ -17,7 +17,7 @@ from derive.verification.documents.pages.annotation import annotate, check_annot
 from derive.verification.documents.pages.latex_notes import latex_notes
 from derive.verification.documents.pages.latex_text import escaped, formula
 from derive.verification.documents.pages.verdict_page import page
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from solvers.io.toml_input import InputError
 
 HOSTILE = r"\input{x} & 100% of {it_is} <script>alert(1)</script> # ~ ^ θ̇ ẋ é \end{document} 中"
@@ -45,7 +45,7 @@ def document(folder: Path, text: str, name: str = "a.tex") -> Document:
     return read_document(folder / name)
 
 
-def judged(read: Document, *formulas: tuple[str, dict[str, Any]]) -> JudgedDocument:
+def judged(read: Document, *formulas: tuple[str, dict[str, Any]]) -> DocumentVerdicts:
     rows = []
     for latex, fields in formulas:
         start = read.text.index(latex)
@@ -57,8 +57,8 @@ def judged(read: Document, *formulas: tuple[str, dict[str, Any]]) -> JudgedDocum
         first = start + latex.rfind(wrong)
         marked = ((first, first + len(wrong)),) if wrong and wrong in latex else ()
         fields = {"verdict": "verified", "wrong_spans": marked, **fields}
-        rows.append(JudgedFormula(line, column, display, latex, span=span, cell=cell, **fields))
-    return JudgedDocument(read.file, read.kind, "pendulum & cart", tuple(rows), ("line 1: <b>",))
+        rows.append(FormulaVerdict(line, column, display, latex, span=span, cell=cell, **fields))
+    return DocumentVerdicts(read.file, read.kind, "pendulum & cart", tuple(rows), ("line 1: <b>",))
 
 
 WRONG = (

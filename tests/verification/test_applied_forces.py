@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.formulas.expression import parse
-from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 from derive.verification.files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
@@ -21,7 +21,7 @@ $$\mathbf G = \begin{bmatrix} (m_1 + m_2) g l_1 \sin q_1 + m_2 g l_2 \sin(q_1 + 
 """
 
 
-def last(folder: Path, text: str) -> JudgedFormula:
+def last(folder: Path, text: str) -> FormulaVerdict:
     path = folder / "document.md"
     path.write_text(text)
     return judge_file(str(path), order)[0].formulas[-1]

@@ -7,7 +7,7 @@ import pytest
 from derive.reading.documents import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 
 # the shipped disc, with the lean phi, the heading psi and the turn chi
 MULTIPLIERS = r"""
@@ -46,7 +46,7 @@ so that the equations of motion are
 """
 
 
-def judged(folder: Path, text: str, system: str) -> JudgedDocument:
+def judged(folder: Path, text: str, system: str) -> DocumentVerdicts:
     path = folder / "paper.tex"
     path.write_text(text)
     return judge_document(read_document(path), hints(system, None))

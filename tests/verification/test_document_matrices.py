@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 from derive.verification.files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
@@ -38,7 +38,7 @@ $$M_0\ddot{\vec u} + K\vec u = 0$$
 """
 
 
-def judged(folder: Path, text: str) -> list[JudgedFormula]:
+def judged(folder: Path, text: str) -> list[FormulaVerdict]:
     path = folder / "document.md"
     path.write_text(text)
     return list(judge_file(str(path), order)[0].formulas)

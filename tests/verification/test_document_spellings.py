@@ -11,7 +11,7 @@ from derive.verification.documents import judgement
 from derive.verification.documents.interpretation import Work
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.letter_search import letters_of
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.statements import Occurrence, Translated, translated
 
 PENDULUM = r"""
@@ -27,7 +27,7 @@ $$p = m l^2\dot\phi\sin^2\theta$$
 """
 
 
-def judged(tmp_path: Path, text: str, suffix: str = ".md") -> JudgedDocument:
+def judged(tmp_path: Path, text: str, suffix: str = ".md") -> DocumentVerdicts:
     file = tmp_path / f"notes{suffix}"
     file.write_text(text, encoding="utf-8")
     return judge_document(read_document(file))

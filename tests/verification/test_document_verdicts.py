@@ -13,7 +13,7 @@ from shared_documents import shared
 from derive.reading.documents import read_document
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.pages.verdict_page import page
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.files import judge_file
 from solvers.io.toml_input import InputError
 from solvers.runge_kutta.order_conditions import order
@@ -29,7 +29,7 @@ SYSTEMS = {
 }
 
 
-def judged(folder: Path, text: str, name: str = "a.md") -> JudgedDocument:
+def judged(folder: Path, text: str, name: str = "a.md") -> DocumentVerdicts:
     (folder / name).write_text(text, encoding="utf-8")
     return judge_file(str(folder / name), order)[0]
 
@@ -47,7 +47,7 @@ def test_right_derivations_in_any_letters_are_verified(name: str, tmp_path: Path
     assert sum(one.verdict == "verified" for one in document.formulas) >= 3
 
 
-def problem(mutant: Mutant, document: JudgedDocument) -> str:
+def problem(mutant: Mutant, document: DocumentVerdicts) -> str:
     """Why a mistake is not found at its place; "" if it is."""
     near = [one for one in document.formulas if abs(one.span[0] - mutant.formula) < 3]
     if [one.verdict for one in near] != ["wrong"]:

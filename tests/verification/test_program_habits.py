@@ -1,7 +1,7 @@
 """Programs as people write them: measurements of a state, limits, inputs, callbacks of frames."""
 
 from derive.reading.programs.program_reader import read_program
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.program_judgement import judge_program
 
 ROD = """
@@ -58,11 +58,11 @@ class Other:
 """
 
 
-def judged(text: str, language: str = "Python") -> JudgedDocument:
+def judged(text: str, language: str = "Python") -> DocumentVerdicts:
     return judge_program(read_program(text, language))
 
 
-def equations(document: JudgedDocument) -> list[str]:
+def equations(document: DocumentVerdicts) -> list[str]:
     formulas = document.formulas
     return [one.verdict for one in formulas if one.latex != "method of integration"]
 

@@ -11,7 +11,7 @@ from derive.reading.documents import read_document
 from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import Statement
 from derive.verification.documents.formula_translation import FormulaTranslator, LetterNotation
-from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 from derive.verification.report.report_document import OTHER, judge_report
 from derive.verification.report.report_equations import FILE
 from derive.verification.report.report_judgement import EQUATIONS, verdict
@@ -80,7 +80,7 @@ def report(request: pytest.FixtureRequest) -> str:
     return path.read_text(encoding="utf-8")
 
 
-def judged(folder: Path, text: str) -> list[JudgedFormula]:
+def judged(folder: Path, text: str) -> list[FormulaVerdict]:
     """The verdicts on the report's equations in a text."""
     path = folder / "report.txt"
     path.write_text(text, encoding="utf-8")

@@ -12,7 +12,7 @@ from derive.verification.documents.judgement import _read, judge_document
 from derive.verification.documents.letters.energies import has_rotations
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.letters.letter_search import letters_of
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.statements import translated
 
 PENDULUM = r"""
@@ -106,7 +106,7 @@ DOCUMENTS = {
 CORRECT = {"verified", "definition"}
 
 
-def judged(folder: Path, text: str) -> JudgedDocument:
+def judged(folder: Path, text: str) -> DocumentVerdicts:
     path = folder / "page.md"
     path.write_text(text)
     return judge_document(read_document(path))

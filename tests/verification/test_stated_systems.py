@@ -9,10 +9,10 @@ from derive.reading.documents import read_document
 from derive.system.system_catalogue import load
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import Hints, hints
-from derive.verification.documents.pages.verdicts_in_place import JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 
 
-def judged(folder: Path, text: str, system: str, **names: str) -> tuple[JudgedFormula, ...]:
+def judged(folder: Path, text: str, system: str, **names: str) -> tuple[FormulaVerdict, ...]:
     (folder / "a.md").write_text(text, encoding="utf-8")
     return judge_document(read_document(folder / "a.md"), Hints(load(system), names)).formulas
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from derive.verification.documents.pages.verdict_table import document_lines, document_record
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from solvers.app.cli import main
 
 PENDULUM = r"""
@@ -32,10 +32,10 @@ def pendulum(tmp_path: Path) -> str:
 def test_the_table_abbreviates_only_correct_formulas() -> None:
     long = " + ".join(["a"] * 40)
     formulas = (
-        JudgedFormula(3, 1, 1, f"x &= {long}", "verified"),
-        JudgedFormula(12, 1, 0, f"y = {long}", "wrong", "a", "y = b", "1 instead of 2", "so"),
+        FormulaVerdict(3, 1, 1, f"x &= {long}", "verified"),
+        FormulaVerdict(12, 1, 0, f"y = {long}", "wrong", "a", "y = b", "1 instead of 2", "so"),
     )
-    judged = JudgedDocument("a.md", "markdown", "a system", formulas, ("a note",))
+    judged = DocumentVerdicts("a.md", "markdown", "a system", formulas, ("a note",))
     lines = list(document_lines(judged, 60))
     assert lines[:2] == ["a.md: a system", "a note"]
     assert lines[2].startswith("line 3   verified     x = a + a")
@@ -48,14 +48,14 @@ def test_the_table_abbreviates_only_correct_formulas() -> None:
 
 
 def test_a_hostile_formula_is_cut() -> None:
-    formulas = (JudgedFormula(1, 1, 1, "{" * 1_000_000, "unreadable"),)
-    judged = JudgedDocument("a.md", "markdown", "", formulas)
+    formulas = (FormulaVerdict(1, 1, 1, "{" * 1_000_000, "unreadable"),)
+    judged = DocumentVerdicts("a.md", "markdown", "", formulas)
     assert len("".join(document_lines(judged, 80))) < 3000
 
 
 def test_formulas_of_notebooks_have_cells() -> None:
-    formulas = (JudgedFormula(3, 1, 1, "x = 1", "verified", cell=2),)
-    judged = JudgedDocument("a.ipynb", "notebook", "", formulas)
+    formulas = (FormulaVerdict(3, 1, 1, "x = 1", "verified", cell=2),)
+    judged = DocumentVerdicts("a.ipynb", "notebook", "", formulas)
     assert list(document_lines(judged, 60))[1].startswith("cell 2, line 3  verified")
     assert document_record(judged)["formulas"][0]["cell"] == 2
 

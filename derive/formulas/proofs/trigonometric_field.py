@@ -25,7 +25,7 @@ class TrigonometricField:
                 if angle.has(sp.pi) or not n.is_Rational:
                     raise NotImplementedError(f"{wave} is not a rational function of sines")
                 multiples.setdefault(angle, []).append(int(sp.Rational(n).q))
-        self._angles = {angle: angle / lcm(*found) for angle, found in multiples.items()}
+        self._angles = {angle: angle / lcm(*result) for angle, result in multiples.items()}
         self._halves = {angle: sp.Dummy(f"tan_{k}") for k, angle in enumerate(self._angles)}
         symbols = set().union(*(formula.free_symbols for formula in formulas))
         constants = sorted(symbols - {*variables}, key=str)

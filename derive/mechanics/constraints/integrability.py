@@ -128,14 +128,14 @@ def _independent(
     functions: TrigonometricField, known: Sequence[Sequence[Any]], integrals: Sequence[sp.Expr]
 ) -> tuple[sp.Expr, ...]:
     """Integrals of which none is a function of those before it and the known differentials."""
-    gradients, found = [*known], list[sp.Expr]()
+    gradients, result = [*known], list[sp.Expr]()
     rank = functions.rank(gradients)
     for formula in integrals:
         gradient = functions.gradient(functions.value(formula))
-        if functions.rank([*gradients, gradient]) == rank + len(found) + 1:
+        if functions.rank([*gradients, gradient]) == rank + len(result) + 1:
             gradients.append(gradient)
-            found.append(formula)
-    return tuple(found)
+            result.append(formula)
+    return tuple(result)
 
 
 def _form(system: System, rate: sp.Expr) -> list[sp.Expr]:
@@ -224,12 +224,12 @@ class _Forms:
 
         Fewer if they are not found. Independence is that of each other and of the known ones.
         """
-        functions, found = self._functions, list[sp.Expr]()
+        functions, result = self._functions, list[sp.Expr]()
         for degree in range(1, HIGHEST_DEGREE + 1):
-            if len(_independent(functions, known, found)) == count:
+            if len(_independent(functions, known, result)) == count:
                 break
-            found += self._polynomials(degree)
-        return found
+            result += self._polynomials(degree)
+        return result
 
     def _polynomials(self, degree: int) -> Iterator[sp.Expr]:
         """Polynomials of a degree with differentials among the forms."""

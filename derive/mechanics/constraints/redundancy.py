@@ -177,18 +177,18 @@ class Closure:
 
     def configurations(self) -> list[Configuration]:
         """Some configurations that satisfy the constraints of coordinates."""
-        found: list[Configuration] = []
+        result: list[Configuration] = []
         least, worst = np.inf, 0
         for guess in self.guesses:
             at, residuals = self.closed(guess, self.of_coordinates)
             largest = np.abs(residuals).max(initial=0.0)
             if largest <= CLOSED and np.isfinite(self.values(at)[2]).all():
-                found.append(at)
-                if len(found) == ENOUGH:
+                result.append(at)
+                if len(result) == ENOUGH:
                     break
             elif largest < least:
                 least, worst = largest, int(np.argmax(np.abs(residuals)))
-        if not found:
+        if not result:
             name = self.equations.system.name
             one = self.conditions[self.of_coordinates[worst]].name
             raise SystemDefinitionError(
@@ -197,7 +197,7 @@ class Closure:
                 f"is {one} = {least * self.sizes[worst]:.3g}; change a constraint or a default "
                 "value, or give a configuration near a solution as the equilibrium"
             )
-        return found
+        return result
 
     def independent_rows(self, configurations: Sequence[Configuration]) -> list[int]:
         """Rows of G that at one configuration or more do not depend on those before them.

@@ -37,9 +37,9 @@ def _simpler(tangents: Sequence[Vector]) -> list[Vector] | None:
             if sum(depends) <= added:
                 continue
             new = [_without(t, angle, j, k) if yes else _with(t, angle, j, k) for t, yes in pairs]
-            found = [t for t in new if t is not None]
-            if len(found) == len(new) and sum(len(_angles(*t)) for t in found) < total:
-                return found
+            result = [t for t in new if t is not None]
+            if len(result) == len(new) and sum(len(_angles(*t)) for t in result) < total:
+                return result
     return None
 
 

@@ -35,9 +35,9 @@ class OperatingPoint:
         values = dict(zip(system.q, rest, strict=True))
         values |= dict.fromkeys((*system.qdot, *system.u), sp.S.Zero)
         known = dict.fromkeys((*values, TIME))
-        scope = FUNCTIONS | {s.name: s for s in (*system.params, *known)}
+        namespace = FUNCTIONS | {s.name: s for s in (*system.params, *known)}
         for name, value in given.items():
-            values[named(known, str(name))] = expression(str(name), value, scope)
+            values[named(known, str(name))] = expression(str(name), value, namespace)
         return cls(system, values)
 
     def __call__(self, matrix: Matrix) -> Matrix:
@@ -67,10 +67,10 @@ class OperatingPoint:
                 )
 
 
-def expression(what: str, value: Formula, scope: Mapping[str, object]) -> sp.Expr:
+def expression(what: str, value: Formula, namespace: Mapping[str, object]) -> sp.Expr:
     """A formula given as an expression, a number or text."""
     try:
-        return formula(number(value, scope) if isinstance(value, str) else value)
+        return formula(number(value, namespace) if isinstance(value, str) else value)
     except (ExpressionError, SystemDefinitionError) as error:
         raise SystemDefinitionError(f"{what}: {error}") from error
 

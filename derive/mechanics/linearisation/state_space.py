@@ -98,12 +98,12 @@ def state_space(
     By default, outputs are the components of the state.
     """
     system = point.system
-    state, scope = (*system.q, *system.qdot), FUNCTIONS | {TIME.name: TIME}
-    scope |= {s.name: s for s in (*state, *system.params)}
+    state, namespace = (*system.q, *system.qdot), FUNCTIONS | {TIME.name: TIME}
+    namespace |= {s.name: s for s in (*state, *system.params)}
     results = state
     if outputs is not None:
         results = items("outputs", outputs, "a list of formulas")
-        results = tuple(expression("an output", value, scope) for value in results)
+        results = tuple(expression("an output", value, namespace) for value in results)
     motion = NearbyMotions.at(point, equations)
 
     def jacobian(expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> Matrix:

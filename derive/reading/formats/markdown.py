@@ -87,13 +87,13 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     indented = Delimiter(
         "^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code
     )
-    for found in scanned(text, (indented, *TOKENS)):
-        if isinstance(found, UnreadDisplay):
-            yield found
-        elif found.delimiter in ("$$", IMAGE):
-            yield replace(found, is_inline=_is_in_sentence(text, found))
-        elif found.delimiter != r"\[" or FORMULA.search(text, found.start, found.end):
-            yield found
+    for result in scanned(text, (indented, *TOKENS)):
+        if isinstance(result, UnreadDisplay):
+            yield result
+        elif result.delimiter in ("$$", IMAGE):
+            yield replace(result, is_inline=_is_in_sentence(text, result))
+        elif result.delimiter != r"\[" or FORMULA.search(text, result.start, result.end):
+            yield result
 
 
 def _is_in_sentence(text: str, excerpt: Excerpt) -> bool:

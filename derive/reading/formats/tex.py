@@ -40,8 +40,8 @@ INCLUDED = re.compile(r"^[^%\n]*?(\\(?:input|include|subfile)\b[^%\n]{0,80})", r
 
 def definitions(text: str, comment: str = COMMENT) -> tuple[str, ...]:
     """The definitions of macros outside of comments."""
-    found = re.finditer(rf"(?s){ESCAPED}|{comment}|(?P<definition>{DEFINITION})", text)
-    return tuple(one["definition"] for one in found if one["definition"])
+    result = re.finditer(rf"(?s){ESCAPED}|{comment}|(?P<definition>{DEFINITION})", text)
+    return tuple(one["definition"] for one in result if one["definition"])
 
 
 def environments(passed: str) -> tuple[Delimiter, ...]:
@@ -83,9 +83,9 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
 
 def notes(text: str) -> tuple[str, ...]:
     """Files that the document includes, which are not read."""
-    found = [one[1].strip() for one in INCLUDED.finditer(text)]
-    more = f" and {len(found) - 5} more" if len(found) > 5 else ""
-    return (f"not followed: {', '.join(found[:5])}{more}",) if found else ()
+    result = [one[1].strip() for one in INCLUDED.finditer(text)]
+    more = f" and {len(result) - 5} more" if len(result) > 5 else ""
+    return (f"not followed: {', '.join(result[:5])}{more}",) if result else ()
 
 
 def _verb(opening: re.Match[str]) -> str:
@@ -96,8 +96,8 @@ def _shorthands(text: str, passed: str) -> Iterator[Delimiter]:
     r"""Delimiters such as ``\be`` and ``\ee`` that the document defines for environments."""
     macros: dict[tuple[str, str], list[str]] = {}
     for definition in definitions(text):
-        if found := SHORTHAND.search(definition):
-            macros.setdefault((found[3], found[4]), []).append(re.escape(found[1]))
+        if result := SHORTHAND.search(definition):
+            macros.setdefault((result[3], result[4]), []).append(re.escape(result[1]))
     for (word, name), opening in macros.items():
         if word == "begin" and (end := macros.get(("end", name))):
             closing = rf"{passed}|(?P<end>(?:{'|'.join(end)})(?![A-Za-z]))"

@@ -44,13 +44,13 @@ POSITIVE_UNITS = ("kg", "m")
 class Formulas:
     """The names that formulas of a file can contain, and the budget that all of them share."""
 
-    scope: Mapping[str, Any]
+    namespace: Mapping[str, Any]
     budget: Budget
 
     def value(self, key: str, text: str) -> sp.Expr:
         """The value of the formula at a key; an `InputError` names the key."""
         try:
-            return number(text, self.scope, self.budget)
+            return number(text, self.namespace, self.budget)
         except ExpressionError as error:
             raise InputError(f"{key}: {error}") from error
 
@@ -84,9 +84,9 @@ def _system(stem: str, table: TomlTable) -> System:
     q = [coordinate.symbol for coordinate in coordinates]
     symbols = [*q, *(p.symbol for p in parameters), *(u.symbol for u in inputs)]
     symbols += [TIME, *map(velocity, q), *(velocity(u.symbol) for u in inputs if u.motion)]
-    scope = FUNCTIONS | {symbol.name: symbol for symbol in symbols}
-    formulas = Formulas(scope, budget)
-    formulas = Formulas(scope | _definitions(table, name, formulas), budget)
+    namespace = FUNCTIONS | {symbol.name: symbol for symbol in symbols}
+    formulas = Formulas(namespace, budget)
+    formulas = Formulas(namespace | _definitions(table, name, formulas), budget)
     formula, each = partial(_formula, table, formulas), partial(_by_coordinate, table, formulas, q)
     return System(
         name=name,
@@ -111,8 +111,10 @@ def _system(stem: str, table: TomlTable) -> System:
 
 def _definitions(table: TomlTable, system: str, formulas: Formulas) -> dict[str, Any]:
     definitions: dict[str, Any] = {}
-    known = {**formulas.scope}
-    own = replace(formulas, scope=ChainMap(definitions, known))  # which grows with the definitions
+    known = {**formulas.namespace}
+    own = replace(
+        formulas, namespace=ChainMap(definitions, known)
+    )  # which grows with the definitions
     for key, text in table.entries("definitions").items():
         check_name(key, system)
         if key in known:

@@ -68,8 +68,8 @@ def advised(
     others : sequence of str
         The other equations of motion of the source.
     """
-    text, names = verdict.printed, SourceNames(verdict.printed, model.context.scope)
-    value = difference(text, model.context.scope)
+    text, names = verdict.printed, SourceNames(verdict.printed, model.context.namespace)
+    value = difference(text, model.context.namespace)
     aims = [*goals(model, kind, name, value)]
     correct = None if verdict.note else _correct_form(model, kind, name, value)
     corrections: tuple[Correction, ...] = ()
@@ -142,7 +142,7 @@ def _mending(
 
 def _is_multiple(model: ReferenceSystem, text: str, correct: sp.Expr | None) -> bool:
     """Whether an equation is the correct one times a factor."""
-    value = difference(text, model.context.scope)
+    value = difference(text, model.context.namespace)
     accelerations = model.derivation.system.qddot
     return correct is not None and model.context.are_multiples(value, correct, accelerations)
 
@@ -151,8 +151,8 @@ def _all_terms(
     search: Search, text: str, names: SourceNames, model: ReferenceSystem, correct: sp.Expr
 ) -> Iterator[tuple[tuple[Correction, ...], str]]:
     """Yield corrections of all wrong terms of a sum."""
-    pieces, scope = search.terms, model.context.scope
-    terms = [Term(p.sign * side * parse(p.source, scope), side) for p, side in pieces]
+    pieces, namespace = search.terms, model.context.namespace
+    terms = [Term(p.sign * side * parse(p.source, namespace), side) for p, side in pieces]
     if correct.count_ops() > MAX_OPERATIONS:
         return
     corrected, missing = corrected_terms(terms, correct, variables(model.derivation.system))

@@ -10,7 +10,7 @@ import operator
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from derive.formulas.expression import Scope, parse
+from derive.formulas.expression import Namespace, parse
 from derive.formulas.syntax import is_sum, python_source, summands, syntax_tree
 from derive.verification.corrections.state_samples import (
     FUNCTIONS,
@@ -53,8 +53,8 @@ class FormulaPart:
 class Pieces:
     """The pieces of one side of a formula, which begins at `offset` in the text."""
 
-    def __init__(self, text: str, offset: int, scope: Scope, samples: StateSamples) -> None:
-        self._text, self._offset, self._scope, self._samples = text, offset, scope, samples
+    def __init__(self, text: str, offset: int, namespace: Namespace, samples: StateSamples) -> None:
+        self._text, self._offset, self._namespace, self._samples = text, offset, namespace, samples
         self._values: dict[ast.expr, Numbers] = {}
         self.tree = syntax_tree(text)
         self.value = self._value(self.tree)
@@ -83,7 +83,7 @@ class Pieces:
             case ast.Constant(value=int() | float() as number):
                 return [float(number)] * self._samples.count
             case ast.Name(id=name):
-                return self._samples(self._scope[name])
+                return self._samples(self._namespace[name])
             case ast.UnaryOp(operand=operand):
                 return [-x for x in self._value(operand)]
             case ast.Call(func=ast.Name(id=name), args=arguments) if name in FUNCTIONS:
@@ -91,7 +91,7 @@ class Pieces:
             case ast.BinOp(left=left, op=symbol, right=right):
                 return [*map(OPERATIONS[type(symbol)], self._value(left), self._value(right))]
             case ast.Call():  # an operator such as a derivative
-                return self._samples(parse(self._text[slice(*self._span(node))], self._scope))
+                return self._samples(parse(self._text[slice(*self._span(node))], self._namespace))
         raise NotImplementedError(ast.unparse(node))
 
     def _parts(self, whole: FormulaPart) -> Iterator[FormulaPart]:

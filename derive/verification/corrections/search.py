@@ -49,14 +49,14 @@ class Search:
         correct: sp.Expr | None,
     ) -> None:
         self._names, self._goal = names, goal
-        self._scope, derivation = model.context.scope, model.derivation
+        self._namespace, derivation = model.context.namespace, model.derivation
         self._qddot = derivation.system.qddot
         self._samples = StateSamples(model, STATES, along_motions=goal.along_motions)
         self._elsewhere = StateSamples(model, COMPARED, along_motions=False)
         left, equals, right = text.partition("=")
-        self._sides = [Pieces(left, 0, self._scope, self._samples)]
+        self._sides = [Pieces(left, 0, self._namespace, self._samples)]
         if equals:
-            self._sides.append(Pieces(right, len(left) + 1, self._scope, self._samples))
+            self._sides.append(Pieces(right, len(left) + 1, self._namespace, self._samples))
         self._pieces = [*self._required()]
         self._wholes = [piece for piece in self._pieces if piece.parent is None]
         brackets = (p.source for p in self._pieces if p.parent and is_sum(p.node))
@@ -87,7 +87,7 @@ class Search:
     def is_right(self, text: str) -> bool:
         """Whether a formula has the values of the goal; an equation holds along motions only."""
         try:
-            value = difference(text, self._scope)
+            value = difference(text, self._namespace)
         except ExpressionError:  # a correction with a function that formulas do not have
             return False
         if not _are_close(self._samples(value), self._samples(self._goal.value)):
@@ -163,7 +163,7 @@ class Search:
     def _size(self, piece: FormulaPart) -> float:
         """A small cost of long pieces, and of those with accelerations."""
         names = (node.id for node in ast.walk(piece.node) if isinstance(node, ast.Name))
-        values = [self._scope.get(name) for name in names]  # True is none in a condition
+        values = [self._namespace.get(name) for name in names]  # True is none in a condition
         accelerated = any(depends_on(x, self._qddot) for x in values if isinstance(x, sp.Expr))
         return 0.01 * (piece.end - piece.start) + accelerated
 
@@ -179,8 +179,8 @@ class Search:
             orders = [free, bound + free] if self._goal.is_equation else [factors]
             self._fits[key] = [Monomials(order, key) for order in orders]
         fits = self._fits[key]
-        found = (fit.identified(values, up_to_sign=piece.is_squared) for fit in fits)
-        yield from dict.fromkeys(monomial for monomial in found if monomial)
+        result = (fit.identified(values, up_to_sign=piece.is_squared) for fit in fits)
+        yield from dict.fromkeys(monomial for monomial in result if monomial)
 
 
 def _are_close(a: Numbers, b: Numbers) -> bool:

@@ -6,29 +6,33 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, Scope, parse
+from derive.formulas.expression import FUNCTIONS, Namespace, parse
 from derive.formulas.syntax import syntax_tree
 
 
 class SourceNames:
     """The names that the sides of a formula use, as symbols that print as written."""
 
-    def __init__(self, text: str, scope: Scope) -> None:
-        self._scope, self._sides = scope, [syntax_tree(side) for side in text.split("=")]
+    def __init__(self, text: str, namespace: Namespace) -> None:
+        self._namespace, self._sides = namespace, [syntax_tree(side) for side in text.split("=")]
         used = {node.id for node in self.nodes() if isinstance(node, ast.Name)}
         self._written: dict[str, Any] = {
             word: sp.Symbol(word, real=True) if isinstance(value, sp.Expr) else value
-            for word, value in scope.items()
+            for word, value in namespace.items()
         } | {"pi": sp.pi}
         #: The names in the formula.
-        self.names = [self._written[w] for w in sorted(used) if isinstance(scope.get(w), sp.Expr)]
-        words = [word for word, value in scope.items() if isinstance(value, sp.Symbol)]
+        self.names = [
+            self._written[w] for w in sorted(used) if isinstance(namespace.get(w), sp.Expr)
+        ]
+        words = [word for word, value in namespace.items() if isinstance(value, sp.Symbol)]
         # the rate of a momentum of a unit mass is an acceleration, which has a name
-        words = [word for word in words if word in used or not _is_rate_of_momentum(word, scope)]
+        words = [
+            word for word in words if word in used or not _is_rate_of_momentum(word, namespace)
+        ]
         # later ones prevail: names of the source, and above all those in the formula
-        words.sort(key=lambda word: (word in used, word != scope[word].name))
+        words.sort(key=lambda word: (word in used, word != namespace[word].name))
         #: The symbols of the system, as the formula writes them.
-        self.symbols = {scope[word]: self._written[word] for word in words}
+        self.symbols = {namespace[word]: self._written[word] for word in words}
 
     def quantities(self, others: Iterable[sp.Symbol]) -> dict[str, sp.Expr]:
         """The names in the formula, and `others`, with the values that they stand for.
@@ -36,7 +40,7 @@ class SourceNames:
         Operators such as ``ddt(a)`` are not computed from the names in them: `others` should then
         contain the symbols of the formula's value.
         """
-        known = {str(name): self._scope[str(name)] for name in self.names if not name.is_number}
+        known = {str(name): self._namespace[str(name)] for name in self.names if not name.is_number}
         known = {name: x for name, x in known.items() if not isinstance(x, sp.MatrixBase)}
         symbols = {value: name for name, value in known.items() if value.is_Symbol}
         symbols = {symbol: str(self.write(symbol)) for symbol in others} | symbols
@@ -64,9 +68,11 @@ class SourceNames:
 
     def meaning(self, written: sp.Expr) -> sp.Expr:
         """A formula in the symbols of the system."""
-        names = {s: self._scope[s.name] for s in written.free_symbols if s.name in self._scope}
+        names = {
+            s: self._namespace[s.name] for s in written.free_symbols if s.name in self._namespace
+        }
         return written.xreplace(names)
 
 
-def _is_rate_of_momentum(word: str, scope: Scope) -> bool:
-    return word.endswith("_dot") and word.startswith("p_") and word[: -len("_dot")] in scope
+def _is_rate_of_momentum(word: str, namespace: Namespace) -> bool:
+    return word.endswith("_dot") and word.startswith("p_") and word[: -len("_dot")] in namespace

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
-from derive.verification.documents.letters.document_system import meaning
+from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import letters_of
@@ -18,7 +18,7 @@ from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.formula_verdicts import Judge
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Translated
 
@@ -76,13 +76,13 @@ def interpretation(
     work = work or Work()
     if hints:
         return _best(letters, statements, hints.candidates(letters), work, 0)
-    found = _best(letters, statements, _candidates(letters, statements), work)
-    if found.match is None or found.match.holding < 1:
+    result = _best(letters, statements, _candidates(letters, statements), work)
+    if result.match is None or result.match.holding < 1:
         numbers = {"gravity": _gravity(statements)}
         other = _best(letters, statements, _of_templates(letters, statements, numbers), work)
-        if other.match and (found.match is None or other.match.score > found.match.score):
+        if other.match and (result.match is None or other.match.score > result.match.score):
             return other
-    return found
+    return result
 
 
 def _best(
@@ -99,8 +99,8 @@ def _best(
     for tried in (tried for group in groups for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
             return Interpretation(letters, None)
-        found = best_matches(tried, letters, formulas, derivatives, trivial)
-        matches += [match for match in found if match.holding or not least]
+        result = best_matches(tried, letters, formulas, derivatives, trivial)
+        matches += [match for match in result if match.holding or not least]
     best = max(matches, key=lambda match: match.score, default=None)  # the first of several
     if best is None or (least and not _is_supported(best, least)):
         return Interpretation(letters, None)
@@ -109,10 +109,10 @@ def _best(
 
 def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidate]]:
     """Candidates of one system with the same constraints."""
-    found: dict[frozenset[int], list[SystemCandidate]] = {}
+    result: dict[frozenset[int], list[SystemCandidate]] = {}
     for one in group:
-        found.setdefault(one.given, []).append(one)
-    yield from found.values()
+        result.setdefault(one.given, []).append(one)
+    yield from result.values()
 
 
 def _is_supported(best: Match, least: float) -> bool:
@@ -176,17 +176,19 @@ def _of_templates(
 def _gravity(statements: Translated) -> str:
     """The number in the formulas that is gravity, or 1."""
     texts = " ".join(formula.text for formula in statements.formulas)
-    found = re.search(r"\b9\.[78]\d*\b", texts)
-    return found[0] if found else "1"
+    result = re.search(r"\b9\.[78]\d*\b", texts)
+    return result[0] if result else "1"
 
 
 def judge_of(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Judge:
     """The judge of a document's formulas with the meanings of a candidate."""
     letters = _with_order(statements, letters, candidate)
     meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
-    system, formulas = meaning(candidate), statements.formulas
+    system, formulas = system_letters(candidate), statements.formulas
     given = [formulas[number].occurrence for number in candidate.given]
-    return Judge(DocumentScope(system, letters, formulas, statements.derivatives, meanings), given)
+    return Judge(
+        DocumentNamespace(system, letters, formulas, statements.derivatives, meanings), given
+    )
 
 
 def _with_order(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Letters:
@@ -211,21 +213,21 @@ Results = Sequence[tuple[DocumentFormula, SideVerdict]]
 
 
 def alternatives(
-    statements: Translated, found: Interpretation, results: Results, written: Mapping[str, str]
+    statements: Translated, result: Interpretation, results: Results, written: Mapping[str, str]
 ) -> Iterator[Alternative]:
     """Yield the rivals of the meaning that is taken which change a verdict or a correction."""
-    assert found.match
+    assert result.match
     seen: set[tuple[object, ...]] = set()
-    for rival in found.rivals[:MAX_ALTERNATIVES]:
-        pairs = _rejudged(statements, found, rival, results)
+    for rival in result.rivals[:MAX_ALTERNATIVES]:
+        pairs = _rejudged(statements, result, rival, results)
         own = sum(one.verdict.verdict not in CORRECT for _, one, _ in pairs)
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
         changed = tuple(_differences(pairs, written))
         kinds = tuple((one.line, one.latex, one.verdict) for one in changed)
-        is_usual = rival.candidate.is_usual and not found.match.candidate.is_usual
+        is_usual = rival.candidate.is_usual and not result.match.candidate.is_usual
         if changed and kinds not in seen and (other <= own or is_usual):
             seen.add(kinds)
-            yield _alternative(found.match, rival, changed)
+            yield _alternative(result.match, rival, changed)
 
 
 def _rejudged(

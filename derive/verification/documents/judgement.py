@@ -21,8 +21,8 @@ from derive.verification.documents.letters.letter_search import letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.pages.verdicts_in_place import (
     Alternative,
-    JudgedDocument,
-    JudgedFormula,
+    DocumentVerdicts,
+    FormulaVerdict,
 )
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
@@ -52,7 +52,7 @@ FORMULA = re.compile(
 )
 
 
-def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocument:
+def judge_document(document: Document, hints: Hints | None = None) -> DocumentVerdicts:
     """Judge every formula of a document.
 
     A document can treat several systems: another is sought for the formulas with letters that
@@ -99,12 +99,12 @@ def judge_document(document: Document, hints: Hints | None = None) -> JudgedDocu
     notes = (*document.notes, *_unused(hints, statements.formulas))
     system, ordered = "; ".join(dict.fromkeys(titles)), sorted(judged, key=lambda one: one.span)
     meanings = "; ".join(filter(None, dict.fromkeys(conventions)))
-    return JudgedDocument(
+    return DocumentVerdicts(
         document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
 
 
-def _read(document: Document) -> tuple[list[Occurrence], list[JudgedFormula]]:
+def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
     """All statements of a document, and those that cannot be read."""
     macros = macros_of("\n".join(document.definitions))
     occurrences, unreadable = [], []
@@ -125,9 +125,9 @@ def _occurrence(document: Document, display: Display, tree: Statement | Unreadab
     return Occurrence(display.number, line, column, cell, display.start, display.latex, tree, prose)
 
 
-def _plain(place: Occurrence, verdict: str, note: str) -> JudgedFormula:
+def _plain(place: Occurrence, verdict: str, note: str) -> FormulaVerdict:
     span = place.span
-    return JudgedFormula(
+    return FormulaVerdict(
         place.line, place.column, place.display, place.source, verdict,  # type: ignore[arg-type]
         note=note, span=span, cell=place.cell,
     )  # fmt: skip
@@ -135,11 +135,11 @@ def _plain(place: Occurrence, verdict: str, note: str) -> JudgedFormula:
 
 def _judged(
     formula: DocumentFormula, result: SideVerdict, written: dict[str, str]
-) -> JudgedFormula:
+) -> FormulaVerdict:
     place, verdict = formula.occurrence, result.verdict
     correction = corrected(formula, result, written)
     spans = tuple((place.start + a, place.start + b) for a, b in correction.spans if a < b)
-    return JudgedFormula(
+    return FormulaVerdict(
         place.line, place.column, place.display, place.source, verdict.verdict,
         correction.wrong_term, correction.correction, verdict.witness, verdict.note,
         place.span, place.cell, spans, _state(verdict.state, written),
@@ -162,14 +162,14 @@ def _is_graver(one: SideVerdict, other: SideVerdict) -> bool:
 
 def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
     """The letters' names, and the LaTeX that stands for each where it is first used."""
-    translator, found = FormulaTranslator(), dict[str, str]()
+    translator, result = FormulaTranslator(), dict[str, str]()
     for occurrence in occurrences:
         for node in nodes(occurrence.sides):
             if isinstance(node, Letter | Derivative):
                 own = occurrence.latex[slice(*node.span)]
                 inside = BRACKETS.fullmatch(own)
-                found.setdefault(translator.text(node).text, inside[1] if inside else own)
-    return found
+                result.setdefault(translator.text(node).text, inside[1] if inside else own)
+    return result
 
 
 def _unused(hints: Hints | None, formulas: Sequence[DocumentFormula]) -> Iterator[str]:
@@ -193,7 +193,7 @@ def sentence(document: Document, display: Display) -> str:
 
 def _words(text: str) -> str:
     """Text without formulas; a formula that ends with a full stop ends its sentence."""
-    return FORMULA.sub(lambda found: ". " if _is_end(found[0]) else " ", text)
+    return FORMULA.sub(lambda result: ". " if _is_end(result[0]) else " ", text)
 
 
 def _is_end(formula: str) -> bool:

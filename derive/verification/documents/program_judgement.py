@@ -9,8 +9,8 @@ from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.verdicts_in_place import (
     Alternative,
-    JudgedDocument,
-    JudgedFormula,
+    DocumentVerdicts,
+    FormulaVerdict,
 )
 from derive.verification.documents.rules.corrections import inserted, places
 from derive.verification.documents.rules.side_verdict import SideVerdict
@@ -22,10 +22,10 @@ from derive.verification.verdict import VerdictName
 NO_SYSTEM = "no system was found for which its equations hold"
 
 
-def judge_program(program: Program, hints: Hints | None = None) -> JudgedDocument:
+def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdicts:
     """Judge the equations of every function of a program, and its method of integration."""
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
-    judged: list[JudgedFormula] = []
+    judged: list[FormulaVerdict] = []
     for function in program.functions:
         formulas = [_formula(equation) for equation in function.equations]
         statements = Translated(tuple(formulas), (), {})
@@ -44,7 +44,7 @@ def judge_program(program: Program, hints: Hints | None = None) -> JudgedDocumen
     judged.sort(key=lambda one: one.line)
     title, letters = ("; ".join(filter(None, dict.fromkeys(one))) for one in (titles, conventions))
     notes = tuple(_notes(program))
-    return JudgedDocument(
+    return DocumentVerdicts(
         program.file, "program", title, tuple(judged), notes, letters, tuple(others)
     )
 
@@ -58,7 +58,7 @@ def _formula(equation: ProgramEquation) -> DocumentFormula:
     return DocumentFormula(occurrence, (FormulaText(left), FormulaText(right)), ("=",))
 
 
-def _judged(equation: ProgramEquation, result: SideVerdict) -> JudgedFormula:
+def _judged(equation: ProgramEquation, result: SideVerdict) -> FormulaVerdict:
     verdict, text = result.verdict, equation.text
     terms, line = list[str](), equation.line
     for one in verdict.corrections:
@@ -72,7 +72,7 @@ def _judged(equation: ProgramEquation, result: SideVerdict) -> JudgedFormula:
         correction = text
     elif correction and "=" not in correction:
         correction = f"{equation.text.partition(' = ')[0]} = {correction}"
-    return JudgedFormula(
+    return FormulaVerdict(
         line, 1, 0, equation.text, verdict.verdict, "; ".join(terms), correction,
         verdict.witness, verdict.note, state=verdict.state,
     )  # fmt: skip
@@ -84,13 +84,13 @@ def _line(equation: ProgramEquation, start: int, end: int) -> int:
     return min(around, key=lambda one: one.end - one.start).line if around else equation.line
 
 
-def _plain(equation: ProgramEquation, note: str) -> JudgedFormula:
-    return JudgedFormula(equation.line, 1, 0, equation.text, "context", note=note)
+def _plain(equation: ProgramEquation, note: str) -> FormulaVerdict:
+    return FormulaVerdict(equation.line, 1, 0, equation.text, "context", note=note)
 
 
-def _finding(finding: Finding) -> JudgedFormula:
+def _finding(finding: Finding) -> FormulaVerdict:
     verdict: VerdictName = "wrong" if finding.is_fault else "context"
-    return JudgedFormula(finding.line, 1, 0, "method of integration", verdict, note=finding.text)
+    return FormulaVerdict(finding.line, 1, 0, "method of integration", verdict, note=finding.text)
 
 
 def _notes(program: Program) -> Iterator[str]:

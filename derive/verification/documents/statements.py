@@ -78,8 +78,8 @@ class DocumentFormula:
     @cached_property
     def words(self) -> tuple[str, ...]:
         """All names in the formula, also of functions, in the order of their first use."""
-        found = (word for side in self.sides for word in WORD.findall(side.text))
-        return tuple(dict.fromkeys(found))
+        result = (word for side in self.sides for word in WORD.findall(side.text))
+        return tuple(dict.fromkeys(result))
 
     @property
     def text(self) -> str:

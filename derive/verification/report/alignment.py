@@ -21,19 +21,19 @@ def aligned(
     their spelling differs; whether others are alike depends on their LaTeX, which may be
     unreadable.
     """
-    found: dict[int, int] = {}
+    result: dict[int, int] = {}
     first, second = ([formula for formula, _ in side] for side in (written, stored))
     matcher = SequenceMatcher(None, first, second, autojunk=False)
     ends = [(0, 0)]
     for a, b, size in matcher.get_matching_blocks():
-        found |= {b + k: a + k for k in range(size)}
+        result |= {b + k: a + k for k in range(size)}
         ends += [(a, b), (a + size, b + size)]
     gaps = [*pairwise(ends)][::2]
     for (a, b), (last, end) in gaps:
         sides = written[a:last], stored[b:end]
         latex = ([latex for _, latex in side] for side in sides)
-        found |= {b + j: a + i for i, j in _alike(*latex)}
-    return found
+        result |= {b + j: a + i for i, j in _alike(*latex)}
+    return result
 
 
 def _alike(written: Sequence[str], stored: Sequence[str]) -> Iterator[tuple[int, int]]:

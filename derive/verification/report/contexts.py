@@ -55,28 +55,30 @@ def double_pendulum(*, moving: bool) -> Context:
     r1, r2 = (Vector([x, -y, 0]) for x, y in ((x1, y1), (x2, y2)))
     M = derivation.mass_matrix
     A = Vector(2, 2, lambda i, j: M[i, j] / M[i, i])
-    scope = _common_scope(derivation) | {name: sp.Symbol(name) for name in ("chi1", "chi2")}
-    scope |= _named("x1 y1 x2 y2 r1 r2 A B H", x1, y1, x2, y2, r1, r2, A, M, derivation.hamiltonian)
-    ddt = scope["ddt"]
-    scope |= {f"{name}_dot": ddt(scope[name]) for name in ("x1", "y1", "x2", "y2")}
+    namespace = _common_namespace(derivation) | {name: sp.Symbol(name) for name in ("chi1", "chi2")}
+    namespace |= _named(
+        "x1 y1 x2 y2 r1 r2 A B H", x1, y1, x2, y2, r1, r2, A, M, derivation.hamiltonian
+    )
+    ddt = namespace["ddt"]
+    namespace |= {f"{name}_dot": ddt(namespace[name]) for name in ("x1", "y1", "x2", "y2")}
     speeds = (sp.sqrt(reduced(ddt(r).dot(ddt(r)))) for r in (r1, r2))
-    scope |= _named("v1 v2", *speeds)
+    namespace |= _named("v1 v2", *speeds)
     rows = zip(system.q, system.qdot, system.qddot, system.p, strict=True)
     for n, (q, qdot, qddot, p) in enumerate(rows, 1):
         for letter in COORDINATES.split():
             names = f"{letter}{n} {letter}{n}_dot {letter}{n}_ddot"
-            scope |= _named(names, q, qdot, qddot)
+            namespace |= _named(names, q, qdot, qddot)
         for letter in MOMENTA.split():
-            scope |= _named(f"{letter}{n} {letter}{n}_dot", p, ddt(p))
-        scope |= _named(f"omega{n} E{n}", qdot, derivation.euler_lagrange[n - 1])
+            namespace |= _named(f"{letter}{n} {letter}{n}_dot", p, ddt(p))
+        namespace |= _named(f"omega{n} E{n}", qdot, derivation.euler_lagrange[n - 1])
     # rod tensions: projections of Newton's law for each bob on its rod
     weight = Vector([0, g, 0])
     e1, e2 = r1 / l1, (r2 - r1) / l2
     F1, F2 = (m * ddt(ddt(r)) for m, r in ((m1, r1), (m2, r2)))
     T2 = reduced(-(F2 - m2 * weight).dot(e2))
     T1 = reduced(-(F1 - m1 * weight - T2 * e2).dot(e1))
-    scope |= _named("g_vector F1 F2 T1 T2", weight, F1, F2, T1, T2)
-    return _context(derivation, scope, moving=moving)
+    namespace |= _named("g_vector F1 F2 T1 T2", weight, F1, F2, T1, T2)
+    return _context(derivation, namespace, moving=moving)
 
 
 @cache
@@ -87,15 +89,15 @@ def single_pendulum(*, moving: bool) -> Context:
     (m, length, g), (q,), (qdot,), (qddot,) = system.params, system.q, system.qdot, system.qddot
     linear, residual = derivation.linearisation(), derivation.euler_lagrange[0]
     r, weight = length * Vector([sp.sin(q), sp.cos(q), 0]), Vector([0, g, 0])
-    scope = _common_scope(derivation)
-    F = m * scope["ddt"](scope["ddt"](r))
+    namespace = _common_namespace(derivation)
+    F = m * namespace["ddt"](namespace["ddt"](r))
     T = -(F - m * weight).dot(r / length)
     speed, omega = sp.sqrt(length**2 * qdot**2), sp.sqrt(g / length)
-    scope |= _named("theta theta_dot theta_ddot E omega", q, qdot, qddot, residual, omega)
-    scope |= _named("r z v g_vector F T", r, r[2], speed, weight, F, T)
-    scope |= _named("I stiffness", linear.mass_matrix[0], linear.stiffness_matrix[0])
-    scope |= {name: sp.Symbol(name, real=True) for name in ("t", "theta0", "psi")}
-    return _context(derivation, scope, moving=moving)
+    namespace |= _named("theta theta_dot theta_ddot E omega", q, qdot, qddot, residual, omega)
+    namespace |= _named("r z v g_vector F T", r, r[2], speed, weight, F, T)
+    namespace |= _named("I stiffness", linear.mass_matrix[0], linear.stiffness_matrix[0])
+    namespace |= {name: sp.Symbol(name, real=True) for name in ("t", "theta0", "psi")}
+    return _context(derivation, namespace, moving=moving)
 
 
 @cache
@@ -107,16 +109,16 @@ def rigid_body() -> Context:
     spin, spin_rate = (sp.diag(*inertia) * Vector(w) for w in (omega, omega_dot))
     torque = spin_rate + Vector(omega).cross(spin)
     symbols = (*inertia, *omega, *omega_dot)
-    scope = {s.name: s for s in symbols} | _named("tau_x tau_y tau_z", *torque)
-    scope |= _named("I_xx I_yy I_zz", *inertia)
-    return Context(scope, (_numbers(symbols),), index_count=3)
+    namespace = {s.name: s for s in symbols} | _named("tau_x tau_y tau_z", *torque)
+    namespace |= _named("I_xx I_yy I_zz", *inertia)
+    return Context(namespace, (_numbers(symbols),), index_count=3)
 
 
 def _named(names: str, *values: Any) -> dict[str, Any]:
     return dict(zip(names.split(), values, strict=True))
 
 
-def _common_scope(derivation: Derivation) -> dict[str, Any]:
+def _common_namespace(derivation: Derivation) -> dict[str, Any]:
     system = derivation.system
     momenta = dict(zip(system.p, derivation.momenta, strict=True))
     g = next(s for s in system.params if s.name == "g")
@@ -139,22 +141,22 @@ def _common_scope(derivation: Derivation) -> dict[str, Any]:
         return value.xreplace(momenta).subs(dict.fromkeys(others, 0))
 
     energies = derivation.kinetic_energy, derivation.potential_energy, derivation.lagrangian
-    scope = FUNCTIONS | {s.name: s for s in (*system.params, TIME)}
-    return scope | _named("K P L d ddt only", *energies, d, ddt, only)
+    namespace = FUNCTIONS | {s.name: s for s in (*system.params, TIME)}
+    return namespace | _named("K P L d ddt only", *energies, d, ddt, only)
 
 
-def _context(derivation: Derivation, scope: Mapping[str, Any], *, moving: bool) -> Context:
+def _context(derivation: Derivation, namespace: Mapping[str, Any], *, moving: bool) -> Context:
     system = derivation.system
     substitutions = [dict(zip(system.p, derivation.momenta, strict=True))]
     if moving:
         substitutions.append(dict(zip(system.qddot, derivation.accelerations, strict=True)))
-    symbols = {symbol for symbol in scope.values() if isinstance(symbol, sp.Symbol)}
+    symbols = {symbol for symbol in namespace.values() if isinstance(symbol, sp.Symbol)}
     symbols |= {*system.q, *system.qdot, *system.qddot, *system.params}
     state = _numbers(symbols - {*system.p})
     for substitution in substitutions:
         for symbol, value in substitution.items():
             state[symbol] = value.evalf(50, subs=state)
-    return Context(scope, (state,), tuple(substitutions), len(system.q))
+    return Context(namespace, (state,), tuple(substitutions), len(system.q))
 
 
 def _numbers(symbols: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:

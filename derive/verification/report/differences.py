@@ -58,15 +58,15 @@ def _parts(node: Node) -> Parts:
     """The trees directly within a tree, with their signs."""
     if isinstance(node, Sum):
         return [(term, sign) for sign, term in node.terms]
-    found: Parts = []
+    result: Parts = []
     waiting: list[Any] = [getattr(node, name) for name in node.__dataclass_fields__]
     while waiting:
         one = waiting.pop(0)
         if isinstance(one, Node):
-            found.append((one, 1))
+            result.append((one, 1))
         elif isinstance(one, tuple):
             waiting[:0] = one
-    return found
+    return result
 
 
 def _name(node: Node) -> str:

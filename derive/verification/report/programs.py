@@ -142,12 +142,16 @@ def _third() -> ReportProgram:
 
 def _length_solved(equations: tuple[str, ...]) -> sp.Expr:
     """The common length of the rods for which `equations` agree with the derivation."""
-    scope = double_pendulum(moving=False).scope
+    namespace = double_pendulum(moving=False).namespace
     length = sp.Symbol("length", positive=True)
-    values = {scope[f"m{i}"]: m for i, m in enumerate(PROSE.masses, 1)}
-    values |= {scope["l1"]: length, scope["l2"]: length, scope["g"]: PROSE.gravity}
+    values = {namespace[f"m{i}"]: m for i, m in enumerate(PROSE.masses, 1)}
+    values |= {namespace["l1"]: length, namespace["l2"]: length, namespace["g"]: PROSE.gravity}
     lengths = [
-        set(sp.solve(parse(text, scope) - sp.expand(scope[name].subs(values) / length**2), length))
+        set(
+            sp.solve(
+                parse(text, namespace) - sp.expand(namespace[name].subs(values) / length**2), length
+            )
+        )
         for text, name in zip(equations, ("E1", "E2"), strict=True)
     ]
     (common,) = set.intersection(*lengths)
@@ -159,9 +163,9 @@ def _agreement(name: str, formula: str) -> str:
     context = double_pendulum(moving=True)
     if context.check(f"{name} = {formula}").holds:
         return "is correct"
-    derived = context.substitutions[-1][context.scope[name]]
-    difference = parse(formula, context.scope) - derived
-    if vanishes(difference.subs(context.scope["m2"], context.scope["m1"])):
+    derived = context.substitutions[-1][context.namespace[name]]
+    difference = parse(formula, context.namespace) - derived
+    if vanishes(difference.subs(context.namespace["m2"], context.namespace["m1"])):
         return "is correct for equal masses only (2 m1 + m1 stands for 2 m1 + m2)"
     return "is wrong"
 

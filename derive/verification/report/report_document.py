@@ -10,7 +10,7 @@ from derive.reading.document import Display, Document
 from derive.reading.latex.display_reader import macros_of
 from derive.reading.latex.tree import Span, Statement, Unreadable
 from derive.system.system_catalogue import load
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.report.alignment import aligned
 from derive.verification.report.differences import first_difference
 from derive.verification.report.equation import ReportEquation
@@ -50,7 +50,7 @@ class Stored:
     correct: Statement | Unreadable
 
 
-def judge_report(document: Document, order_of: OrderOf) -> JudgedDocument | None:
+def judge_report(document: Document, order_of: OrderOf) -> DocumentVerdicts | None:
     """Judge a document that has at least half of the report's statements; else return None.
 
     Parameters
@@ -89,7 +89,7 @@ def judge_report(document: Document, order_of: OrderOf) -> JudgedDocument | None
     judged.sort(key=lambda one: one.span)
     title = load("double_pendulum").title
     notes = (NOTE, *document.notes)
-    return JudgedDocument(document.file, document.kind, title, tuple(judged), notes)
+    return DocumentVerdicts(document.file, document.kind, title, tuple(judged), notes)
 
 
 @cache
@@ -116,7 +116,7 @@ def _judged(
     equation: ReportEquation,
     group: Sequence[tuple[Stored, WrittenStatement]],
     order_of: OrderOf,
-) -> JudgedFormula:
+) -> FormulaVerdict:
     """The verdict on those statements of an equation that stand in one display."""
     display = group[0][1].display
     span = min(w.tree.span[0] for _, w in group), max(w.tree.span[1] for _, w in group)
@@ -151,7 +151,7 @@ def _wrong_term(group: Sequence[tuple[Stored, WrittenStatement]]) -> Span | None
     return None
 
 
-def _other(document: Document, written: WrittenStatement) -> JudgedFormula:
+def _other(document: Document, written: WrittenStatement) -> FormulaVerdict:
     tree, display = written.tree, written.display
     if isinstance(tree, Unreadable):
         return _formula(document, display, tree.span, "unreadable", note=tree.reason)
@@ -160,11 +160,11 @@ def _other(document: Document, written: WrittenStatement) -> JudgedFormula:
 
 def _formula(
     document: Document, display: Display, span: Span, verdict: VerdictName, **fields: Any
-) -> JudgedFormula:
+) -> FormulaVerdict:
     start, end = display.start + span[0], display.start + span[1]
     place = document.place(start)
     latex = display.latex[slice(*span)].strip()
-    return JudgedFormula(
+    return FormulaVerdict(
         place.line, place.column, display.number, latex, verdict,
         span=(start, end), cell=place.cell, **fields,
     )  # fmt: skip

@@ -164,16 +164,16 @@ def _definitions_used(equation: ReportEquation) -> dict[str, Value]:
 
 def _definitions(text: str, context: Context, known: dict[str, Value]) -> dict[str, Value]:
     """Quantities that ``name = formula`` defines; of an inequality, its left side ``left_1``."""
-    scope = {**context.scope, **known}
+    namespace = {**context.namespace, **known}
     values: dict[str, Value] = {}
     for number, part in enumerate(text.split(";"), start=1):
         if "<" in part:
-            values[f"left_{number}"] = parse(part.partition("<")[0], scope)
+            values[f"left_{number}"] = parse(part.partition("<")[0], namespace)
             continue
         name, _, formula = (side.strip() for side in part.partition("="))
         if dependent := ONLY.fullmatch(name):
             name, formula = dependent[1], f"only({formula}, {dependent[2]})"
-        values[name] = parse(formula, scope)
+        values[name] = parse(formula, namespace)
     return values
 
 

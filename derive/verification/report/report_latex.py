@@ -32,9 +32,9 @@ CALL = re.compile(rf"\b({'|'.join(DEPENDENT)})\(")
 
 def statements(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | Unreadable]:
     """The statements of a display without remarks, such as "for i = 1, 2" or "for real x"."""
-    found = formulas(latex, macros)
-    judged = [one for one in found if isinstance(one, Unreadable) or _is_equation(one)]
-    return judged or found
+    result = formulas(latex, macros)
+    judged = [one for one in result if isinstance(one, Unreadable) or _is_equation(one)]
+    return judged or result
 
 
 def _is_equation(statement: Statement) -> bool:
@@ -78,6 +78,6 @@ def _stored() -> dict[str, str]:
 
 def read(latex: str) -> str:
     """The same, read from the LaTeX."""
-    found = statements(latex)
-    readable = [one for one in found if isinstance(one, Statement)]
-    return "; ".join(map(text, readable)) if len(readable) == len(found) else latex
+    result = statements(latex)
+    readable = [one for one in result if isinstance(one, Statement)]
+    return "; ".join(map(text, readable)) if len(readable) == len(result) else latex

@@ -35,8 +35,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Run the scenes, write their files and print summaries."""
+    from derive.formulas.typeset.typesetting import Formula
     from solvers.app.modules import specialiser
-    from solvers.app.typesetting import equations
+    from solvers.equations.module import equations_of_motion
     from solvers.io.progress import Progress
     from solvers.scenes.output import write_files
     from solvers.scenes.scene_run import run_scene
@@ -57,8 +58,8 @@ def run(arguments: Namespace) -> int:
         with Progress() as report:
             first, *beside = (run_scene(one, specialiser, report) for one in (scene, *scene.beside))
             report("files")
-            written = equations(scene.module)
-            paths = write_files([first, *beside], arguments.output, written, plot=arguments.plot)
+            equations = "\n".join(Formula(text).html for text in equations_of_motion(scene.module))
+            paths = write_files([first, *beside], arguments.output, equations, plot=arguments.plot)
             if export:
                 report("export")
                 paths["export"] = write_motions(together([first, *beside]), export, arguments.speed)

@@ -124,11 +124,11 @@ class Assembly:
     def assembled(self, y: Array, given: Flags) -> tuple[Array, Flags]:
         """States near `y` of which the given components are kept, and whether they were found."""
         n, y = self.n, y.copy()
-        y[:, :n], found = self._positions(y[:, :n], ~given[:n])
-        if found.any():
-            part = self.subset(found)
-            y[found, n:], found[found] = part.velocities(y[found], ~given[n:])
-        return y, found
+        y[:, :n], result = self._positions(y[:, :n], ~given[:n])
+        if result.any():
+            part = self.subset(result)
+            y[result, n:], result[result] = part.velocities(y[result], ~given[n:])
+        return y, result
 
     def _positions(self, q: Array, free: Flags) -> tuple[Array, Flags]:
         """Coordinates that satisfy the constraints, from the guess or others near it."""

@@ -61,14 +61,14 @@ class ConsistentStart:
         reach = np.where(self._angles, np.pi, 2 * self.assembly.scales)
         rng = np.random.default_rng(0)
         guesses = self.y[:n] + free * reach * rng.uniform(-1, 1, (OTHERS, n))
-        found = [self.y[:n]]
+        result = [self.y[:n]]
         if free.any() and not self._freedom(free):
             solutions, error = self.assembly.closed(guesses, free)
             for q in solutions[(error <= CLOSED) & (solutions > least).all(axis=1)]:
                 turned = q - self._angles * 2 * np.pi * np.round(q / (2 * np.pi))
-                if all(self._distance(turned, other) > CLOSE for other in found):
-                    found.append(turned)
-        return np.array(sorted(found[1:], key=lambda q: self._distance(q, self.y[:n]))).reshape(
+                if all(self._distance(turned, other) > CLOSE for other in result):
+                    result.append(turned)
+        return np.array(sorted(result[1:], key=lambda q: self._distance(q, self.y[:n]))).reshape(
             -1, n
         )
 

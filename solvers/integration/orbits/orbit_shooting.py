@@ -114,8 +114,8 @@ class OrbitConditions:
             y[self.reversal.changed] = self.reversal.nearest(point.y)
         if has_constraints(self.module):
             assembly = Assembly(self.module, params[np.newaxis])
-            (y,), found = assembly.assembled(y[np.newaxis], np.zeros(n, bool))
-            if not found.all():
+            (y,), result = assembly.assembled(y[np.newaxis], np.zeros(n, bool))
+            if not result.all():
                 raise ArithmeticError(f"no state that satisfies the constraints is near {y}")
         return OrbitStart(y, period, params)
 

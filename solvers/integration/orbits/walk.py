@@ -122,7 +122,7 @@ def _passes(node: CurveNode, new: CurveNode, first: CurveNode) -> bool:
 
 def _special(node: CurveNode, new: CurveNode) -> list[tuple[str, CurveNode]]:
     """The special nodes in a step, by their kinds."""
-    found = []
+    result = []
     for kind, function in FUNCTIONS.items():
         is_neimark = kind == "Neimark-Sacker"
         if is_neimark and keeps_volume(node) and keeps_volume(new):
@@ -130,8 +130,8 @@ def _special(node: CurveNode, new: CurveNode) -> list[tuple[str, CurveNode]]:
         if function(node) * function(new) < 0:
             there = _root(node, new, function)
             if not is_neimark or is_torus(there):
-                found.append((float(there.difference(node) @ node.tangent), kind, there))
-    return [(kind, there) for _, kind, there in sorted(found, key=lambda entry: entry[0])]
+                result.append((float(there.difference(node) @ node.tangent), kind, there))
+    return [(kind, there) for _, kind, there in sorted(result, key=lambda entry: entry[0])]
 
 
 def _root(node: CurveNode, new: CurveNode, function: Callable[[CurveNode], float]) -> CurveNode:

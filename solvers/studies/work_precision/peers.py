@@ -51,8 +51,8 @@ def curves(
     results = []
 
     def methods_of(name: str) -> Iterator[Method]:
-        if found := package(name):
-            yield from PEERS[name](found, scene, form, start)
+        if result := package(name):
+            yield from PEERS[name](result, scene, form, start)
 
     for name in PEERS:
         methods, failure = _collected(methods_of(name))

@@ -40,8 +40,8 @@ def initial_states(
         state[:, index] = _velocity(module, state, params, index, column(ENERGY), complete)
         status[np.isnan(state[:, index])] = NO_SUCH_ENERGY
         state[status != 0, index] = 0.0
-    state, found = complete(state)
-    status[~found] = NO_CONFIGURATION
+    state, result = complete(state)
+    status[~result] = NO_CONFIGURATION
     if sweep.barrier:
         status[(status == 0) & is_below(module, sweep.barrier, state, params)] = PROVED
     if sweep.form == "variational":

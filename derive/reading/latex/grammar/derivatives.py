@@ -37,11 +37,11 @@ def fraction(numerator: Node, denominator: Node, span: Span) -> Node | Operator:
         return Quotient(numerator, denominator, span)
     if _sign(numerator) in VARIATIONS and _sign(denominator) == _sign(numerator):
         raise UnreadError("a quotient of differences or variations")
-    found = _differential(numerator)
-    variables = found and _variables(denominator, found[0])
-    if found is None or variables is None:
+    result = _differential(numerator)
+    variables = result and _variables(denominator, result[0])
+    if result is None or variables is None:
         return Quotient(numerator, denominator, span)
-    name, order, operands = found
+    name, order, operands = result
     if order != len(variables):
         raise UnreadError("the orders above and below a derivative differ")
     if not operands:
@@ -108,9 +108,9 @@ def slashed_derivative(before: list[Part], behind: list[Part]) -> list[Part] | N
         above = before[-count:]
         if any(isinstance(part, Operator | SumSign) for part in above):
             return None
-        found = _differential(product([node(part) for part in above]))
-        if found is not None and found[0] == name:
-            stop = 2 * found[1] if name == "partial" else 2
+        result = _differential(product([node(part) for part in above]))
+        if result is not None and result[0] == name:
+            stop = 2 * result[1] if name == "partial" else 2
             stop = min(stop, len(behind) // 2 * 2)
             while stop > 2 and _sign_of_differential(node(behind[stop - 2])) != name:
                 stop -= 2

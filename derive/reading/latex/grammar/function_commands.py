@@ -38,8 +38,8 @@ def function_at(tokens: list[Token], at: int, end: int) -> tuple[str, int] | Non
             break
         run += letter.text
     is_first = at == 0 or tokens[at - 1].kind != "letter"
-    found = SPELLED.match(run) or (SPELLED_ALONE.match(run) if is_first else None)
-    return (FUNCTIONS[found[0]], at + len(found[0])) if found else None
+    result = SPELLED.match(run) or (SPELLED_ALONE.match(run) if is_first else None)
+    return (FUNCTIONS[result[0]], at + len(result[0])) if result else None
 
 
 def ends_bare_argument(result: list[Symbol]) -> str:

@@ -28,10 +28,10 @@ class LetterTokens(Arguments):
 
         In ``x^2_1`` the exponent stands between the letter and its index; otherwise its place is 0.
         """
-        found = self._base(at, end)
-        if found is None:
+        result = self._base(at, end)
+        if result is None:
             return None
-        letter, at = found
+        letter, at = result
         raised = 0
         while at < end:
             script = self.skip(at, end)
@@ -104,10 +104,10 @@ class LetterTokens(Arguments):
         with self.deeper():
             if self.tokens[start].kind == "{" and self.partner.get(start, 0) == stop - 1:
                 return self._alone(start + 1, stop - 1)
-            found = self.letter(start, stop)
-        if found is None or found[2] or self.skip(found[1], stop) != stop:
+            result = self.letter(start, stop)
+        if result is None or result[2] or self.skip(result[1], stop) != stop:
             return None
-        return found[0]
+        return result[0]
 
     def _in_braces(self, at: int, end: int) -> tuple[Letter, int] | None:
         r"""A letter in braces before an index or a prime, as in ``{\theta}_1``."""

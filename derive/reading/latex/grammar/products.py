@@ -77,8 +77,8 @@ def _is_bold(part: Part) -> bool:
 
 def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:
     """The quotient of the last factor, which is removed, and the factors that follow it."""
-    if found := slashed_derivative(before, behind):
-        return found
+    if result := slashed_derivative(before, behind):
+        return result
     left, right = before.pop(), behind[0]
     is_bare = isinstance(left, WrittenNode) and left.form == "bare"
     if is_bare and (is_symbol(right, "NUMBER") or not _ends_with_angle(left.node)):

@@ -37,9 +37,9 @@ def macros_of(text: str) -> dict[str, Macro]:
     for match in islice(START.finditer(text), MAX_MACROS):
         if not _is_comment(text, match.start()):
             excerpt = text[match.start() : match.start() + MAX_LENGTH]
-            found = definition(excerpt, tokenize(excerpt), 0)
-            if found is not None:
-                macros[found[0].name] = found[0]
+            result = definition(excerpt, tokenize(excerpt), 0)
+            if result is not None:
+                macros[result[0].name] = result[0]
     return macros
 
 

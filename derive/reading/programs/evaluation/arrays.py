@@ -53,13 +53,13 @@ def entries(tree: Expression) -> tuple[Expression, ...] | None:
         case Array(items=items):
             return items
         case Result(call=call, value=value):
-            found = entries(value)
-            if found is None:
+            result = entries(value)
+            if result is None:
                 return None
-            numbers = (NumberLiteral(tree.line, str(i)) for i in range(len(found)))
+            numbers = (NumberLiteral(tree.line, str(i)) for i in range(len(result)))
             return tuple(
                 Result(one.line, Item(tree.line, call, (number,)), one)
-                for number, one in zip(numbers, found, strict=True)
+                for number, one in zip(numbers, result, strict=True)
             )
         case OperatorExpression(operator="solve", operands=(Array(items=rows), _)):
             return tuple(

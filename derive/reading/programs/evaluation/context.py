@@ -49,11 +49,11 @@ class ProgramContext:
         base, _, name = path.rpartition(".")
         if base not in ("", "self", "this", "obj", owner):
             return None
-        found = self.functions.get(name, [])
-        own = [one for one in found if one.owner == owner]
-        if len(own or found) != 1:
+        result = self.functions.get(name, [])
+        own = [one for one in result if one.owner == owner]
+        if len(own or result) != 1:
             return None
-        return (own or found)[0]
+        return (own or result)[0]
 
 
 def static_path(tree: Expression) -> str:
@@ -93,12 +93,12 @@ def statements(body: tuple[Statement, ...], *, inner: bool) -> Iterator[Statemen
 
 def assigned(body: tuple[Statement, ...], *, inner: bool = False) -> Counter[str]:
     """How often each name is assigned, as a whole or in part."""
-    found: Counter[str] = Counter()
+    result: Counter[str] = Counter()
     for one in statements(body, inner=inner):
         match one:
             case Assignment():
-                found.update(map(static_path, targets(one.target)))
+                result.update(map(static_path, targets(one.target)))
             case ExpressionStatement(value=FunctionCall(function=Member(base=base, name=name))):
                 if name in APPENDING:
-                    found[static_path(base)] += 1
-    return found
+                    result[static_path(base)] += 1
+    return result

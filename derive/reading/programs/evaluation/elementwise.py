@@ -20,7 +20,7 @@ def elementwise(loop: Loop) -> tuple[Statement, ...] | None:
     """The statements of a loop without its index; None if the index has another use."""
     if not loop.variable or not loop.body:
         return None
-    found = []
+    result = []
     for one in loop.body:
         if not isinstance(one, Assignment) or not isinstance(one.target, Item):
             return None
@@ -28,8 +28,8 @@ def elementwise(loop: Loop) -> tuple[Statement, ...] | None:
             target, value = (_without(tree, loop.variable) for tree in (one.target, one.value))
         except _NotElementwiseError:
             return None
-        found.append(Assignment(one.line, target, one.operator, value))
-    return tuple(found)
+        result.append(Assignment(one.line, target, one.operator, value))
+    return tuple(result)
 
 
 def mapped(function: Definition, array: Expression) -> Expression | None:

@@ -92,13 +92,13 @@ class Values:
 
     def _collected(self, line: int, path: str) -> Expression | None:
         """The array of which the entries were assigned one by one."""
-        found = {}
+        result = {}
         first = self.context.language.first_index
         for key in self.variables:
             if key.startswith(f"{path}[") and key[len(path) + 1 : -1].isdigit():
-                found[int(key[len(path) + 1 : -1]) - first] = self.variables[key]
-        if found and sorted(found) == list(range(len(found))):
-            return Array(line, tuple(found[i] for i in range(len(found))))
+                result[int(key[len(path) + 1 : -1]) - first] = self.variables[key]
+        if result and sorted(result) == list(range(len(result))):
+            return Array(line, tuple(result[i] for i in range(len(result))))
         return None
 
     def place(self, tree: Expression) -> str | None:

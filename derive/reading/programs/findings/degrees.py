@@ -15,9 +15,9 @@ CIRCULAR = ("sin", "cos", "tan")
 def named_in_degrees(value: Expression, function: str) -> Iterator[Finding]:
     """Names such as angle_deg in the arguments of sines, without a conversion."""
     for line, argument in arguments(value):
-        found = [*_names(argument)]
-        for path in found:
-            if IN_DEGREES.search(path) and "pi" not in found:
+        result = [*_names(argument)]
+        for path in result:
+            if IN_DEGREES.search(path) and "pi" not in result:
                 text = f"{path} is passed to a function of radians, without a conversion"
                 yield Finding(line, "degrees", function, text, True)
 

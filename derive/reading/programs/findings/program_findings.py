@@ -67,15 +67,15 @@ class Findings:
         for path, state in integrated(follower.calls):
             if entries(state) is not None:
                 self._integrated.setdefault(path.rpartition(".")[2], state)
-        found = rates(region.definition, region.follower)
-        if found and found.is_step:
-            lines = found.lines
+        result = rates(region.definition, region.follower)
+        if result and result.is_step:
+            lines = result.lines
             follower.steps += [
-                VariableValue(lines[q], q, value) for q, value in found.values.items()
+                VariableValue(lines[q], q, value) for q, value in result.values.items()
             ]
-            follower.variables |= found.values
-        elif found:
-            self._add_rates(region, found)
+            follower.variables |= result.values
+        elif result:
+            self._add_rates(region, result)
         for is_met in (False, True):
             self._add_updates(region, is_met=is_met)
         self._add_open(region)
@@ -94,22 +94,22 @@ class Findings:
                 if one.reason in (LOOP, CONDITION):
                     self._unread.append(UnreadPart(one.line, one.reason, region.name))
 
-    def _add_rates(self, region: Region, found: Rates) -> None:
+    def _add_rates(self, region: Region, result: Rates) -> None:
         names = Names(region.follower.steps)
         equations = FunctionEquations(region.name, names)
-        velocities = found.velocities
+        velocities = result.velocities
         for q, v in velocities.items():
             names.define(v, f"{names(q)}_dot")
-        for q, value in found.values.items():
+        for q, value in result.values.items():
             if q in velocities:
                 v = velocities[q]
-                equations.acceleration(found.lines[v], q, v, found.values[v])
+                equations.acceleration(result.lines[v], q, v, result.values[v])
             elif q not in velocities.values():
-                equations.rate(found.lines[q], q, value)
-        self._end(region, equations, names, [*found.values.values()])
-        angular = angles([*found.values.values()])
+                equations.rate(result.lines[q], q, value)
+        self._end(region, equations, names, [*result.values.values()])
+        angular = angles([*result.values.values()])
         self._angles[region.definition.name] = {
-            i: q for i, q in enumerate(found.values) if q in angular
+            i: q for i, q in enumerate(result.values) if q in angular
         }
 
     def _add_updates(self, region: Region, *, is_met: bool) -> None:
@@ -121,22 +121,22 @@ class Findings:
         changed = {name for one in written for name in one.rates}
         pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
         self._unread += [UnreadPart(line, why, region.name) for line, why in updates.unread]
-        used, found = {}, list(written_pairs(updates, written))
+        used, result = {}, list(written_pairs(updates, written))
         for pair in pairs:
             q = pair.coordinate.variable
             value, used[q] = updates.acceleration(pair)
-            found.append((q, pair.velocity.variable, value))
-        for q, v, _ in found:
+            result.append((q, pair.velocity.variable, value))
+        for q, v, _ in result:
             names.define(q, names(without_time(q)))
             names.define(v, f"{names(q)}_dot")
-        for q, v, value in found:
+        for q, v, value in result:
             equations.acceleration(value.line, q, v, value)
-        values = [value for *_, value in found]
+        values = [value for *_, value in result]
         self._end(region, equations, names, values)
         self._findings += euler_findings(
             pairs, used, region, self._context.constants, names.in_program
         )
-        angular = angles(values) & {q for q, *_ in found}
+        angular = angles(values) & {q for q, *_ in result}
         for path, start in self._starts:
             if path in angular:
                 self._findings += starts_in_degrees(
@@ -150,9 +150,9 @@ class Findings:
         for value in values:
             self._findings += named_in_degrees(value, region.name)
         self._unread += equations.unread
-        found = tuple(equations.equations)
-        if found:
-            self._functions.append(RateFunction(region.name, region.line, found, names.read))
+        result = tuple(equations.equations)
+        if result:
+            self._functions.append(RateFunction(region.name, region.line, result, names.read))
 
     def program(self, file: str, language: str) -> Program:
         """The program, with each equation in the function where it stands."""
@@ -196,12 +196,12 @@ class Findings:
                 line, known = equation.line, best.get(equation.line)
                 if known is None or _nearness(known, line) < _nearness(function, line):
                     best[line] = function
-        found = []
+        result = []
         for function in self._functions:
             own = tuple(e for e in function.equations if best[e.line] is function)
             if own:
-                found.append(replace(function, equations=own))
-        return tuple(found)
+                result.append(replace(function, equations=own))
+        return tuple(result)
 
 
 def _nearness(function: RateFunction, line: int) -> int:

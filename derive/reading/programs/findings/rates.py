@@ -23,12 +23,12 @@ class Rates:
     @property
     def velocities(self) -> dict[str, str]:
         """The velocity of each coordinate: its rate is another variable of the state."""
-        found = {}
+        result = {}
         for variable, value in self.values.items():
             rate = inner(value)
             if isinstance(rate, Name) and rate.path != variable and rate.path in self.values:
-                found[variable] = rate.path
-        return {q: v for q, v in found.items() if v not in found}
+                result[variable] = rate.path
+        return {q: v for q, v in result.items() if v not in result}
 
 
 def rates(definition: Definition, follower: Follower) -> Rates | None:

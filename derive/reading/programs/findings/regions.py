@@ -55,15 +55,15 @@ def prepare(context: ProgramContext, body: tuple[Statement, ...]) -> None:
             context.variables.discard(one.name)
     values: dict[str, list[Expression]] = {}
     counts: Counter[str] = Counter()
-    for scope in (body, *(one.body for one in everything if isinstance(one, Definition))):
-        fixed = _fixed(context, scope)
-        context.fixed[id(scope)] = {*fixed}
-        counts.update({*assigned(scope)})
+    for namespace in (body, *(one.body for one in everything if isinstance(one, Definition))):
+        fixed = _fixed(context, namespace)
+        context.fixed[id(namespace)] = {*fixed}
+        counts.update({*assigned(namespace)})
         for path, value in fixed.items():
             values.setdefault(path, []).append(value)
-    for path, found in values.items():
-        if len(found) == counts[path] and len({number(value) for value in found}) == 1:
-            context.constants[path] = found[0]
+    for path, result in values.items():
+        if len(result) == counts[path] and len({number(value) for value in result}) == 1:
+            context.constants[path] = result[0]
 
 
 def _fixed(context: ProgramContext, body: tuple[Statement, ...]) -> dict[str, Expression]:
@@ -82,18 +82,18 @@ def _fixed(context: ProgramContext, body: tuple[Statement, ...]) -> dict[str, Ex
                 is_whole = isinstance(target, Name | Member)
                 values.setdefault(static_path(target), []).append(value if is_whole else None)
     fixed = {}
-    for path, found in values.items():
-        numbers = {number(value) if value is not None else None for value in found}
-        if path and found[0] is not None and len(numbers) == 1 and None not in numbers:
-            fixed[path] = found[0]
+    for path, result in values.items():
+        numbers = {number(value) if value is not None else None for value in result}
+        if path and result[0] is not None and len(numbers) == 1 and None not in numbers:
+            fixed[path] = result[0]
     return fixed
 
 
 def regions(context: ProgramContext, body: tuple[Statement, ...]) -> list[Region]:
     """All regions, followed twice: then each knows the values that others assign once."""
-    found = [*_regions(context, body)]
+    result = [*_regions(context, body)]
     once = _assigned_once(body)
-    for region in found:
+    for region in result:
         own = {one.name for one in region.definition.parameters}
         for path, value in region.follower.variables.items():
             if path in once - own and _is_formula(value) and not _contains(value, path):
@@ -180,13 +180,13 @@ def _followed(
     context: ProgramContext,
     definition: Definition,
     variables: dict[str, Expression],
-    scope: tuple[Statement, ...],
+    namespace: tuple[Statement, ...],
     *,
     is_loop: bool = False,
 ) -> Iterator[Region]:
     follower = Follower(context, definition.owner)
     follower.parameters = {one.name for one in definition.parameters}
-    follower.fixed = context.fixed.get(id(scope), set())
+    follower.fixed = context.fixed.get(id(namespace), set())
     follower.variables = variables
     follower.run(definition.body)
     name = definition.name
@@ -198,7 +198,7 @@ def _followed(
             context,
             _as_function(loop, definition),
             _kept(context, loop, before),
-            scope,
+            namespace,
             is_loop=True,
         )
 

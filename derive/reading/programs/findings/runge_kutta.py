@@ -86,15 +86,15 @@ def method(increment: Expression) -> tuple[Method, Expression] | None:
         rows = [tuple(x / size for x in row) if row else row for row in rows]
     order = sorted(range(len(calls)), key=lambda i: sum(map(bool, rows[i] or ())))
     A = tuple(tuple((rows[i] or ())[j] for j in order) for i in order)
-    found = Method(A, tuple(weights[i] for i in order))
-    return found, _result(increment, calls[order[0]]) or increment
+    result = Method(A, tuple(weights[i] for i in order))
+    return result, _result(increment, calls[order[0]]) or increment
 
 
 def _result(tree: Expression, call: FunctionCall) -> Expression | None:
     """The value of a call in a combination."""
     if called(tree) == call:
         return inner(tree)
-    return next((found for part in tree.parts if (found := _result(part, call))), None)
+    return next((result for part in tree.parts if (result := _result(part, call))), None)
 
 
 def value_at(
@@ -122,22 +122,22 @@ def _calls(tree: Expression) -> list[FunctionCall]:
     """The calls in a combination, in order; those in arguments follow from the calls."""
     if (call := called(tree)) is not None:
         return [call]
-    found: list[FunctionCall] = []
+    result: list[FunctionCall] = []
     for part in tree.parts:
-        found += [one for one in _calls(part) if one not in found]
-    return found
+        result += [one for one in _calls(part) if one not in result]
+    return result
 
 
 def _with_earlier(calls: list[FunctionCall]) -> list[FunctionCall]:
     """Calls, and the calls of the same functions in their arguments."""
-    found = [*calls]
-    for call in found:  # which grows
+    result = [*calls]
+    for call in result:  # which grows
         for argument in call.arguments:
             for one in _calls(argument):
                 is_stage = any(one.function == other.function for other in calls)
-                if is_stage and one not in found and len(found) <= MAX_STAGES:
-                    found.append(one)
-    return found
+                if is_stage and one not in result and len(result) <= MAX_STAGES:
+                    result.append(one)
+    return result
 
 
 def _row(call: FunctionCall, calls: list[FunctionCall]) -> tuple[float, ...] | None:
@@ -172,7 +172,7 @@ def _coefficients(
     names = {"": step}
     try:
         start = _number(tree, calls, zeros, names)
-        found = []
+        result = []
         for index in range(len(calls)):
             values = [*zeros]
             values[index] = 1.0
@@ -181,10 +181,10 @@ def _coefficients(
             twice = _number(tree, calls, values, names) - start
             if abs(twice - 2 * once) > 1e-9 * (1 + abs(once)):
                 return None
-            found.append(round(once, 12))
+            result.append(round(once, 12))
     except (ArithmeticError, ValueError, TypeError):
         return None
-    return tuple(found)
+    return tuple(result)
 
 
 def _number(

@@ -70,8 +70,8 @@ def written_pairs(
 
 def runge_kutta_findings(written: Sequence[WrittenMethod], function: str) -> Iterator[Finding]:
     """Remarks on the methods that are written out."""
-    for found in written:
-        one, possible = found.method, min(found.method.stages, 4)
+    for result in written:
+        one, possible = result.method, min(result.method.stages, 4)
         text = f"a Runge-Kutta method of {one.stages} stages and order {one.order} is written out"
         is_fault = one.order < possible
         if is_fault:
@@ -79,7 +79,7 @@ def runge_kutta_findings(written: Sequence[WrittenMethod], function: str) -> Ite
             nodes = ", ".join(f"{sum(row):.4g}" for row in one.A)
             text += f": weights {weights}, stages at {nodes} of the step"
             text += f"; order {possible} is possible"
-        yield Finding(found.line, "runge_kutta", function, text, is_fault)
+        yield Finding(result.line, "runge_kutta", function, text, is_fault)
 
 
 def euler_findings(

@@ -75,8 +75,8 @@ class Updates:
             for step in self._steps
             if not isinstance(value := self._chosen(step.value, step.path), Name | NumberLiteral)
         }
-        found = (self._update(path, value) for path, value in final.items())
-        self.updates: dict[str, Update] = {one.variable: one for one in found if one}
+        result = (self._update(path, value) for path, value in final.items())
+        self.updates: dict[str, Update] = {one.variable: one for one in result if one}
 
     def _is_whole(self, tree: Expression) -> bool:
         return id(tree) in self._owners
@@ -107,22 +107,22 @@ class Updates:
         rest = tuple(one for one in first if one is not own[0])
         return Update(old, line, rest, damping, damping_line) if rest or damping else None
 
-    def _damped(self, old: str, line: int, found: list[Term]) -> Update | None:
+    def _damped(self, old: str, line: int, result: list[Term]) -> Update | None:
         """The update of a variable that is first multiplied by a factor."""
-        for term in found:
+        for term in result:
             parts = factors(term[1], self._is_whole)
             others = [one for one in parts if one != Name(0, old)]
             if term[0] == 1 and len(others) == len(parts) - 1 and others:
-                rest = tuple(one for one in found if one is not term)
+                rest = tuple(one for one in result if one is not term)
                 return Update(old, line, rest, product(line, others), term[1].line)
         return None
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
         """Coordinates with their velocities, in the order of the program."""
-        found = [pair for one in self.updates.values() if (pair := self._pair(one))]
-        velocities = {pair.velocity.variable for pair in found}
-        return tuple(pair for pair in found if pair.coordinate.variable not in velocities)
+        result = [pair for one in self.updates.values() if (pair := self._pair(one))]
+        velocities = {pair.velocity.variable for pair in result}
+        return tuple(pair for pair in result if pair.coordinate.variable not in velocities)
 
     def _pair(self, coordinate: Update) -> Pair | None:
         for sign, term in coordinate.increment:
@@ -148,8 +148,8 @@ class Updates:
         """The variables in a term that are no step size: accelerations from before."""
         steps = {*names(step)} if step else set()
         parts = factors(term, self._is_whole)
-        found = [one.path for one in parts if isinstance(one, Name)]
-        return [path for path in found if path not in {*steps, "pi"}]
+        result = [one.path for one in parts if isinstance(one, Name)]
+        return [path for path in result if path not in {*steps, "pi"}]
 
     def _velocity(self, tree: Expression) -> tuple[Update | None, bool, bool]:
         """The variable that a factor is, whether after its update, and whether in between."""
@@ -172,14 +172,14 @@ class Updates:
         """The acceleration in values before the step, and the variables used after it."""
         used: set[str] = set()
         velocity, step = pair.velocity, pair.step
-        found = [(sign, self._divided(term, step)) for sign, term in velocity.increment]
-        if any(term is None for _, term in found):  # no common factor
+        result = [(sign, self._divided(term, step)) for sign, term in velocity.increment]
+        if any(term is None for _, term in result):  # no common factor
             whole = [(sign, self._restored(term, used)) for sign, term in velocity.increment]
             value = OperatorExpression(
                 velocity.line, "/", (total(velocity.line, whole), step or NO_STEP)
             )
             return value, frozenset(used)
-        divided = [(sign, self._restored(term, used)) for sign, term in found if term]
+        divided = [(sign, self._restored(term, used)) for sign, term in result if term]
         return total(velocity.line, divided), frozenset(used)
 
     def _divided(self, term: Expression, step: Expression | None) -> Expression | None:

@@ -48,8 +48,8 @@ class DefinitionTranslator(ExpressionTranslator):
         """The class of a method that is defined outside it, such as P of ``P::step``."""
         header = node.child_by_field_name("declarator")
         named = header.child_by_field_name("declarator") if header else None
-        scope = named.child_by_field_name("scope") if named else None
-        return text(scope) if scope else self._owner
+        namespace = named.child_by_field_name("scope") if named else None
+        return text(namespace) if namespace else self._owner
 
     def _lambda_tree(self, node: "Node") -> Expression:
         parameters = node.child_by_field_name("parameter") or self._first(node, "parameters")
@@ -66,8 +66,8 @@ class DefinitionTranslator(ExpressionTranslator):
         statements = self.statements([*first, *nodes])
         if self.language.returns_last or self.role(nodes[0] if nodes else node) != "block":
             statements = _with_return(statements)
-        found = self._first(node, "results")
-        results = tuple(self.word(one) for one in self._names(found)) if found else ()
+        result = self._first(node, "results")
+        results = tuple(self.word(one) for one in self._names(result)) if result else ()
         if node.type == "function" and not results:
             results = (name,)  # of Fortran
         parameters = tuple(self._parameters(given)) if given else ()

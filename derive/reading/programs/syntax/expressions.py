@@ -111,10 +111,10 @@ class ExpressionTranslator:
         base, *indices = self.children(node)
         if len(indices) == 1 and self.role(indices[0]) in ("arguments", "indices", "array"):
             indices = self.children(indices[0])
-        found = self._trees(indices)
-        if len(found) == 1 and isinstance(found[0], TextLiteral):
-            return Member(line(node), self.tree(base), found[0].value)
-        return Item(line(node), self.tree(base), found)
+        result = self._trees(indices)
+        if len(result) == 1 and isinstance(result[0], TextLiteral):
+            return Member(line(node), self.tree(base), result[0].value)
+        return Item(line(node), self.tree(base), result)
 
     def _slice_tree(self, node: "Node") -> Expression:
         bounds: list[Expression | None] = [None]

@@ -24,7 +24,7 @@ UNNAMED, INVALID = "_unnamed", "_letter"
 
 
 @dataclass(frozen=True)
-class Meaning:
+class SystemLetters:
     """A system, and the symbols of the document's letters."""
 
     system: System
@@ -33,7 +33,7 @@ class Meaning:
     multipliers: Mapping[str, sp.Expr] = field(default_factory=dict)
 
 
-def meaning(candidate: SystemCandidate) -> Meaning:
+def system_letters(candidate: SystemCandidate) -> SystemLetters:
     """The system of a candidate with the document's coordinates and parameters."""
     template = candidate.system
     symbols: dict[str, sp.Symbol] = {}
@@ -105,7 +105,7 @@ def meaning(candidate: SystemCandidate) -> Meaning:
     multipliers = {
         name: factor * system.multipliers[index] for name, index, factor in candidate.multipliers
     }
-    return Meaning(system, symbols, multipliers)
+    return SystemLetters(system, symbols, multipliers)
 
 
 def _letters(constraints: Sequence[StatedConstraint]) -> set[str]:
@@ -124,10 +124,10 @@ def _conditions(
     candidate: SystemCandidate, symbols: Mapping[str, sp.Symbol]
 ) -> Iterator[Constraint]:
     """The constraints that the document states."""
-    scope = {**FUNCTIONS, **symbols, "t": TIME}
-    scope |= {f"{q}_dot": velocity(symbols[q]) for q in candidate.coordinates}
+    namespace = {**FUNCTIONS, **symbols, "t": TIME}
+    namespace |= {f"{q}_dot": velocity(symbols[q]) for q in candidate.coordinates}
     for k, one in enumerate(candidate.constraints):
-        yield Constraint(parse(one.text, scope), multiplier(candidate, k))
+        yield Constraint(parse(one.text, namespace), multiplier(candidate, k))
 
 
 def multiplier(candidate: SystemCandidate, index: int) -> str:

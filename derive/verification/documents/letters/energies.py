@@ -112,19 +112,19 @@ def _stated(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> Stated:
     """The energies that formulas state in letters, without those of reactions."""
-    scope = {**FUNCTIONS, **symbols, "t": TIME}
-    scope |= {f"{q}_dot": velocity(symbols[q]) for q in letters.coordinates}
-    found: dict[str, tuple[sp.Expr, int]] = {}
+    namespace = {**FUNCTIONS, **symbols, "t": TIME}
+    namespace |= {f"{q}_dot": velocity(symbols[q]) for q in letters.coordinates}
+    result: dict[str, tuple[sp.Expr, int]] = {}
     for number, formula in enumerate(formulas):
         kind = letters.quantities.get(formula.subject, "")
         for side in formula.sides[1:]:
             try:
-                value = parse(side.text, scope)
+                value = parse(side.text, namespace)
             except (ExpressionError, NotImplementedError):
                 continue
             if not isinstance(value, sp.MatrixBase):
-                found.setdefault(kind, (value, number))
-    return found
+                result.setdefault(kind, (value, number))
+    return result
 
 
 def _masses(

@@ -28,7 +28,7 @@ class Hints:
     def __post_init__(self) -> None:
         for letter, text in self.names.items():
             try:
-                value = parse(text, self._scope)
+                value = parse(text, self._namespace)
             except ExpressionError as error:
                 raise InputError(f"names.{letter}: {error}") from error
             if not value.free_symbols & {*self.system.q} and value not in self.system.params:
@@ -53,7 +53,7 @@ class Hints:
         return all(self._agrees(candidate, letter) for letter in self.names)
 
     def _agrees(self, candidate: SystemCandidate, letter: str) -> bool:
-        value = parse(self.names[letter], self._scope)
+        value = parse(self.names[letter], self._namespace)
         if value in self.system.params:
             return candidate.parameters.get(value.name) == letter
         if letter not in candidate.coordinates:
@@ -69,7 +69,7 @@ class Hints:
         return bool(sp.expand(difference) == 0)
 
     @cached_property
-    def _scope(self) -> dict[str, object]:
+    def _namespace(self) -> dict[str, object]:
         return {s.name: s for s in (*self.system.q, *self.system.params)} | FUNCTIONS
 
 

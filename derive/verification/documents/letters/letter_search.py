@@ -123,26 +123,26 @@ def _generic(
     formulas: Iterable[DocumentFormula], derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
 ) -> set[str]:
     """Names such as q_1 that only statements with an index have, such as that about all q_i."""
-    found: dict[bool, set[str]] = {True: set(), False: set()}
+    result: dict[bool, set[str]] = {True: set(), False: set()}
     for formula in formulas:
         for name in formula.words:
             operand, variables = derivatives.get(name, (name, ()))
-            found[bool(formula.index)].update(map(stem, (operand, *variables)))
-    return found[True] - found[False]
+            result[bool(formula.index)].update(map(stem, (operand, *variables)))
+    return result[True] - result[False]
 
 
 def _abbreviations(
     names: Iterable[str], coordinates: Sequence[str]
 ) -> dict[str, tuple[str, tuple[str, ...]]]:
     """Names such as s_1 and c_12, if there are sines and cosines."""
-    found: dict[str, tuple[str, tuple[str, ...]]] = {}
+    result: dict[str, tuple[str, tuple[str, ...]]] = {}
     for name in names:
         if match := ABBREVIATION.match(name):
             indices = re.findall(r"\d", match[2])
             angles = [q for i in indices for q in coordinates if q.partition("_")[2] == i]
             if len(angles) == len(indices):
-                found[name] = {"s": "sin", "c": "cos"}[match[1]], tuple(angles)
-    return found if len({function for function, _ in found.values()}) == 2 else {}
+                result[name] = {"s": "sin", "c": "cos"}[match[1]], tuple(angles)
+    return result if len({function for function, _ in result.values()}) == 2 else {}
 
 
 def _quantity(name: str) -> str | None:
@@ -160,20 +160,20 @@ def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) 
 
 def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
     """Names of the matrices of M q̈ + C q̇ = G that a document writes out."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for formula in formulas:
         letter, _, index = formula.subject.removesuffix("_column").partition("_")
         count = max(len(side.entries) for side in formula.sides)
         if index == "0":
             continue  # the value at an equilibrium
         if letter in MATRICES and count in (COLUMNS if letter in "Gg" else SQUARES):
-            found[formula.subject] = MATRICES[letter]
-    return found
+            result[formula.subject] = MATRICES[letter]
+    return result
 
 
 def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
     """Energies by statements such as L = K - P and H = T + U."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     pattern = re.compile(r"(\w+) ([+-]) (\w+)\Z")
     for formula in formulas:
         kind = _quantity(formula.subject)
@@ -181,8 +181,8 @@ def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
             match = pattern.match(side.text)
             signs = {"lagrangian": "-", "energy": "+", "hamiltonian": "+"}
             if match and signs.get(kind or "") == match[2]:
-                found |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
-    return found
+                result |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
+    return result
 
 
 def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:

@@ -85,14 +85,14 @@ def _points(
     """The positions that formulas define, by the index of their names."""
     known: dict[str, sp.Expr] = {}
     columns: dict[str, tuple[sp.Expr, ...]] = {}
-    scope = {**FUNCTIONS, **symbols, "t": TIME}
+    namespace = {**FUNCTIONS, **symbols, "t": TIME}
     moving = {symbols[q] for q in letters.coordinates}
     for formula in formulas:
         for name, text in definitions(formula):
             if name in known or name in columns:
                 continue
             try:
-                value = parse(text, {**scope, **known})
+                value = parse(text, {**namespace, **known})
             except ExpressionError:
                 continue
             if not value.free_symbols & moving and value != 0:  # a cart has y_0 = 0
@@ -108,12 +108,12 @@ def _points(
         assert match
         axis = AXES.index(match[1].lower())
         points.setdefault(match[2] or "", {})[axis] = value
-    found = {
+    result = {
         index: tuple(axes.get(k, sp.S.Zero) for k in range(3 if 2 in axes else 2))
         for index, axes in points.items()
         if len(axes) > 1 and any(value.free_symbols & moving for value in axes.values())
     }
-    return found or columns
+    return result or columns
 
 
 def _masses(
@@ -147,13 +147,13 @@ def _potentials(
 ) -> Iterator[sp.Expr]:
     """The weight, and the stated potential energies that contain it and springs."""
     yield weight
-    scope = {**FUNCTIONS, **symbols, "t": TIME}
+    namespace = {**FUNCTIONS, **symbols, "t": TIME}
     for formula in formulas:
         if letters.quantities.get(formula.subject) != "potential_energy":
             continue
         for side in formula.sides[1:]:
             try:
-                value = parse(side.text, scope)
+                value = parse(side.text, namespace)
             except ExpressionError:
                 continue
             if isinstance(value, sp.MatrixBase):

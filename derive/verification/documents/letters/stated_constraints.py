@@ -39,10 +39,10 @@ class StatedConstraint:
 
 def multipliers_of(parameters: Sequence[str]) -> tuple[str, ...]:
     """The letters of multipliers among parameters."""
-    found = [name for name in parameters if MULTIPLIER.match(name)]
-    if found == ["lambda"] and SECOND in parameters:
-        found.append(SECOND)
-    return tuple(sorted(found))
+    result = [name for name in parameters if MULTIPLIER.match(name)]
+    if result == ["lambda"] and SECOND in parameters:
+        result.append(SECOND)
+    return tuple(sorted(result))
 
 
 def stated_constraints(
@@ -58,12 +58,12 @@ def stated_constraints(
     document with as many multipliers.
     """
     letters = {*parameters} - {*multipliers}
-    found = [*_possible(formulas, {*coordinates}, letters, {*multipliers}, derivatives)]
-    named = [one for one in found if _is_named(formulas[one.number])]
+    result = [*_possible(formulas, {*coordinates}, letters, {*multipliers}, derivatives)]
+    named = [one for one in result if _is_named(formulas[one.number])]
     count = len(multipliers)
     if len(_independent(named)) == count or not count:
         return tuple(_independent(named))
-    everything = _independent(found)
+    everything = _independent(result)
     return tuple(everything) if len(everything) == count else ()
 
 
@@ -144,12 +144,12 @@ def rate_of(expression: sp.Expr, coordinates: Collection[str]) -> sp.Expr:
     return sp.Add(*(expression.diff(q) * v for q, v in pairs), expression.diff(TIME))
 
 
-def _independent(found: Sequence[StatedConstraint]) -> list[StatedConstraint]:
+def _independent(result: Sequence[StatedConstraint]) -> list[StatedConstraint]:
     """The constraints without those that follow from others, such as their rates."""
-    every = sorted({q for one in found for q in one.coordinates})
+    every = sorted({q for one in result for q in one.coordinates})
     rates = [symbol(f"{q}_dot") for q in every]
     kept, rows = list[StatedConstraint](), sp.Matrix(0, len(rates), [])
-    for one in found:
+    for one in result:
         expression = expression_of(one)
         assert expression is not None
         row = sp.Matrix([rate_of(expression, every)]).jacobian(rates)

@@ -180,10 +180,10 @@ class CandidateMotions:
     @cached_property
     def _orders(self) -> Mapping[tuple[str, ...], NDArray[np.intp]]:
         """The numbers of the candidates with each order of coordinates."""
-        found: dict[tuple[str, ...], list[int]] = {}
+        result: dict[tuple[str, ...], list[int]] = {}
         for b, one in enumerate(self._tried):
-            found.setdefault(one.coordinates, []).append(b)
-        return {order: np.array(rows) for order, rows in found.items()}
+            result.setdefault(one.coordinates, []).append(b)
+        return {order: np.array(rows) for order, rows in result.items()}
 
     @cached_property
     def _mass_matrix(self) -> Array:

@@ -65,9 +65,9 @@ def conditions(
             column[np.arange(len(tried)), :, 0, places] = _numbers(text, letters, shape)
         gradients.append(column)
     rows = [*((row, names) for row in own), *((row, letters) for row in stated)]
-    rates = [evaluated(row.rate, scope) for row, scope in rows]
+    rates = [evaluated(row.rate, namespace) for row, namespace in rows]
     return Conditions(
-        _stacked([evaluated(row.value, scope).value for row, scope in rows], shape),
+        _stacked([evaluated(row.value, namespace).value for row, namespace in rows], shape),
         _stacked([jet.value for jet in rates], shape),
         -_stacked([_rate(jet) for jet in rates], shape),
         np.concatenate(gradients, axis=2),

@@ -52,12 +52,12 @@ def resolved(
             if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN
             and not {*u} & {*letters.multipliers}
         }  # which would hold with any reaction
-        found = next((m for u in dict.fromkeys(unknown.values())
+        result = next((m for u in dict.fromkeys(unknown.values())
                       if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],
                                         candidate, numbers))), None)  # fmt: skip
-        if not found:
+        if not result:
             return meanings
-        for name, text in [*found.items(), *_rates(found, letters)]:
+        for name, text in [*result.items(), *_rates(result, letters)]:
             meanings[name] = text
             numbers.set_rates(name, evaluated(text, numbers.values))
         numbers.define(formulas)
@@ -68,18 +68,18 @@ def _aliases(names: Sequence[str], candidate: SystemCandidate) -> Iterator[dict[
     indexed = {q.partition("_")[2]: q for q in candidate.coordinates}
     for letter in dict.fromkeys(name.partition("_")[0] for name in names):
         pairs = {n: indexed.get(n.partition("_")[2]) for n in names if n.startswith(letter)}
-        found = {name: q for name, q in pairs.items() if q}
-        if len(found) == len(candidate.coordinates):
-            yield found
+        result = {name: q for name, q in pairs.items() if q}
+        if len(result) == len(candidate.coordinates):
+            yield result
 
 
 def _accepted(
-    found: Mapping[str, str], formulas: Sequence[DocumentFormula], numbers: Numbers
+    result: Mapping[str, str], formulas: Sequence[DocumentFormula], numbers: Numbers
 ) -> Mapping[str, str]:
     """The meanings if several formulas hold with them, which no other meaning would achieve."""
-    for name, q in found.items():
+    for name, q in result.items():
         numbers.set_rates(name, numbers.values[q])
-    words = {name + ending for name in found for ending in RATES}
+    words = {name + ending for name in result for ending in RATES}
     votes = [
         bool(vote.all())
         for one in formulas
@@ -87,15 +87,15 @@ def _accepted(
         for _, vote in numbers.comparisons(one)
     ]
     if votes.count(True) >= max(SUPPORT, len(votes) // 4):
-        return found
-    for name in (n + ending for n in found for ending in RATES[:3]):
+        return result
+    for name in (n + ending for n in result for ending in RATES[:3]):
         numbers.values.pop(name, None)
     return {}
 
 
-def _rates(found: Mapping[str, str], letters: Letters) -> Iterator[tuple[str, str]]:
+def _rates(result: Mapping[str, str], letters: Letters) -> Iterator[tuple[str, str]]:
     """Names such as td_1 and tdd_1, if t_1 is a coordinate."""
-    for name, text in found.items():
+    for name, text in result.items():
         letter, _, index = name.partition("_")
         for mark, ending in (("d", "_dot"), ("dd", "_ddot")):
             rate = f"{letter}{mark}_{index}"

@@ -6,7 +6,7 @@ from pathlib import Path
 from derive.reading.document import Document
 from derive.verification.documents.pages.latex_notes import latex_notes
 from derive.verification.documents.pages.verdict_page import page
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from solvers.io.atomic_write import write_text
 from solvers.io.toml_input import InputError
 
@@ -30,6 +30,6 @@ def check_annotation(path: Path, files: Sequence[str]) -> None:
         raise InputError(f"--annotate {path}: this is the document itself; choose another name")
 
 
-def annotate(path: Path, documents: Sequence[tuple[JudgedDocument, Document]]) -> None:
+def annotate(path: Path, documents: Sequence[tuple[DocumentVerdicts, Document]]) -> None:
     """Write a page with the verdicts on documents, or LaTeX with those on one document."""
     write_text(path, page(documents) if path.suffix == ".html" else latex_notes(*documents[0]))

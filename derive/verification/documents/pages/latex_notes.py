@@ -10,7 +10,7 @@ from derive.reading.document import Display, Document
 from derive.reading.formats.tex import BODY
 from derive.reading.latex.display_reader import Macro, macros_of
 from derive.verification.documents.pages.latex_text import COMMANDS, code, escaped, formula
-from derive.verification.documents.pages.verdicts_in_place import JudgedDocument, JudgedFormula
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.verdict import VerdictName
 
 #: A note in the margin; in the line where there is no margin, as in boxes, floats and slides.
@@ -36,7 +36,7 @@ BEGIN, END = r"\begin{document}", r"\end{document}"
 REFUTED = ("wrong", "misprint", "unreadable")
 
 
-def latex_notes(judged: JudgedDocument, document: Document) -> str:
+def latex_notes(verdicts: DocumentVerdicts, document: Document) -> str:
     """The document with its verdicts in the margin and their details at its end.
 
     Of a document that is no complete LaTeX, the formulas are listed instead. The result compiles
@@ -45,27 +45,27 @@ def latex_notes(judged: JudgedDocument, document: Document) -> str:
     text = document.text
     opening, end = BODY.search(text), text.rfind(END)
     if document.kind != "latex" or not opening or end < opening.end():
-        return _listed(judged, document)
+        return _listed(verdicts, document)
     position = opening.end()
     pieces = [text[: position - len(BEGIN)], NOTE, BEGIN]
-    for place, note in sorted(_notes(judged, document)):
+    for place, note in sorted(_notes(verdicts, document)):
         if place > position:
             pieces += [text[position:place], note]
             position = place
     macros = macros_of("\n".join(document.definitions))
     details = "\n".join(
-        _entry(one, macros) for one in judged.formulas if one.verdict in REFUTED or one.note
+        _entry(one, macros) for one in verdicts.formulas if one.verdict in REFUTED or one.note
     )
-    name = escaped(Path(judged.file).name)
+    name = escaped(Path(verdicts.file).name)
     title = rf"\clearpage\noindent\textbf{{Verdicts on the formulas of {name}}}"
-    closing = f"\n{title}\n{_summary(judged)}\n{details}\n"
+    closing = f"\n{title}\n{_summary(verdicts)}\n{details}\n"
     return "".join([*pieces, text[position:end], closing, text[end:]])
 
 
-def _notes(judged: JudgedDocument, document: Document) -> Iterator[tuple[int, str]]:
+def _notes(verdicts: DocumentVerdicts, document: Document) -> Iterator[tuple[int, str]]:
     """Places and texts of notes: before displays, and after inline formulas."""
     for display in document.displays:
-        within = [one for one in judged.formulas if _is_in(display, one)]
+        within = [one for one in verdicts.formulas if _is_in(display, one)]
         if within:
             lines = dict.fromkeys(_short(one) for one in within)
             start, end = display.extent
@@ -76,23 +76,23 @@ def _note(text: str) -> str:
     return rf"\formulaverdict{{{text}}}"
 
 
-def _is_in(display: Display, one: JudgedFormula) -> bool:
+def _is_in(display: Display, one: FormulaVerdict) -> bool:
     return display.extent[0] <= one.span[0] < display.extent[1]
 
 
-def _short(one: JudgedFormula) -> str:
+def _short(one: FormulaVerdict) -> str:
     text = f"{one.line}: {one.verdict}"
     return rf"\textbf{{{text}}}" if one.verdict in REFUTED else text
 
 
-def _listed(judged: JudgedDocument, document: Document) -> str:
+def _listed(verdicts: DocumentVerdicts, document: Document) -> str:
     """A document that lists the formulas with their verdicts."""
     definitions = _provided(document.definitions)
     is_program = document.kind == "program"
     macros = None if is_program else macros_of("\n".join(definitions))
-    entries = "\n".join(_entry(one, macros) for one in judged.formulas)
-    title = rf"\textbf{{\large Verdicts on the formulas of {escaped(Path(judged.file).name)}}}"
-    body = f"{title}\n{_summary(judged)}\n{entries}"
+    entries = "\n".join(_entry(one, macros) for one in verdicts.formulas)
+    title = rf"\textbf{{\large Verdicts on the formulas of {escaped(Path(verdicts.file).name)}}}"
+    body = f"{title}\n{_summary(verdicts)}\n{entries}"
     return "\n".join([HEAD + "\n".join(definitions), BEGIN, body, END, ""])
 
 
@@ -107,15 +107,15 @@ def _provided(definitions: Sequence[str]) -> list[str]:
     return list(provided)
 
 
-def _summary(judged: JudgedDocument) -> str:
-    counts = Counter(one.verdict for one in judged.formulas)
+def _summary(verdicts: DocumentVerdicts) -> str:
+    counts = Counter(one.verdict for one in verdicts.formulas)
     numbers = ", ".join(f"{counts[one]} {one}" for one in get_args(VerdictName) if counts[one])
-    system = [f"System: {escaped(judged.system)}."] if judged.system else []
-    lines = [*system, f"Formulas: {numbers or 'none'}.", *map(escaped, judged.remarks)]
+    system = [f"System: {escaped(verdicts.system)}."] if verdicts.system else []
+    lines = [*system, f"Formulas: {numbers or 'none'}.", *map(escaped, verdicts.remarks)]
     return "".join(f"\n\\par\\noindent {line}" for line in lines)
 
 
-def _entry(one: JudgedFormula, macros: Mapping[str, Macro] | None) -> str:
+def _entry(one: FormulaVerdict, macros: Mapping[str, Macro] | None) -> str:
     """A formula with its verdict and all details."""
     place = f"Cell {one.cell}, line {one.line}" if one.cell else f"Line {one.line}"
     details = [
@@ -132,7 +132,7 @@ def _written(text: str, macros: Mapping[str, Macro] | None) -> str:
     return formula(text, macros) if macros is not None else code(text)
 
 
-def _details(one: JudgedFormula, macros: Mapping[str, Macro] | None) -> Iterator[tuple[str, str]]:
+def _details(one: FormulaVerdict, macros: Mapping[str, Macro] | None) -> Iterator[tuple[str, str]]:
     yield "wrong term", _written(one.wrong_term, macros)
     yield "correct formula", _written(one.correction, macros)
     yield "value", escaped(one.witness)

@@ -149,7 +149,7 @@ def formula(latex: str, macros: Mapping[str, Macro] = {}) -> str:
 
 def _is_known(latex: str, macros: Collection[str]) -> bool:
     """Whether all commands and characters of a formula are known, and its brackets are closed."""
-    tokens = [found.groups() for found in TOKEN.finditer(latex)]
+    tokens = [result.groups() for result in TOKEN.finditer(latex)]
     return (
         all(one in COMMANDS or one in macros for _, _, one, *_ in tokens if one)
         and all(one in SYMBOLS for *_, one, _, _ in tokens if one)

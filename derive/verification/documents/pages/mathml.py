@@ -124,8 +124,8 @@ class _Typesetter:
 
     def _enclosed(self, node: Node, markup: str) -> str:
         """The markup in the brackets of the document."""
-        found = self._brackets_of(node)
-        return _brackets(markup, *BRACKETS[found[1] if found else "("])
+        result = self._brackets_of(node)
+        return _brackets(markup, *BRACKETS[result[1] if result else "("])
 
     def _brackets_of(self, node: Node) -> re.Match[str] | None:
         return BRACKET.match(self._latex, *node.span)

@@ -12,8 +12,8 @@ from derive.reading.latex.display_reader import Macro, formulas, macros_of
 from derive.reading.latex.tree import Span, Statement
 from derive.verification.documents.pages.mathml import statement_html
 from derive.verification.documents.pages.verdicts_in_place import (
-    JudgedDocument,
-    JudgedFormula,
+    DocumentVerdicts,
+    FormulaVerdict,
     one_line,
 )
 from derive.verification.verdict import VerdictName
@@ -26,7 +26,7 @@ STYLE = Path(__file__).with_name("page.css")
 TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\s\\]")
 
 
-def page(documents: Sequence[tuple[JudgedDocument, Document]]) -> str:
+def page(documents: Sequence[tuple[DocumentVerdicts, Document]]) -> str:
     """The page, as HTML without references to other files.
 
     Parameters
@@ -34,13 +34,13 @@ def page(documents: Sequence[tuple[JudgedDocument, Document]]) -> str:
     documents
         The verdicts on each document, and the document as read.
     """
-    names = ", ".join(Path(judged.file).name for judged, _ in documents)
+    names = ", ".join(Path(verdicts.file).name for verdicts, _ in documents)
     title = f"Verdicts on {escape(names)}"
     sections = "\n".join(
         _section(*one, f"<h2>{escape(Path(one[0].file).name)}</h2>" if len(documents) > 1 else "")
         for one in documents
     )
-    counts = Counter(one.verdict for judged, _ in documents for one in judged.formulas)
+    counts = Counter(one.verdict for verdicts, _ in documents for one in verdicts.formulas)
     style = STYLE.read_text(encoding="utf-8") + "\n".join(map(_hidden, counts))
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -81,17 +81,17 @@ def _hidden(verdict: VerdictName) -> str:
     return f"body:has(#show-{verdict}:not(:checked)) li.{verdict} {{ display: none; }}"
 
 
-def _section(judged: JudgedDocument, document: Document, title: str) -> str:
+def _section(verdicts: DocumentVerdicts, document: Document, title: str) -> str:
     is_program = document.kind == "program"
     macros = None if is_program else macros_of("\n".join(document.definitions))
-    remarks = [f"System: {judged.system}" if judged.system else "", *judged.remarks]
-    remarks += [] if judged.formulas else ["It has no formulas."]
+    remarks = [f"System: {verdicts.system}" if verdicts.system else "", *verdicts.remarks]
+    remarks += [] if verdicts.formulas else ["It has no formulas."]
     notes = "".join(f"<p>{escape(one)}</p>" for one in remarks if one)
-    items = "\n".join(_item(one, macros) for one in judged.formulas)
+    items = "\n".join(_item(one, macros) for one in verdicts.formulas)
     return f"<section>{title}{notes}<ol>\n{items}\n</ol></section>"
 
 
-def _item(one: JudgedFormula, macros: Macros) -> str:
+def _item(one: FormulaVerdict, macros: Macros) -> str:
     """A formula, with its verdict in the margin and details below it."""
     cell = f"cell {one.cell}, " if one.cell else ""
     display = f", display {one.display}" if one.display else ""
@@ -112,7 +112,7 @@ def _item(one: JudgedFormula, macros: Macros) -> str:
     )
 
 
-def _details(one: JudgedFormula, macros: Macros) -> Iterator[tuple[str, str]]:
+def _details(one: FormulaVerdict, macros: Macros) -> Iterator[tuple[str, str]]:
     if one.correction:
         changed = _changed(one.latex, one.correction)
         yield "should be", _math(one.correction, macros, changed, "right-term")

@@ -6,32 +6,32 @@ from dataclasses import asdict
 from typing import Any
 
 from derive.verification.documents.pages.verdicts_in_place import (
-    JudgedDocument,
-    JudgedFormula,
+    DocumentVerdicts,
+    FormulaVerdict,
     one_line,
 )
 from derive.verification.verdict import table_row, wrapped
 
 
-def document_lines(judged: JudgedDocument, width: int) -> Iterator[str]:
+def document_lines(verdicts: DocumentVerdicts, width: int) -> Iterator[str]:
     """Yield the lines of a table: each formula with its line; only correct ones are abbreviated."""
-    yield wrapped(": ".join(filter(None, (judged.file, judged.system))), width, 0)
-    yield from (wrapped(note, width, 0) for note in judged.remarks)
-    if not judged.formulas:
+    yield wrapped(": ".join(filter(None, (verdicts.file, verdicts.system))), width, 0)
+    yield from (wrapped(note, width, 0) for note in verdicts.remarks)
+    if not verdicts.formulas:
         yield "no formulas"
-    labels = [_label(one) for one in judged.formulas]
+    labels = [_label(one) for one in verdicts.formulas]
     label_width = max(map(len, labels), default=0) + 2
-    for label, one in zip(labels, judged.formulas, strict=True):
+    for label, one in zip(labels, verdicts.formulas, strict=True):
         whole = one.verdict in ("misprint", "wrong", "unreadable")
         cells = (label, one.verdict, _line(one.latex), *_details(one))
         yield from table_row(cells, width, label_width, whole)
 
 
-def _label(one: JudgedFormula) -> str:
+def _label(one: FormulaVerdict) -> str:
     return f"cell {one.cell}, line {one.line}" if one.cell else f"line {one.line}"
 
 
-def _details(one: JudgedFormula) -> Iterator[str]:
+def _details(one: FormulaVerdict) -> Iterator[str]:
     details = {
         "wrong term": _line(one.wrong_term),
         "correct formula": _line(one.correction),
@@ -47,19 +47,19 @@ def _line(latex: str) -> str:
     return one_line(re.sub(r"&\s*(?=[=<>:])|(?<==)\s*&", "", latex))
 
 
-def document_record(judged: JudgedDocument) -> dict[str, Any]:
+def document_record(verdicts: DocumentVerdicts) -> dict[str, Any]:
     """The verdicts as ``holonomic verify --json`` prints them."""
     return {
-        "file": judged.file,
-        "system": judged.system,
-        "notes": judged.notes,
-        "convention": judged.convention,
-        "alternatives": [asdict(one) for one in judged.alternatives],
-        "formulas": [_record(one) for one in judged.formulas],
+        "file": verdicts.file,
+        "system": verdicts.system,
+        "notes": verdicts.notes,
+        "convention": verdicts.convention,
+        "alternatives": [asdict(one) for one in verdicts.alternatives],
+        "formulas": [_record(one) for one in verdicts.formulas],
     }
 
 
-def _record(one: JudgedFormula) -> dict[str, Any]:
+def _record(one: FormulaVerdict) -> dict[str, Any]:
     """The fields of a formula; those of notebooks have a cell."""
     cell = {"cell": one.cell} if one.cell else {}
     return cell | {

@@ -14,7 +14,7 @@ WAY_OUT = "The options --system and --names state the system and the meanings of
 
 
 @dataclass(frozen=True)
-class JudgedFormula:
+class FormulaVerdict:
     """The verdict on one formula.
 
     Attributes
@@ -113,13 +113,13 @@ class Alternative:
 
 
 @dataclass(frozen=True)
-class JudgedDocument:
+class DocumentVerdicts:
     """The verdicts on the formulas of a document, in the order of the document."""
 
     file: str
     kind: Kind
     system: str  # the system that the formulas describe, "" if none was found
-    formulas: tuple[JudgedFormula, ...]
+    formulas: tuple[FormulaVerdict, ...]
     notes: tuple[str, ...] = ()
     #: Unusual meanings of letters, in words, and other meanings that are possible.
     convention: str = ""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.engine import joined
@@ -16,7 +16,7 @@ from derive.verification.reference_system import time_derivative
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
 
-Judged = tuple[DocumentFormula, SideVerdict]
+WithVerdict = tuple[DocumentFormula, SideVerdict]
 
 
 @dataclass(frozen=True)
@@ -30,15 +30,15 @@ class _Source:
 class Consequences:
     """The formulas of a document that follow from its own wrong energies."""
 
-    def __init__(self, scope: DocumentScope) -> None:
-        self._scope, self._context = scope, scope.model.context
+    def __init__(self, namespace: DocumentNamespace) -> None:
+        self._namespace, self._context = namespace, namespace.model.context
 
-    def marked(self, judged: Sequence[Judged]) -> list[Judged]:
+    def marked(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
         """The verdicts, with a note on wrong formulas that follow from a wrong one before them."""
-        values = {kind: getattr(self._scope.derivation, kind) for kind in ENERGIES}
+        values = {kind: getattr(self._namespace.derivation, kind) for kind in ENERGIES}
         source: _Source | None = None
-        result: list[Judged] = []
-        for formula, verdict in judged:
+        result: list[WithVerdict] = []
+        for formula, verdict in verdicts:
             if verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
                 note = joined(verdict.verdict.note, f"it follows from line {source.line}")
                 verdict = replace(verdict, verdict=replace(verdict.verdict, note=note))
@@ -55,7 +55,7 @@ class Consequences:
     def _written(self, formula: DocumentFormula) -> sp.Expr | None:
         """The value of the last side of a formula."""
         with suppress(ExpressionError):
-            value = self._scope.value(formula.sides[-1].text)
+            value = self._namespace.value(formula.sides[-1].text)
             return None if isinstance(value, sp.MatrixBase) else value
         return None
 
@@ -64,7 +64,7 @@ class Consequences:
         if value is None:
             return False
         try:
-            if subject in self._scope.letters.quantities or subject.isidentifier():
+            if subject in self._namespace.letters.quantities or subject.isidentifier():
                 required = self._required(subject, source.lagrangian)
                 if required is not None and self._context.is_zero(value - required):
                     return True
@@ -74,14 +74,14 @@ class Consequences:
 
     def _required(self, name: str, lagrangian: sp.Expr) -> sp.Expr | None:
         """The value of a name that follows from a Lagrangian."""
-        system, letters = self._scope.derivation.system, self._scope.letters
+        system, letters = self._namespace.derivation.system, self._namespace.letters
         if letters.quantities.get(name) == "lagrangian":
             return lagrangian
-        operand, variables = self._scope.derivatives.get(name, ("", ()))
+        operand, variables = self._namespace.derivatives.get(name, ("", ()))
         if letters.quantities.get(operand) == "lagrangian" and len(variables) == 1:
-            variable = self._scope.all_names.get(variables[0])
+            variable = self._namespace.all_names.get(variables[0])
             return lagrangian.diff(variable) if isinstance(variable, sp.Symbol) else None
-        coordinate = self._scope.all_names.get(letters.momenta.get(name, ""))
+        coordinate = self._namespace.all_names.get(letters.momenta.get(name, ""))
         if coordinate in system.q:
             return lagrangian.diff(system.qdot[system.q.index(coordinate)])
         if letters.quantities.get(name) in ("energy", "hamiltonian"):
@@ -91,8 +91,10 @@ class Consequences:
 
     def _is_equation(self, formula: DocumentFormula, lagrangian: sp.Expr) -> bool:
         """Whether a formula is an equation of motion of a Lagrangian, times any factor."""
-        system = self._scope.derivation.system
-        left, right = (self._scope.value(one.text) for one in (formula.sides[0], formula.sides[-1]))
+        system = self._namespace.derivation.system
+        left, right = (
+            self._namespace.value(one.text) for one in (formula.sides[0], formula.sides[-1])
+        )
         difference = left - right
         for q, v, force in zip(system.q, system.qdot, system.applied, strict=True):
             rate = time_derivative(system, lagrangian.diff(v))

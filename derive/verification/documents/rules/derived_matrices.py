@@ -9,7 +9,7 @@ import sympy as sp
 from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.entries import ENTRY
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.small_motions import SmallMotions
 
 #: Entries that a matrix must have, row by row; None for one that is correct.
@@ -24,22 +24,24 @@ class DerivedMatrices:
     correct value.
     """
 
-    def __init__(self, scope: DocumentScope, linear: SmallMotions) -> None:
-        self._scope, self._linear = scope, linear
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions) -> None:
+        self._namespace, self._linear = namespace, linear
         self._known: dict[tuple[int, int], list[sp.Matrix]] = {}
-        names = [name for name, (formula, _) in scope.defining.items() if formula.subject == name]
+        names = [
+            name for name, (formula, _) in namespace.defining.items() if formula.subject == name
+        ]
         self._required = {
             name: required
-            for name in dict.fromkeys((*names, *scope.composed))
-            if (required := self._compared(scope.names[name])) is not None
+            for name in dict.fromkeys((*names, *namespace.composed))
+            if (required := self._compared(namespace.names[name])) is not None
         }
         corrected = {
             name: type(value)(*value.shape, _corrected(value, required))
             for name, required in self._required.items()
-            if _wrong(required) and (value := scope.names[name]) is not None
+            if _wrong(required) and (value := namespace.names[name]) is not None
         }
         if corrected:
-            scope.correct(corrected)
+            namespace.correct(corrected)
 
     def required(self, name: str) -> Required | None:
         """The correct entries in place of wrong ones; None if no matrix of the system is meant."""
@@ -51,10 +53,10 @@ class DerivedMatrices:
         if not match:
             return None
         matrix = match[1] if match[3] else f"{match[1]}_column"
-        if matrix not in self._required or matrix not in self._scope.composed:
+        if matrix not in self._required or matrix not in self._namespace.composed:
             return None
         column = int(match[3]) - 1 if match[3] else 0
-        index = (int(match[2]) - 1) * self._scope.names[matrix].cols + column
+        index = (int(match[2]) - 1) * self._namespace.names[matrix].cols + column
         return self._required[matrix][index : index + 1]
 
     def _compared(self, value: Value) -> Required | None:
@@ -74,7 +76,7 @@ class DerivedMatrices:
 
     def _agree(self, one: sp.Expr, other: sp.Expr) -> bool:
         try:
-            return self._scope.model.context.is_zero(one - other)
+            return self._namespace.model.context.is_zero(one - other)
         except (ExpressionError, NotImplementedError):
             return False
 
@@ -86,12 +88,12 @@ class DerivedMatrices:
     @cached_property
     def _rows(self) -> list[int]:
         """The coordinates in the order of the document's columns."""
-        names, q = self._scope.names, self._scope.derivation.system.q
-        ordered = (names.get(name) for name in self._scope.letters.ordered)
+        names, q = self._namespace.names, self._namespace.derivation.system.q
+        ordered = (names.get(name) for name in self._namespace.letters.ordered)
         return [q.index(symbol) for symbol in ordered if symbol in q]
 
     def _all(self, shape: tuple[int, int]) -> Iterator[sp.Matrix]:
-        d, rows = self._scope.derivation, self._rows
+        d, rows = self._namespace.derivation, self._rows
         n = len(rows)
         if n != len(d.system.q):
             return
@@ -112,9 +114,9 @@ class DerivedMatrices:
     def _of_states(self, shape: tuple[int, int], rows: Sequence[int]) -> Iterator[sp.Matrix]:
         """A and B of ẋ = A x + B F for all orders of the state."""
         n = len(rows)
-        if shape[0] != 2 * n or (found := self._linear.state_matrices()) is None:
+        if shape[0] != 2 * n or (result := self._linear.state_matrices()) is None:
             return
-        A, B = found
+        A, B = result
         for order in _orders(rows):
             if shape == (2 * n, 2 * n):
                 yield A.extract(order, order)

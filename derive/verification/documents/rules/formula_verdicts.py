@@ -13,7 +13,7 @@ from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import Consequences
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.manipulator import Manipulator
 from derive.verification.documents.rules.mass_positions import MassPositions
 from derive.verification.documents.rules.partial_energies import PartialEnergies
@@ -35,23 +35,26 @@ from derive.verification.reference_system import depends_on
 class Judge:
     """Verdicts on formulas in the scope of a document."""
 
-    def __init__(self, scope: DocumentScope, given: Collection[Occurrence] = ()) -> None:
+    def __init__(self, namespace: DocumentNamespace, given: Collection[Occurrence] = ()) -> None:
         self._given = given
-        linear = SmallMotions(scope.derivation)
+        linear = SmallMotions(namespace.derivation)
         # these give names their correct values, and the scope another model
-        self._positions = MassPositions(scope)
-        self._matrices, self._energies = DerivedMatrices(scope, linear), PartialEnergies(scope)
-        self._scope, self._model = scope, scope.model
-        self._roles = Roles(scope, linear)
-        self._comparison = SideComparison(scope, linear, self._roles)
-        self._manipulator = Manipulator(scope)
+        self._positions = MassPositions(namespace)
+        self._matrices, self._energies = (
+            DerivedMatrices(namespace, linear),
+            PartialEnergies(namespace),
+        )
+        self._namespace, self._model = namespace, namespace.model
+        self._roles = Roles(namespace, linear)
+        self._comparison = SideComparison(namespace, linear, self._roles)
+        self._manipulator = Manipulator(namespace)
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
     ) -> list[tuple[DocumentFormula, SideVerdict]]:
         """The verdicts on formulas in their order, with what follows from wrong ones."""
         judged = [(formula, self.verdict(formula)) for formula in formulas]
-        return Consequences(self._scope).marked(judged)
+        return Consequences(self._namespace).marked(judged)
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
@@ -85,17 +88,17 @@ class Judge:
 
     def _not_understood(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
         result = not_understood(formula, unknown)
-        if not {*unknown} & {*self._scope.letters.multipliers}:
+        if not {*unknown} & {*self._namespace.letters.multipliers}:
             return result
         note = joined(result.verdict.note, f"if this is a multiplier, {WAY_OUT}")
         return replace(result, verdict=replace(result.verdict, note=note))
 
     def _is_identity(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
         """Whether neighbouring sides are equal for all values of letters without a meaning."""
-        scope = {**self._scope.all_names, **{name: sp.Symbol(name) for name in unknown}}
+        namespace = {**self._namespace.all_names, **{name: sp.Symbol(name) for name in unknown}}
         sides = [one for one in formula.sides if one.text != "0"]  # det(K - omega**2*M) = 0
         with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-            first, *others = (parse(one.text, scope) for one in sides)
+            first, *others = (parse(one.text, namespace) for one in sides)
             differences = [one - first for one in others]
             numbers = all(not isinstance(one, sp.MatrixBase) for one in differences)
             return bool(others) and numbers and all(map(vanishes, differences))
@@ -103,14 +106,14 @@ class Judge:
 
     def _is_equation_without(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
         """Whether a formula is an equation of motion but for terms with unknown letters."""
-        system = self._scope.derivation.system
-        if {*unknown} & {*self._scope.letters.multipliers}:  # all reactions would be correct
+        system = self._namespace.derivation.system
+        if {*unknown} & {*self._namespace.letters.multipliers}:  # all reactions would be correct
             return False
         known = without_unknown_terms(formula, unknown)
         if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
             return False
         with suppress(ExpressionError, NotImplementedError, ValueError):
-            left, right = (self._scope.value(one.text) for one in known.sides)
+            left, right = (self._namespace.value(one.text) for one in known.sides)
             if not depends_on(sp.Tuple(left, right), system.qddot):
                 return False
             result = self._comparison.compared(known, *known.sides, left, right)
@@ -123,7 +126,7 @@ class Judge:
         if len(others) < 2 or "~" in formula.relations or self._unknown(others):
             return None
         with suppress(ExpressionError, NotImplementedError):
-            required, *rest = (self._scope.value(one.text) for one in others)
+            required, *rest = (self._namespace.value(one.text) for one in others)
             if all(not isinstance(one, sp.MatrixBase) for one in (required, *rest)) and all(
                 self._model.agreement(one - required) is not None for one in rest
             ):
@@ -133,9 +136,9 @@ class Judge:
 
     def _is_special(self, formula: DocumentFormula) -> bool:
         """Whether a formula states the value of a coordinate, of its rate or of a parameter."""
-        names, last = self._scope.all_names, formula.sides[-1].text
+        names, last = self._namespace.all_names, formula.sides[-1].text
         try:
-            value = self._scope.value(last)
+            value = self._namespace.value(last)
         except ExpressionError:
             return False
         others = [side.text for side in formula.sides[:-1]]
@@ -148,11 +151,11 @@ class Judge:
     def _unknown(self, sides: Sequence[FormulaText]) -> list[str]:
         """The names in some sides of a formula that have no meaning."""
         words = dict.fromkeys(word for side in sides for word in WORD.findall(side.text))
-        return [name for name in words if name not in self._scope.all_names]
+        return [name for name in words if name not in self._namespace.all_names]
 
     def _side(self, formula: DocumentFormula, k: int) -> SideVerdict:
         first, side = formula.sides[0], formula.sides[k]
-        defined = self._scope.defining.get(formula.subject)
+        defined = self._namespace.defining.get(formula.subject)
         if defined and defined[0] is formula and defined[1] == side.text:
             required = self._energies.required(formula.subject)
             if required is not None:
@@ -160,13 +163,13 @@ class Judge:
             return self._position(formula, side) or self._definition(formula, side)
         if first.entries and (position := self._position(formula, side)):
             return position
-        last = self._scope.defining.get(side.text)
+        last = self._namespace.defining.get(side.text)
         if last and last[0] is formula:
             return plain("definition", formula, "")
         is_approximate = formula.relations[k - 1] == "~"
         first = formula.sides[k - 1] if is_approximate else first
         try:
-            values = [self._scope.value(one.text) for one in (first, side)]
+            values = [self._namespace.value(one.text) for one in (first, side)]
             if is_approximate:
                 return self._comparison.approximated(formula, *values)
             return self._comparison.compared(formula, first, side, *values)
@@ -195,6 +198,8 @@ class Judge:
         if not wrong:
             return plain("verified", formula, "")
         results = [self._roles.value(entries[k], "entry", required[k]) for k in wrong if entries]
-        found = [one for one in results if one.verdict.corrections]
-        shortest = min(found, key=lambda one: len(one.verdict.corrections[0].correct), default=None)
+        result = [one for one in results if one.verdict.corrections]
+        shortest = min(
+            result, key=lambda one: len(one.verdict.corrections[0].correct), default=None
+        )
         return shortest or plain("wrong", formula, "it has not the forces of this system")

@@ -14,7 +14,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.routhian import Routhian
 from derive.system.symbols import TIME, acceleration, velocity
-from derive.verification.documents.letters.document_system import Meaning
+from derive.verification.documents.letters.document_system import SystemLetters
 from derive.verification.documents.letters.entries import composed
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
@@ -33,12 +33,12 @@ FORCE = re.compile(r"[QF]_(\w+)\Z")
 ROUNDS = 4
 
 
-class DocumentScope:
+class DocumentNamespace:
     """The model of a document, and which formulas define its names."""
 
     def __init__(
         self,
-        meaning: Meaning,
+        meaning: SystemLetters,
         letters: Letters,
         formulas: Sequence[DocumentFormula],
         derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
@@ -102,16 +102,16 @@ class DocumentScope:
 
     def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
         """Parameters in statements such as m = l = 1."""
-        found: dict[sp.Symbol, sp.Expr] = {}
+        result: dict[sp.Symbol, sp.Expr] = {}
         for formula in formulas:
             last = formula.sides[-1].text
             names = [self.names.get(side.text) for side in formula.sides[:-1]]
             is_value = {*formula.relations} == {"="} and last.isdigit() and int(last)
             if is_value and all(name in self._system.params for name in names):
-                found |= dict.fromkeys(names, sp.Integer(last))
-        return found
+                result |= dict.fromkeys(names, sp.Integer(last))
+        return result
 
-    def _add_letters(self, meaning: Meaning) -> None:
+    def _add_letters(self, meaning: SystemLetters) -> None:
         system = self._system
         for name, symbol in meaning.symbols.items():
             self.names[name] = symbol
@@ -196,10 +196,10 @@ class DocumentScope:
         momenta: Mapping[sp.Symbol, sp.Expr],
     ) -> int:
         """The number of formulas whose first two sides are equal with other values of names."""
-        scope, count = {**self.all_names, **names}, 0
+        namespace, count = {**self.all_names, **names}, 0
         for one in formulas:
             with suppress(ExpressionError, TypeError, ValueError):
-                left, right = (parse(side.text, scope) for side in one.sides[:2])
+                left, right = (parse(side.text, namespace) for side in one.sides[:2])
                 count += is_small((left - right).xreplace(dict(momenta)))
         return count
 
@@ -227,13 +227,13 @@ class DocumentScope:
                     self.names[name] = value
 
     def _derivative(self, operand: str, variables: Sequence[str]) -> Value | None:
-        scope = self.all_names
-        if operand not in scope or any(one not in scope for one in variables):
+        namespace = self.all_names
+        if operand not in namespace or any(one not in namespace for one in variables):
             return None
         value, constants = self._operand(operand)
         kind = self.letters.quantities.get(operand)
         for one in variables:
-            variable = scope[one]
+            variable = namespace[one]
             if isinstance(variable, sp.MatrixBase) and not isinstance(value, sp.MatrixBase):
                 if not all(entry.is_Symbol for entry in variable):
                     return None

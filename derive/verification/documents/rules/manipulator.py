@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 
 #: The entries that a matrix or column must have, row by row; None for one that is correct.
 Required = Sequence[sp.Expr | None]
@@ -13,12 +13,12 @@ Required = Sequence[sp.Expr | None]
 class Manipulator:
     """The entries that the matrix C and the column G of a document must have."""
 
-    def __init__(self, scope: DocumentScope) -> None:
-        self._scope, self._context = scope, scope.model.context
+    def __init__(self, namespace: DocumentNamespace) -> None:
+        self._namespace, self._context = namespace, namespace.model.context
 
     def required(self, name: str) -> Required | None:
         """The correct entries in place of wrong ones; None if the name is not C or G."""
-        kind, value = self._scope.letters.quantities.get(name), self._scope.names.get(name)
+        kind, value = self._namespace.letters.quantities.get(name), self._namespace.names.get(name)
         rows = self._rows
         if not isinstance(value, sp.MatrixBase) or value.rows != len(rows):
             return None
@@ -29,13 +29,13 @@ class Manipulator:
     @property
     def _rows(self) -> list[int]:
         """The coordinates in the order of the document's columns."""
-        names, q = self._scope.names, self._scope.derivation.system.q
-        ordered = (names.get(name) for name in self._scope.letters.ordered)
+        names, q = self._namespace.names, self._namespace.derivation.system.q
+        ordered = (names.get(name) for name in self._namespace.letters.ordered)
         return [q.index(symbol) for symbol in ordered if symbol in q]
 
     def _coriolis(self, value: sp.MatrixBase, rows: Sequence[int]) -> Required | None:
         """C is not unique: C q̇ must be the forces of inertia that are quadratic in q̇."""
-        d, system = self._scope.derivation, self._scope.derivation.system
+        d, system = self._namespace.derivation, self._namespace.derivation.system
         speeds = sp.Matrix([system.qdot[i] for i in rows])
         if not value.free_symbols & {*speeds}:
             return None
@@ -50,7 +50,7 @@ class Manipulator:
 
     def _gravity(self, value: sp.MatrixBase, rows: Sequence[int]) -> Required | None:
         """G is the gradient of the potential energy, with either sign."""
-        d, system = self._scope.derivation, self._scope.derivation.system
+        d, system = self._namespace.derivation, self._namespace.derivation.system
         gradient = [d.potential_energy.diff(system.q[i]) for i in rows]
         for sign in (-1, 1):
             wrong = [

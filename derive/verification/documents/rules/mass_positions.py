@@ -9,7 +9,7 @@ import sympy as sp
 from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.positions import COLUMN, POINT
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 
 #: The components of a point: names and values. An entry of a column has that column's name.
 Point = Sequence[tuple[str, int, sp.Expr]]
@@ -18,19 +18,19 @@ Point = Sequence[tuple[str, int, sp.Expr]]
 class MassPositions:
     """Components that belong to a mass whose other components are correct, up to their signs."""
 
-    def __init__(self, scope: DocumentScope) -> None:
-        self._scope = scope
+    def __init__(self, namespace: DocumentNamespace) -> None:
+        self._namespace = namespace
         #: Correct values of wrong components, by name and index in a column.
         self._required: dict[tuple[str, int], sp.Expr] = {}
-        for point in _points(scope):
-            for mass in scope.derivation.system.masses:
-                found = self._of_mass(point, mass.position)
-                if found is not None:
-                    self._required |= found
+        for point in _points(namespace):
+            for mass in namespace.derivation.system.masses:
+                result = self._of_mass(point, mass.position)
+                if result is not None:
+                    self._required |= result
                     break
 
         if self._required:
-            scope.correct(dict(self._corrected()))
+            namespace.correct(dict(self._corrected()))
 
     def required(self, name: str, index: int = 0) -> sp.Expr | None:
         """The value of a wrong component; None if it is correct, or not known."""
@@ -38,7 +38,7 @@ class MassPositions:
 
     def _corrected(self) -> Iterator[tuple[str, Value]]:
         for (name, index), required in self._required.items():
-            value = self._scope.names[name]
+            value = self._namespace.names[name]
             if isinstance(value, sp.MatrixBase):
                 entries = [*value]
                 entries[index] = required
@@ -61,7 +61,7 @@ class MassPositions:
                 for (name, index, value), r in pairs
                 if not any(r is one for one in right)
             ]
-            moving = {*self._scope.derivation.system.q}
+            moving = {*self._namespace.derivation.system.q}
             is_known = any(r.free_symbols & moving for r in right)
             is_known &= all(value.free_symbols & moving for *_, value in wrong)
             if is_known and len(wrong) < 2 and (fewest is None or len(wrong) < len(fewest)):
@@ -70,7 +70,7 @@ class MassPositions:
 
     def _agrees(self, value: sp.Expr, position: sp.Expr) -> bool:
         """Whether a value is a component of a position up to its sign and a constant."""
-        system, is_zero = self._scope.derivation.system, self._scope.model.context.is_zero
+        system, is_zero = self._namespace.derivation.system, self._namespace.model.context.is_zero
         with suppress(ExpressionError, NotImplementedError):
             return any(
                 all(is_zero((value - sign * position).diff(q)) for q in system.q)
@@ -90,12 +90,12 @@ def _signed(position: sp.Expr, value: sp.Expr) -> sp.Expr:
     return -position if shared(-position) > shared(position) else position
 
 
-def _points(scope: DocumentScope) -> Iterator[Point]:
+def _points(namespace: DocumentNamespace) -> Iterator[Point]:
     """The points that a document defines, by their components or as columns."""
     points: dict[str, list[tuple[str, int, sp.Expr]]] = {}
-    q = {*scope.derivation.system.q}
-    for name in scope.defining:
-        value = scope.names[name]
+    q = {*namespace.derivation.system.q}
+    for name in namespace.defining:
+        value = namespace.names[name]
         if isinstance(value, sp.MatrixBase):
             is_point = COLUMN.match(name) and value.cols == 1
             if is_point and not q.issuperset(value):  # which is a column of coordinates

@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError, is_sum, python_source, summands, syntax_tree
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
@@ -24,8 +24,8 @@ MAX_DENOMINATOR = 100
 class MatrixTerms:
     """Seeks the one part of a side with which all rows of a formula hold."""
 
-    def __init__(self, scope: DocumentScope, linear: SmallMotions, roles: Roles) -> None:
-        self._scope, self._linear, self._roles = scope, linear, roles
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions, roles: Roles) -> None:
+        self._namespace, self._linear, self._roles = namespace, linear, roles
 
     def verdict(
         self,
@@ -54,13 +54,13 @@ class MatrixTerms:
         witness: str,
     ) -> SideVerdict | None:
         part, unknown = one.part(start, end), sp.Symbol(PART)
-        own = self._scope.value(part.text)
+        own = self._namespace.value(part.text)
         is_matrix = isinstance(own, sp.MatrixBase)
         if is_matrix and not is_whole:
             return None
         factor = f"{PART}*({part.text})" if is_whole else PART
         text = f"{one.text[:start]}({factor}){one.text[end:]}"
-        difference = parse(text, {**self._scope.all_names, PART: unknown}) - other
+        difference = parse(text, {**self._namespace.all_names, PART: unknown}) - other
         required = self._solved(sp.Matrix([difference]), unknown)
         if required is None:
             return None
@@ -77,7 +77,7 @@ class MatrixTerms:
         return None
 
     def _moving(self, value: sp.Expr) -> set[sp.Symbol]:
-        system = self._scope.derivation.system
+        system = self._namespace.derivation.system
         return value.free_symbols & {*system.q, *system.qdot, *system.qddot, *system.p}
 
     def _solved(self, rows: sp.Matrix, unknown: sp.Symbol) -> sp.Expr | None:
@@ -85,7 +85,7 @@ class MatrixTerms:
         if unknown not in rows.free_symbols or rows.diff(unknown).has(unknown):
             return None
         for accelerations in self._accelerations():
-            along = rows.xreplace(dict(self._scope.model.momenta)).xreplace(accelerations)
+            along = rows.xreplace(dict(self._namespace.model.momenta)).xreplace(accelerations)
             if sp.count_ops(along) > MAX_OPERATIONS:
                 continue
             slope, rest = along.diff(unknown), along.xreplace({unknown: sp.S.Zero})
@@ -99,14 +99,14 @@ class MatrixTerms:
         return None
 
     def _vanishes(self, value: sp.Expr) -> bool:
-        return bool(value == 0) or self._scope.model.context.is_zero(value)
+        return bool(value == 0) or self._namespace.model.context.is_zero(value)
 
     def _accelerations(self) -> Iterator[dict[sp.Symbol, sp.Expr]]:
         """Those of small motions, and of all."""
         if self._linear.is_origin and self._linear.accelerations:
             yield self._linear.accelerations
-        derivation = self._scope.derivation
-        if self._scope.model.has_inverse:
+        derivation = self._namespace.derivation
+        if self._namespace.model.has_inverse:
             yield dict(zip(derivation.system.qddot, derivation.accelerations, strict=True))
 
 

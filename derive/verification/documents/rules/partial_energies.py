@@ -10,7 +10,7 @@ import sympy as sp
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Kinetics
 from derive.verification.documents.letters.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
 
 #: Energies whose parts are considered.
@@ -23,15 +23,15 @@ class PartialEnergies:
     In other formulas, these energies have their correct values.
     """
 
-    def __init__(self, scope: DocumentScope) -> None:
-        self._scope, self._model = scope, scope.model
+    def __init__(self, namespace: DocumentNamespace) -> None:
+        self._namespace, self._model = namespace, namespace.model
         self._wrong = {
             name: value
-            for name, (formula, _) in scope.defining.items()
+            for name, (formula, _) in namespace.defining.items()
             if formula.subject == name and (value := self._correct(formula)) is not None
         }
         if self._wrong:
-            scope.correct(self._wrong)
+            namespace.correct(self._wrong)
 
     def required(self, name: str) -> sp.Expr | None:
         """The value that a name must have; None if it is not known to have another."""
@@ -41,41 +41,41 @@ class PartialEnergies:
         """The value of another side that is a part of the energy, or what the sum requires."""
         name = formula.subject
         kind = _kind(name)
-        own = self._scope.names[name]
+        own = self._namespace.names[name]
         if kind is None or isinstance(own, sp.MatrixBase) or self._is_part(kind, own):
             return None
         for side in formula.sides[1:]:
             with suppress(ExpressionError):
-                value = self._scope.value(side.text)
+                value = self._namespace.value(side.text)
                 if not isinstance(value, sp.MatrixBase) and self._is_part(kind, value):
                     return value
         return self._required.get(name)
 
     @cached_property
     def _required(self) -> Mapping[str, sp.Expr]:
-        found: dict[str, sp.Expr] = {}
+        result: dict[str, sp.Expr] = {}
         totals = {
-            "kinetic_energy": self._scope.derivation.kinetic_energy,
-            "potential_energy": self._scope.derivation.potential_energy,
+            "kinetic_energy": self._namespace.derivation.kinetic_energy,
+            "potential_energy": self._namespace.derivation.potential_energy,
         }
         for kind, names in self._groups().items():
-            values = {name: self._scope.names[name] for name in names}
+            values = {name: self._namespace.names[name] for name in names}
             if self._is_constant(sp.Add(*values.values()) - totals[kind]):
                 continue
             wrong = [name for name, value in values.items() if not self._is_part(kind, value)]
             if len(wrong) == 1:
                 others = sp.Add(*(value for name, value in values.items() if name != wrong[0]))
-                found[wrong[0]] = totals[kind] - others
-        return found
+                result[wrong[0]] = totals[kind] - others
+        return result
 
     def _groups(self) -> Mapping[str, list[str]]:
         """The names of partial energies that the document defines, one for each body or force."""
         groups: dict[str, list[str]] = {}
-        for name in self._scope.defining:
+        for name in self._namespace.defining:
             kind = _kind(name)
-            if kind and not isinstance(self._scope.names[name], sp.MatrixBase):
+            if kind and not isinstance(self._namespace.names[name], sp.MatrixBase):
                 groups.setdefault(kind, []).append(name)
-        masses = len(self._scope.derivation.system.masses)
+        masses = len(self._namespace.derivation.system.masses)
         return {
             kind: names
             for kind, names in groups.items()
@@ -88,7 +88,7 @@ class PartialEnergies:
     @cached_property
     def _parts(self) -> Mapping[str, list[sp.Expr]]:
         """Energies of the masses, and the rest."""
-        d = self._scope.derivation
+        d = self._namespace.derivation
         kinetic = [
             Kinetics(replace(d.system, masses=[mass])).kinetic_energy for mass in d.system.masses
         ]
@@ -101,7 +101,7 @@ class PartialEnergies:
 
     def _is_constant(self, difference: sp.Expr) -> bool:
         """Whether a difference does not depend on the state."""
-        system = self._scope.derivation.system
+        system = self._namespace.derivation.system
         try:
             return all(
                 self._model.context.is_zero(difference.diff(s)) for s in (*system.q, *system.qdot)

@@ -11,7 +11,7 @@ import sympy as sp
 from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.system.symbols import TIME
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import WORD
@@ -25,15 +25,15 @@ from derive.verification.verdict import Correction, Verdict
 class Roles:
     """Verdicts of the judging engine, with corrections in the names of a side."""
 
-    def __init__(self, scope: DocumentScope, linear: SmallMotions) -> None:
-        self._scope, self._model, self._linear = scope, scope.model, linear
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions) -> None:
+        self._namespace, self._model, self._linear = namespace, namespace.model, linear
 
     def judged(
         self, first: FormulaText, side: FormulaText, left: Value, right: Value
     ) -> SideVerdict:
         """The verdict on a side that is not equal to the first one."""
-        system, subject = self._scope.derivation.system, first.text
-        letters = self._scope.letters
+        system, subject = self._namespace.derivation.system, first.text
+        letters = self._namespace.letters
         kind, name = "", ""
         if subject in letters.quantities:
             kind = letters.quantities[subject]
@@ -48,7 +48,7 @@ class Roles:
         if kind in ("hamiltonian", "energy"):
             kind = "hamiltonian" if depends_on(right, system.p) else "energy"
         if kind == "accelerations":
-            small = self._linear.acceleration(self._scope.all_names[subject], right)
+            small = self._linear.acceleration(self._namespace.all_names[subject], right)
             if small is not None:
                 return self.value(side, "linearised", small)
         if kind == "energy" and self._relates_energies(subject, side):
@@ -73,7 +73,7 @@ class Roles:
 
     def _relates_energies(self, subject: str, side: FormulaText) -> bool:
         """Whether a side states H, or another energy by H, where this is not T + V."""
-        quantities, d = self._scope.letters.quantities, self._scope.derivation
+        quantities, d = self._namespace.letters.quantities, self._namespace.derivation
         words = (subject, *WORD.findall(side.text))
         total = d.kinetic_energy + d.potential_energy
         has_hamiltonian = any(quantities.get(word) == "hamiltonian" for word in words)
@@ -83,7 +83,7 @@ class Roles:
         self, side: FormulaText, subject: str, left: sp.Expr, right: sp.Expr
     ) -> SideVerdict:
         """The verdict on an energy that must be that of the document up to a constant."""
-        system = self._scope.derivation.system
+        system = self._namespace.derivation.system
         rates = [(right - left).diff(s) for s in (*system.q, *system.qdot, TIME)]
         if (note := self._model.context.agreement(*rates)) is None:
             return self.value(side, subject, left)
@@ -92,16 +92,16 @@ class Roles:
 
     def _inside_rate(self, first: FormulaText, side: FormulaText) -> SideVerdict | None:
         """The verdict on a wrong momentum whose rate is taken, if there is one."""
-        system, names = self._scope.derivation.system, self._scope.all_names
+        system, names = self._namespace.derivation.system, self._namespace.all_names
         for one, other in ((first, side), (side, first)):
             for start, end in _rates(one.text):
                 inner = one.part(start, end)
                 for q, p in zip(system.q, self._model.momenta.values(), strict=True):
                     name = next(n for n, v in names.items() if v == q)
-                    scope = {**names, "momentum": p}
+                    namespace = {**names, "momentum": p}
                     text = f"{one.text[:start]}momentum{one.text[end:]}"
                     with suppress(ExpressionError):
-                        difference = parse(text, scope) - self._scope.value(other.text)
+                        difference = parse(text, namespace) - self._namespace.value(other.text)
                         if self._model.agreement(difference) is not None:
                             model = self._model_of(inner, name)
                             verdict = judge_formula(model, "", inner.text, "momenta", name)
@@ -110,7 +110,7 @@ class Roles:
 
     def _is_relation(self, first: FormulaText) -> bool:
         """Whether a side contains coordinates, velocities and parameters alone."""
-        values = [self._scope.all_names[word] for word in WORD.findall(first.text)]
+        values = [self._namespace.all_names[word] for word in WORD.findall(first.text)]
         return all(one.is_Symbol for one in values if isinstance(one, Value))
 
     def equation(self, first: FormulaText, side: FormulaText) -> SideVerdict:
@@ -128,7 +128,7 @@ class Roles:
             return corrections
         for term, sign in summands(syntax_tree(side.text)):
             text = ast.unparse(term)
-            if self._scope.value(text) == 0 and text != "0":
+            if self._namespace.value(text) == 0 and text != "0":
                 return (Correction(f"-{text}" if sign < 0 else text, corrections[0].correct),)
         return corrections
 
@@ -146,8 +146,8 @@ class Roles:
         texts = [one.text if isinstance(one, FormulaText) else one for one in sides]
         words = {word for text in texts for word in WORD.findall(text)}
         words |= {f"p_{word}" for word in words}
-        names = {name: value for name, value in self._scope.names.items() if name in words}
-        functions = {n: v for n, v in self._scope.names.items() if not isinstance(v, Value)}
+        names = {name: value for name, value in self._namespace.names.items() if name in words}
+        functions = {n: v for n, v in self._namespace.names.items() if not isinstance(v, Value)}
         return replace(self._model, names={**functions, **names})
 
 

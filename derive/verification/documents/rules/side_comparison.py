@@ -8,7 +8,7 @@ import sympy as sp
 from derive.formulas.expression import Value
 from derive.formulas.syntax import syntax_tree
 from derive.verification.corrections.source_names import SourceNames
-from derive.verification.documents.rules.known_values import DocumentScope
+from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.matrix_terms import MatrixTerms
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
@@ -26,9 +26,14 @@ MAX_DENOMINATOR = 100
 class SideComparison:
     """Compares sides: as numbers, as matrices, for small motions, and in units of a system."""
 
-    def __init__(self, scope: DocumentScope, linear: SmallMotions, roles: Roles) -> None:
-        self._scope, self._model, self._linear, self._roles = scope, scope.model, linear, roles
-        self._terms = MatrixTerms(scope, linear, roles)
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions, roles: Roles) -> None:
+        self._namespace, self._model, self._linear, self._roles = (
+            namespace,
+            namespace.model,
+            linear,
+            roles,
+        )
+        self._terms = MatrixTerms(namespace, linear, roles)
 
     def approximated(self, formula: DocumentFormula, left: Value, right: Value) -> SideVerdict:
         """The verdict on an approximation, which is never wrong: others can be meant."""
@@ -50,11 +55,11 @@ class SideComparison:
         if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
             return self._matrices(formula, first, side, left, right)
         # a Lagrangian of motions alone has other equations
-        is_lagrangian = self._scope.letters.quantities.get(first.text) == "lagrangian"
+        is_lagrangian = self._namespace.letters.quantities.get(first.text) == "lagrangian"
         about = self._model.about(left - right)
         model = about.context if is_lagrangian else about
         has_reactions = is_lagrangian and depends_on(
-            right, self._scope.derivation.system.multipliers
+            right, self._namespace.derivation.system.multipliers
         )
         if has_reactions:
             left += self._reactions
@@ -91,7 +96,7 @@ class SideComparison:
     ) -> tuple[str, str]:
         """Two values at a state, and the numbers with which they can be computed again."""
         context = self._model.context
-        names = SourceNames(formula.text, self._scope.all_names)
+        names = SourceNames(formula.text, self._namespace.all_names)
         quantities = names.quantities((value - derived).free_symbols)
         numbers = context.state(value, derived, quantities)
         state = ", ".join(f"{name} = {number}" for name, number in numbers.items())
@@ -100,7 +105,7 @@ class SideComparison:
     @property
     def _reactions(self) -> sp.Expr:
         """The terms Σ λ φ that the constraints of coordinates add to a Lagrangian."""
-        derivation = self._scope.derivation
+        derivation = self._namespace.derivation
         pairs = zip(derivation.system.multipliers, derivation.system.conditions, strict=True)
         holonomic = derivation.holonomic
         return sp.Add(*(name * one.formula for name, one in pairs if one.formula in holonomic))
@@ -124,13 +129,13 @@ class SideComparison:
         They are those that the document states, or units, if the right side has no parameters.
         """
         difference = (left - right).xreplace(self._model.momenta)
-        if stated := self._scope.special_values:
+        if stated := self._namespace.special_values:
             moving = difference
             for values in self._model.motions.substitutions:
                 moving = moving.xreplace(values)
             if self._agree(moving.xreplace(stated)):
                 return stated
-        parameters = left.free_symbols & {*self._scope.derivation.system.params}
+        parameters = left.free_symbols & {*self._namespace.derivation.system.params}
         units = dict.fromkeys(sorted(parameters, key=str), sp.S.One)
         # one parameter that is lacking is a mistake
         if len(parameters) > 1 and not right.free_symbols & parameters:
@@ -156,7 +161,7 @@ class SideComparison:
         shapes = [getattr(one, "shape", None) for one in (left, right)]
         if shapes[0] != shapes[1]:
             return plain("context", formula, "it compares quantities of different shapes")
-        is_displaced = any(name in self._scope.displacements for name in formula.words)
+        is_displaced = any(name in self._namespace.displacements for name in formula.words)
         undecided = ""
         for index, (a, b) in enumerate(zip(left, right, strict=True)):
             note = self._model.about(a - b).agreement(a - b)
@@ -173,7 +178,7 @@ class SideComparison:
             if other is None and (result := self._terms.verdict(first, side, left, right, witness)):
                 own = result.verdict.state or state
                 return replace(result, verdict=replace(result.verdict, state=own))
-            if mine and other and depends_on(a - b, self._scope.derivation.system.qddot):
+            if mine and other and depends_on(a - b, self._namespace.derivation.system.qddot):
                 return self._roles.equation(mine, other)
             if other:
                 return self._roles.value(other, "entry", a)
@@ -185,7 +190,7 @@ class SideComparison:
     def _with_shape(self, value: Value, other: Value) -> Value:
         """Zeros in place of zero on one side of a set of equations of motion."""
         is_zero = not isinstance(value, sp.MatrixBase) and value == 0
-        is_equation = depends_on(other, self._scope.derivation.system.qddot)
+        is_equation = depends_on(other, self._namespace.derivation.system.qddot)
         return sp.zeros(*other.shape) if is_zero and is_equation else value
 
 
