@@ -4,6 +4,18 @@ The stages of the derivation::
 
     System ─▶ Derivation ─▶ EquationsOfMotion ─▶ Lowering ─▶ Assignments ─▶ backend ─▶ files
     positions  SymPy values  one graph            operations  names, texts   Python, C
+
+Systems: `System`, `Coordinate`, `Parameter`, `PointMass`, `RigidBody`, `Input`, `Constraint`,
+`TIME`, `velocity`; those that ship: `names`, `load`.
+
+Orientations: `Orientation`, `rotations`, `rotation_matrix`, `quaternion`.
+
+Links: `Block`, `Box`, `Cart`, `Plate`, `Rail`, `Rod`, `Spring`, `Thread`, `Wheel`.
+
+Joints: `ball`, `fixed_distance`, `hinge`, `pin`, `prismatic`, `rolling_on_line`,
+`rolling_on_plane`, `slider`.
+
+Derivations: `Derivation`, `Linearisation`, `StateSpace`, `reduced`, `with_inputs`, `write`.
 """
 
 from pathlib import Path

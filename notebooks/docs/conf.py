@@ -24,7 +24,7 @@ from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx_gallery.scrapers import figure_rst
 
-from solvers.io.lazy import homes
+from solvers.io.lazy import groups, homes
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
@@ -104,9 +104,13 @@ html_math_renderer = "mathml"
 
 
 def api(package: str) -> str:
-    """Every public name of a package, documented from its docstring."""
-    sections = []
-    for name, home in homes(ROOT / package / "__init__.pyi").items():
+    """Every public name of a package, documented from its docstring, in groups."""
+    sections, modules = [], homes(ROOT / package / "__init__.pyi")
+    titles = {names[0]: title for title, names in groups(package).items()}
+    for name in (name for names in groups(package).values() for name in names):
+        home = modules[name]
+        if name in titles:
+            sections.append(f"## {titles[name]}\n")
         value = getattr(importlib.import_module(home), name)
         is_described = callable(value)
         kind = "class" if isinstance(value, type) else "function" if is_described else "data"

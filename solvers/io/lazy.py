@@ -1,6 +1,7 @@
 """Names of a package that are imported when they are first used."""
 
 import ast
+import re
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
@@ -23,6 +24,13 @@ def attach(
         return getattr(import_module(modules[name]), name)
 
     return lookup, lambda: sorted(modules), sorted(modules)
+
+
+def groups(package: str) -> dict[str, list[str]]:
+    """The public names of a package in groups with titles, as its docstring lists them."""
+    paragraphs = (import_module(package).__doc__ or "").split("\n\n")
+    parts = [one.partition(": `") for one in paragraphs]
+    return {title: re.findall(r"`(\w+)`", f"`{rest}") for title, _, rest in parts if rest}
 
 
 def homes(stub: Path) -> dict[str, str]:

@@ -220,10 +220,11 @@ def test_the_next_run_removes_files_of_a_killed_run_but_not_of_an_active_one(
 def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
     old = {f"m{k}.py": "old\n" * 20_000 for k in range(8)}
     code = (
-        "import sys; from pathlib import Path; from derive.codegen.generated_folder import Tree\n"
+        "import sys; from pathlib import Path\n"
+        "from derive.codegen.generated_folder import GeneratedFiles\n"
         "for n in range(10**6):\n"
         "    texts = {f'm{k}.py': f'{n}\\n' * 20_000 for k in range(8)}\n"
-        "    Tree(Path(sys.argv[1]), texts, complete=True).write()\n"
+        "    GeneratedFiles(Path(sys.argv[1]), texts, complete=True).write()\n"
         "    print(n, flush=True)\n"
     )
     GeneratedFiles(tmp_path, old, complete=True).write()
@@ -232,7 +233,7 @@ def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
             [sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE
         )
         assert run.stdout is not None
-        run.stdout.readline()
+        assert run.stdout.readline() == b"0\n"
         time.sleep(pause)
         run.send_signal(signal.SIGKILL)
         run.wait()

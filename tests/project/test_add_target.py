@@ -17,7 +17,7 @@ from derive.codegen.backend import find_backends
 TARGET = '''
 """JavaScript modules."""
 
-from derive.codegen.operations.assignments import Value
+from derive.codegen.operations.assignments import ValueAssignment
 from derive.codegen.backend import Backend
 
 
@@ -33,7 +33,7 @@ class JavaScriptBackend(Backend):
         return f"  // {text}"
 
     def statement(self, statement, function):
-        assert isinstance(statement, Value), "large systems are not supported"
+        assert isinstance(statement, ValueAssignment), "large systems are not supported"
         yield f"  const {statement.name} = {statement.text};"
 
     def file(self, contents):

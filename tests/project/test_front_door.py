@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import generated.double_pendulum as dp
 import holonomic
 import solvers
 from solvers import Final, Grid, Sweep, load_scene, load_sweep, run_scene, sweep
+from solvers.io.lazy import groups
 from solvers.io.toml_input import InputError
 from solvers.scenes.scene_reading import FILES
 from solvers.sweeps.definition import sweep_reading
@@ -63,6 +65,12 @@ def test_holonomic_offers_all_public_names() -> None:
         assert getattr(holonomic, name) is getattr(derive, name)
     for name in solvers.__all__:
         assert getattr(holonomic, name) is getattr(solvers, name)
+
+
+@pytest.mark.parametrize("package", [derive, solvers])
+def test_a_package_lists_each_public_name_in_one_group(package: ModuleType) -> None:
+    listed = [name for names in groups(package.__name__).values() for name in names]
+    assert sorted(listed) == package.__all__
 
 
 @pytest.mark.parametrize("name", ["derive", "solvers"])

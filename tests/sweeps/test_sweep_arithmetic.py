@@ -164,8 +164,8 @@ def test_a_library_that_rounds_a_sine_differently_has_other_arithmetic() -> None
         from solvers.sweeps.definition.sweep import Sweep
         axes = Grid({"x": [0.1], "y": [0.1]})
         one = Sweep(hh, axes, {"end": Final(("x",))}, 0.1)
-        print(hashlib.sha256(np.sin(arithmetic.ARGUMENTS).tobytes()).hexdigest())
-        print(arithmetic.arithmetic(one, axes.columns(0, 1))["digest"])"""
+        print(hashlib.sha256(np.sin(process_arithmetic.ARGUMENTS).tobytes()).hexdigest())
+        print(process_arithmetic.arithmetic(one, axes.columns(0, 1))["digest"])"""
     without_fma = "glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA,-FMA4"
     (sine, own), (other_sine, other) = (
         subprocess.run(
