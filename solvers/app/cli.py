@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NoReturn
 
 from solvers.app.commands.options import Formatter, required_package
-from solvers.io.matplotlib_folder import provide_matplotlib_folder
+from solvers.app.matplotlib_folder import provide_matplotlib_folder
 from solvers.io.suggestion import did_you_mean
 from solvers.io.terminal import standard_streams
 

@@ -1,8 +1,6 @@
 """Pages without external resources: the player and the motions in one HTML file."""
 
-import hashlib
 import json
-from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -10,6 +8,7 @@ from pathlib import Path
 from string import Template
 
 from solvers.io.atomic_write import write_text
+from solvers.io.html_page import html_page
 from solvers.player.track import Track
 
 SOURCES = Path(__file__).parent
@@ -57,7 +56,7 @@ class Page:
             part = '<section id="equations" aria-labelledby="equations-title">'
             main += f"{part}\n{title}\n{self.equations}\n</section>\n"
         body = f"<header>\n{head}\n</header>\n<main>\n{main}</main>"
-        return document(self.title, body, style=style(), script=script())
+        return html_page(self.title, body, style(), script())
 
     def write(self, path: Path) -> None:
         """Write the file atomically; missing folders are created, an existing file is replaced."""
@@ -66,21 +65,6 @@ class Page:
     def _repr_html_(self) -> str:
         attributes = 'width="100%" height="760" style="border: 0"'
         return f'<iframe {attributes} srcdoc="{escape(self.html)}"></iframe>'
-
-
-def document(title: str, body: str, *, style: str, script: str) -> str:
-    """A page as text, with a policy that permits exactly this style and script, and no requests."""
-    # Template substitutes once, so that nothing is substituted in the texts themselves
-    policy = (
-        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; "
-        "img-src data:; base-uri 'none'; form-action 'none'"
-    )
-    values = {"title": escape(title), "style": style, "body": body, "script": script}
-    return Template(_source("document.html")).substitute(values, policy=policy)
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
 def player(tracks: Sequence[Track]) -> str:

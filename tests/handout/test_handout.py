@@ -108,7 +108,7 @@ class Tags(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.attributes += attrs
-        if tag not in ("meta", "mspace"):
+        if tag not in ("link", "meta", "mspace"):
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
@@ -139,7 +139,7 @@ def test_every_number_is_in_every_format(documents, name: str) -> None:
 def test_a_page_is_one_file_of_balanced_elements(documents, name: str) -> None:
     tags = Tags(page(documents(name)))
     assert tags.open == []
-    assert not {"src", "href"} & {key for key, _ in tags.attributes}
+    assert [pair for pair in tags.attributes if pair[0] in ("src", "href")] == [("href", "data:,")]
 
 
 @pytest.mark.long("more cases of the same kind", keep=8)

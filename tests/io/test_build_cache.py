@@ -19,6 +19,7 @@ from derive import Derivation, load
 from derive.codegen.module_files import files
 from derive.codegen.module_functions import Functions
 from solvers.app.cli import main
+from solvers.app.matplotlib_folder import VARIABLE, provide_matplotlib_folder
 from solvers.equations.module import header
 from solvers.equations.module_cache import cached_module
 from solvers.integration.compiled.compiler import build
@@ -27,7 +28,6 @@ from solvers.integration.integrate import integrate
 from solvers.io import build_cache
 from solvers.io.atomic_write import write_text
 from solvers.io.build_cache import ABANDONED, DIGESTS, NoPlaceError, built_folder, cache_folder
-from solvers.io.matplotlib_folder import VARIABLE, provide_matplotlib_folder
 
 TEXT = "some text\n"
 

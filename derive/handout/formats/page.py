@@ -14,24 +14,9 @@ from derive.handout.document_model import (
     pieces,
 )
 from derive.handout.formats.tex import aligned
+from solvers.io.html_page import html_page
 
 STYLE = Path(__file__).with_name("page.css")
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>
-{style}</style>
-</head>
-<body>
-<h1>{title}</h1>
-{body}
-</body>
-</html>
-"""
-
 #: The LaTeX of a formula, for programs; the formula is shown as several elements.
 SOURCE = (
     '<math class="source" display="block" aria-hidden="true"><semantics><mrow></mrow>'
@@ -42,12 +27,11 @@ BLANK = '<span class="blank"></span>'
 
 def page(document: HandoutDocument) -> str:
     """The text of an ``.html`` file."""
-    parts = []
+    parts = [f"<h1>{escape(document.title)}</h1>"]
     for number, section in enumerate(document.sections, 1):
         parts.append(f"<h2>{number}. {escape(section.title)}</h2>")
         parts += map(_block, section.blocks)
-    style = STYLE.read_text(encoding="utf-8")
-    return PAGE.format(title=escape(document.title), style=style, body="\n".join(parts))
+    return html_page(document.title, "\n".join(parts), STYLE.read_text(encoding="utf-8"))
 
 
 def _block(block: Block) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from derive.verification.report.derivation_beside_report import STYLE as DERIVATION_STYLE
 from solvers.app.demo.stage import ReportedNumber, Stage, table
 from solvers.io.atomic_write import write_text
+from solvers.io.html_page import html_page
 from solvers.player import player_page as motions
 
 STYLE = Path(__file__).with_name("demo.css")
@@ -65,7 +66,7 @@ def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, s
     sections = "\n".join(_section(name, stage) for name, stage in shown.items())
     body = f"{header}<main>{sections}{_numbers(shown, versions)}</main>"
     style = motions.style() + DERIVATION_STYLE + STYLE.read_text(encoding="utf-8")
-    write_text(path, motions.document(TITLE, body, style=style, script=motions.script()))
+    write_text(path, html_page(TITLE, body, style, motions.script()))
 
 
 def _section(name: str, stage: Stage) -> str:

@@ -17,6 +17,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     one_line,
 )
 from derive.verification.verdict import VerdictName
+from solvers.io.html_page import html_page
 
 #: The macros of a document in LaTeX; None for a program.
 Macros: TypeAlias = Mapping[str, Macro] | None
@@ -35,38 +36,23 @@ def page(documents: Sequence[tuple[DocumentVerdicts, Document]]) -> str:
         The verdicts on each document, and the document as read.
     """
     names = ", ".join(Path(verdicts.file).name for verdicts, _ in documents)
-    title = f"Verdicts on {escape(names)}"
+    title = f"Verdicts on {names}"
     sections = "\n".join(
         _section(*one, f"<h2>{escape(Path(one[0].file).name)}</h2>" if len(documents) > 1 else "")
         for one in documents
     )
     counts = Counter(one.verdict for verdicts, _ in documents for one in verdicts.formulas)
     style = STYLE.read_text(encoding="utf-8") + "\n".join(map(_hidden, counts))
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; \
-img-src data:">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<link rel="icon" href="data:,">
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<header>
-<h1>{title}</h1>
+    body = f"""<header>
+<h1>{escape(title)}</h1>
 <p>Each formula is judged by computation. A term that is <span class="wrong-term">wrong</span> is
 marked, and below it stands the <span class="right-term">correct</span> formula.</p>
 <form aria-label="Verdicts that are shown">{"".join(_switches(counts))}</form>
 </header>
 <main>
 {sections}
-</main>
-</body>
-</html>
-"""
+</main>"""
+    return html_page(title, body, style)
 
 
 def _switches(counts: Mapping[VerdictName, int]) -> Iterator[str]:
