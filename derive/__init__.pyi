@@ -3,6 +3,7 @@ from derive.mechanics.derivation import Derivation as Derivation
 from derive.mechanics.linearisation.small_oscillations import Linearisation as Linearisation
 from derive.mechanics.linearisation.state_space import StateSpace as StateSpace
 from derive.mechanics.reduced_coordinates import reduced as reduced
+from derive.mechanics.regressor import Regressor as Regressor
 from derive.mechanics.specialisation import with_inputs as with_inputs
 from derive.system.constraints import Constraint as Constraint
 from derive.system.joints.body_joints import hinge as hinge

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "dffab3face9ca216"
+DIGEST = "c394b51d297eb5d8"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -105,14 +105,17 @@ LINKS = (("rod", (0, 1)), ("rod", (1, 2)))
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "input_jacobian", "parameter_jacobian", "energy", "mass_matrix",
-    "positions", "points", "angular_momentum", "hamiltonian_state", "rhs_hamiltonian",
-    "jacobian_hamiltonian", "energy_hamiltonian", "lagrangian_state", "rational_state",
+    "inverse_dynamics", "coriolis", "gravity", "regressor", "positions", "points",
+    "angular_momentum", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
+    "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
     "rhs": (40, 9), "jacobian": (79, 9), "input_jacobian": (24, 8),
     "parameter_jacobian": (134, 15), "energy": (28, 7), "power": (1, 0),
-    "mass_matrix": (16, 6), "positions": (13, 0), "points": (13, 0),
-    "angular_momentum": (49, 1), "hamiltonian_state": (22, 6), "rhs_hamiltonian": (37, 9),
+    "mass_matrix": (16, 6), "inverse_dynamics": (35, 7), "coriolis": (16, 4),
+    "gravity": (4, 2), "regressor": (16, 0), "base_parameters": (8, 8),
+    "positions": (13, 0), "points": (13, 0), "angular_momentum": (49, 1),
+    "hamiltonian_state": (22, 6), "rhs_hamiltonian": (37, 9),
     "jacobian_hamiltonian": (70, 10), "energy_hamiltonian": (34, 9),
     "lagrangian_state": (27, 8), "rational_state": (4, 0), "rhs_rational": (42, 9),
     "rhs_variational": (83, 9), "rhs_sensitivity": (158, 15),

@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "af48cb4bc50e6b09"
+DIGEST = "4dcf4240e7bcb34c"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -108,19 +108,21 @@ LINKS = (("rod", (0, 1)), ("rod", (1, 2)))
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "input_jacobian", "parameter_jacobian", "outputs",
-    "outputs_jacobian", "outputs_parameter_jacobian", "energy", "mass_matrix", "positions",
-    "points", "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian",
-    "energy_hamiltonian", "lagrangian_state", "rational_state",
+    "outputs_jacobian", "outputs_parameter_jacobian", "energy", "mass_matrix",
+    "inverse_dynamics", "coriolis", "gravity", "regressor", "positions", "points",
+    "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",
+    "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
     "rhs": (56, 16), "jacobian": (108, 17), "input_jacobian": (33, 12),
     "parameter_jacobian": (158, 18), "outputs": (11, 0), "outputs_jacobian": (13, 0),
     "outputs_parameter_jacobian": (5, 0), "energy": (41, 15), "power": (3, 0),
-    "mass_matrix": (21, 11), "positions": (13, 0), "points": (11, 0),
-    "hamiltonian_state": (27, 11), "rhs_hamiltonian": (54, 16),
-    "jacobian_hamiltonian": (84, 16), "energy_hamiltonian": (45, 14),
-    "lagrangian_state": (31, 12), "rational_state": (4, 0), "rhs_rational": (60, 16),
-    "rhs_variational": (107, 17), "rhs_sensitivity": (187, 23),
+    "mass_matrix": (21, 11), "inverse_dynamics": (52, 14), "coriolis": (11, 2),
+    "gravity": (13, 5), "regressor": (18, 0), "base_parameters": (13, 13),
+    "positions": (13, 0), "points": (11, 0), "hamiltonian_state": (27, 11),
+    "rhs_hamiltonian": (54, 16), "jacobian_hamiltonian": (84, 16),
+    "energy_hamiltonian": (45, 14), "lagrangian_state": (31, 12), "rational_state": (4, 0),
+    "rhs_rational": (60, 16), "rhs_variational": (107, 17), "rhs_sensitivity": (187, 23),
 }
 UNITS = {
     "l1": "m", "l2": "m", "c1": "m", "c2": "m", "m1": "kg", "m2": "kg", "I1": "kg m^2",

@@ -13,7 +13,7 @@ from derive.codegen.operations.assignments import Assignments, LanguageNotation,
 #: Place of the digest of all files of a system, by which files that belong together are known.
 DIGEST = "@digest@"
 #: Names that generated functions use themselves.
-RESERVED = ("t", "y", "state", "params", "signs", "result")
+RESERVED = ("t", "y", "state", "qddot", "params", "signs", "result")
 
 
 class Backend(LanguageNotation, ABC):
@@ -52,7 +52,7 @@ class Backend(LanguageNotation, ABC):
 
     def assignments(self, function: Function) -> Assignments:
         """The assignments of a function, in the notation of this language."""
-        reserved = {*RESERVED, *function.state, *function.parameters}
+        reserved = {*RESERVED, *function.state, *function.accelerations, *function.parameters}
         return Assignments(function.lowering, reserved, self.notation(function))
 
     def body(self, function: Function, inputs: Iterable[str], assigned: Assignments) -> list[str]:

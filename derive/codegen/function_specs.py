@@ -8,6 +8,9 @@ from derive.codegen.elimination.factorisation import LARGE
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 
+#: Functions of generalized forces, which controllers and identification need.
+FORCES = ("inverse_dynamics", "coriolis", "gravity", "regressor", "base_parameters")
+
 Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "sensitivity", "parameters"]
 
 
@@ -45,6 +48,18 @@ def _redundant(derivation: Derivation) -> str:
     return ", ".join(one.name for one in derivation.redundant)
 
 
+def _reacting(derivation: Derivation) -> str:
+    return "" if _is_free(derivation) else " and constraints"
+
+
+def _base(derivation: Derivation) -> str:
+    return ", ".join(map(str, derivation.regressor.parameters))
+
+
+def _has_base(derivation: Derivation) -> bool:
+    return _is_free(derivation) and bool(derivation.system.parameters) and is_small(derivation)
+
+
 def _is_free(derivation: Derivation) -> bool:
     return not derivation.system.conditions
 
@@ -65,6 +80,7 @@ class FunctionSpec:
     returns: str
     detail: Callable[[Derivation], str] = lambda derivation: ""
     exists: Callable[[Derivation], bool] = lambda derivation: True  # if there is such a state
+    takes_accelerations: bool = False
 
 
 SPECS = (
@@ -154,6 +170,23 @@ SPECS = (
     FunctionSpec("mass_matrix", "lagrangian", "q q",
         "Mass matrix M(q): the kinetic energy is qdot M qdot / 2.",
         "M, symmetric and positive definite, row by row."),
+    FunctionSpec("inverse_dynamics", "lagrangian", "q",
+        "Generalized forces that produce the accelerations qddot: M qddot - f, where inputs are 0.",
+        "One for each coordinate: what inputs{} have to produce.", _reacting,
+        takes_accelerations=True),
+    FunctionSpec("coriolis", "lagrangian", "q",
+        "Coriolis and centrifugal terms C(q, qdot) qdot of M qddot + C qdot + dV/dq = forces.",
+        "One for each coordinate."),
+    FunctionSpec("gravity", "lagrangian", "q",
+        "Terms dV/dq of gravity and springs of M qddot + C qdot + dV/dq = forces.",
+        "One for each coordinate."),
+    FunctionSpec("regressor", "lagrangian", "q base",
+        "Y of `inverse_dynamics` = Y π, with π the `base_parameters`.",
+        "Entry [i][j] is the factor of base parameter j in force i.",
+        exists=_has_base, takes_accelerations=True),
+    FunctionSpec("base_parameters", "parameters", "base",
+        "Combinations π of parameters in which `inverse_dynamics` is linear.",
+        "{}.", _base, _has_base),
     FunctionSpec("positions", "lagrangian", "masses axes",
         "Positions of the masses.",
         "One row a mass: its Cartesian components in m, the last one upwards."),

@@ -12,11 +12,14 @@ from derive.codegen.forms.lagrangian_form import LagrangianForm
 from derive.codegen.forms.output_form import OutputForm
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.codegen.forms.quaternion_form import QuaternionForm
-from derive.codegen.function_specs import SPECS, Form, FunctionSpec, is_small
+from derive.codegen.function_specs import FORCES, SPECS, Form, FunctionSpec, is_small
 from derive.codegen.operations.lowering import Lowering
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
+
+#: The axis of base parameters, whose length is derived when it is needed.
+BASE = "base"
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,7 @@ class Function:
     state: tuple[str, ...]  # components of the state that it takes, in order
     shape: tuple[int, ...]  # of the result; () is a single number
     lowering: Lowering  # its outputs are the result, flat in C order
+    accelerations: tuple[str, ...] = ()  # that it takes after the state
     takes_signs: bool = False  # of switching functions, after the parameters
     constants: tuple[str, ...] = ()  # values of integrals, after the parameters
 
@@ -43,13 +47,16 @@ class Function:
 
     def arguments(self, state: str) -> dict[str, tuple[str, ...]]:
         """Names of the components of the arguments, of which the state is called `state`."""
-        return {state: self.state, "params": self.parameters}
+        rates = {"qddot": self.accelerations} if self.accelerations else {}
+        return {state: self.state, **rates, "params": self.parameters}
 
     @property
     def is_derivative(self) -> bool:
-        """Whether it is of perturbations, about an equilibrium or a rare derivative."""
+        """Whether it is of perturbations, about an equilibrium, a rare derivative or of forces."""
         is_jacobian = "jacobian" in self.name and self.name != "jacobian"
-        return is_jacobian or self.form in ("variational", "sensitivity", "parameters")
+        is_of_forces = self.name in FORCES
+        of_few = ("variational", "sensitivity", "parameters")
+        return is_jacobian or is_of_forces or self.form in of_few
 
     @property
     def depends_on_time(self) -> bool:
@@ -110,9 +117,19 @@ class Functions:
         self._function = cache(self._generated)
 
     def contents(self, only: Collection[str] | None = None) -> Contents:
-        """The contents of files of all functions, or of a system with `only` some."""
-        names = tuple(name for name in self.names if only is None or name in only)
+        """The contents of files of all `usual` functions, or of a system with `only` some."""
+        usual = self.usual if only is None else only
+        names = tuple(name for name in self.names if name in usual)
         return replace(self._contents(names, names), is_complete=only is None)
+
+    @property
+    def usual(self) -> list[str]:
+        """Names of the functions in files: without forces if there are no inputs to produce them.
+
+        Others are generated when they are first used, of modules that are built.
+        """
+        is_driven = bool(self._derivation.system.inputs)
+        return [name for name in self.names if is_driven or name not in FORCES]
 
     def part(self, names: Collection[str]) -> Contents:
         """The contents of files of some functions of a system that has all."""
@@ -124,9 +141,13 @@ class Functions:
 
     def _exists(self, spec: FunctionSpec) -> bool:
         has_state = spec.form == "parameters" or spec.form in self._states
-        return (
-            has_state and {*spec.shape.split()} <= {*self._sizes} and spec.exists(self._derivation)
-        )
+        axes = {*spec.shape.split()} - {BASE}
+        return has_state and axes <= {*self._sizes} and spec.exists(self._derivation)
+
+    def _length(self, axis: str) -> int:
+        if axis == BASE:
+            return len(self._derivation.regressor.parameters)
+        return self._sizes[axis]
 
     def _generated(self, name: str) -> Function:
         spec, derivation = self._specs[name], self._derivation
@@ -139,8 +160,9 @@ class Functions:
             spec.returns.format(detail),
             spec.form,
             self._states.get(spec.form, ()),
-            tuple(self._sizes[axis] for axis in spec.shape.split()),
+            tuple(map(self._length, spec.shape.split())),
             lowering,
+            tuple(s.name for s in derivation.system.qddot) if spec.takes_accelerations else (),
             takes_signs=bool(derivation.switching_functions),
             constants=tuple(symbol.name for symbol in values),
         )

@@ -32,9 +32,11 @@ def units(system: System) -> dict[str, str]:
     """Units of all names."""
     rows = {part.symbol.name: part.unit for part in system.parameters_and_inputs}
     rows |= {f"delta_{name}": unit for name, unit in rows.items()}
-    for coordinate, qdot, p in zip(system.coordinates, system.qdot, system.p, strict=True):
+    symbols = zip(system.coordinates, system.qdot, system.qddot, system.p, strict=True)
+    for coordinate, qdot, qddot, p in symbols:
         rows[coordinate.symbol.name] = coordinate.unit
         rows[qdot.name] = f"{coordinate.unit}/s"
+        rows[qddot.name] = f"{coordinate.unit}/s^2"
         rows[p.name] = MOMENTUM_UNIT.get(coordinate.unit, f"J s/({coordinate.unit})")
         for changed in (coordinate.symbol.name, qdot.name):
             rows[f"delta_{changed}"] = rows[changed]

@@ -17,12 +17,14 @@ from typing import TYPE_CHECKING
 import sympy as sp
 
 from derive.mechanics.constraints.differentiated_constraints import Constraints
+from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.independence import check_independence, is_singular
 from derive.mechanics.linearisation.closed_form_equilibria import equilibria
 from derive.mechanics.linearisation.point import Formula, OperatingPoint
 from derive.mechanics.linearisation.small_oscillations import Linearisation, SmallOscillations
 from derive.mechanics.linearisation.state_space import StateSpace, state_space
 from derive.mechanics.outputs import outputs as output_formulas
+from derive.mechanics.regressor import Regressor, regressor
 from derive.mechanics.steps import StepByStep
 from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
@@ -259,6 +261,21 @@ class Derivation(StepByStep):
         from derive.mechanics.identifiability import identifiability
 
         return identifiability(self.system, self.mass_matrix, self.forcing, formulas, symbols)
+
+    @cached_property
+    def regressor(self) -> Regressor:
+        """Y and base parameters π of the forces M q̈ - f = Y π, with inputs 0.
+
+        Inputs of prescribed motions keep their values. With constraints, the forces include those
+        of the constraints.
+        """
+        prescribed = {s for parts in motions(self.system.inputs).values() for s in parts}
+        at_rest = {u: sp.S.Zero for u in self.system.u if u not in prescribed}
+        rows = range(len(self.system.q))
+        accelerations = Matrix(self.system.qddot)
+        forces = [(self.mass_matrix.row(i) * accelerations)[0] - self.forcing[i] for i in rows]
+        parameters = [part.symbol for part in self.system.parameters]
+        return regressor([force.subs(at_rest) for force in forces], parameters)
 
     def equilibria(self, at: Mapping[str, Formula] | None = None) -> list[dict[sp.Symbol, sp.Expr]]:
         """All equilibria in closed form, as functions of parameters and inputs.

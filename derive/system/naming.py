@@ -20,7 +20,7 @@ RESERVED = {
     *"volatile pi".split(),
     *FUNCTIONS,
     *GENERATED,
-    *"t params signs state result numpy math hasattr STATE".split(),
+    *"t qddot params signs state result numpy math hasattr STATE".split(),
     # keywords of C++ and of later standards of C, and macros that compilers define
     *"asm bool catch class delete dynamic_cast explicit export friend mutable namespace".split(),
     *"new operator private protected public template this throw typeid typename using".split(),

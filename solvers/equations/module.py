@@ -23,10 +23,11 @@ BINARY = ("atan2", "pow")
 class GeneratedModule(Protocol):
     """A module written by ``holonomic derive``, such as ``generated.double_pendulum``.
 
-    Functions take ``(t, y, params)``; those of the parameters alone take ``(params)``. With
-    ``_many`` after its name a function takes arrays whose first axis is the state. The functions
-    below exist for every system, those of momenta for systems without constraints; others where
-    they are keys of ``OPERATIONS``.
+    Functions take ``(t, y, params)``; those of the parameters alone take ``(params)``, and
+    ``inverse_dynamics`` and ``regressor`` take ``(t, y, qddot, params)``. With ``_many`` after its
+    name a function takes arrays whose first axis is the state. The functions below exist for every
+    system, those of momenta for systems without constraints; others where they are keys of
+    ``OPERATIONS``.
     """
 
     __name__: str

@@ -30,7 +30,7 @@ def operations(system: System, name: str) -> int:
 
 
 @pytest.mark.parametrize("relative", [False, True])
-@pytest.mark.parametrize("name", ["rhs", "rhs_rational", "energy"])
+@pytest.mark.parametrize("name", ["rhs", "rhs_rational", "energy", "inverse_dynamics"])
 def test_operations_grow_linearly(name: str, *, relative: bool) -> None:
     # relative angles: 1,718 operations of the right-hand side at n = 7 by the dense mass matrix
     six, eight, ten = (operations(chain(n, relative=relative), name) for n in (6, 8, 10))

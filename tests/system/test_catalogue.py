@@ -401,11 +401,13 @@ def test_arrays_give_what_single_states_give(module: ModuleType) -> None:
                 form = Form(module, "lagrangian", params).in_form(kind)
                 state = form.from_ordinary(t, np.resize(y, len(form.ordinary))).tolist()
                 own = form.params
-            given = {"t": t, "y": state, "params": own}
+            qddot = y[: len(y) // 2]
+            given = {"t": t, "y": state, "qddot": qddot, "params": own}
             alone = np.array(one(*(given[key] for key in takes)))
             given = {
                 "t": np.full(3, t),
                 "y": np.tile(np.array(state)[:, None], 3),
+                "qddot": np.tile(np.array(qddot)[:, None], 3),
                 "params": np.tile(np.array(own).reshape(-1, 1), 3),
             }
             together = many(*(given[key] for key in takes))

@@ -126,7 +126,7 @@ static inline {system}_real {system}_select({system}_real s, {system}_real x, {s
 FUNCTION = """\
 /* {f.summary}
    {f.cost}
-   {f.returns} */
+   {returns} */
 static inline void {f.system.name}_{f.name}(
     {arguments})
 {{
@@ -309,6 +309,7 @@ class CBackend(Backend):
     def function(self, function: Function) -> str:
         assigned, real = self.assignments(function), f"{function.system.name}_real"
         state = [f"{real} t", f"const {real} *state"] if function.state else []
+        state += [f"const {real} *qddot"] if function.accelerations else []
         outputs = range(len(assigned.outputs))
         lines = [
             *self.body(function, _inputs(function), assigned),
@@ -316,7 +317,9 @@ class CBackend(Backend):
             *_unused(function),
         ]
         arguments = _separated([*state, f"const {real} *params", f"{real} *result"])
-        return FUNCTION.format(f=function, arguments=arguments, body="\n".join(lines))
+        returns = broken_sum(function.returns, WIDTH - 6).replace("\n", f"\n{' ' * 3}")
+        body = "\n".join(lines)
+        return FUNCTION.format(f=function, returns=returns, arguments=arguments, body=body)
 
     def _guarded(self, function: Function) -> str:
         """The function, which a vector omits if it calls the mathematical library."""

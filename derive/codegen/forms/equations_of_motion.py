@@ -97,6 +97,16 @@ class EquationsOfMotion:
         return [self._inertia[i][j] for i in self._n for j in self._n]
 
     @property
+    def regressor(self) -> list[Node]:
+        """Y, row by row."""
+        return self._nodes(self._derivation.regressor.matrix)
+
+    @property
+    def base_parameters(self) -> list[Node]:
+        """π."""
+        return self._nodes(self._derivation.regressor.parameters)
+
+    @property
     def positions(self) -> list[Node]:
         """Positions r of all masses."""
         return self._nodes([r for mass in self._system.masses for r in mass.position])

@@ -135,6 +135,21 @@ class TreeForm(ProjectionForm):
             for a, b, name in zip(inertial, applied, self._along, strict=True)
         ]
 
+    def _of_coordinates(self, forces: Sequence[Node]) -> Vector:
+        """Generalized forces of the coordinates, from those of the variables."""
+        return [self._weighted(self._tree.sums.col(i), forces) for i in self._n]
+
+    def _required(self, accelerations: Sequence[Node]) -> Vector:
+        rows = (self._tree.sums.row(i) for i in self._n)
+        of_variables = [self._weighted(row, accelerations) for row in rows]
+        return self._of_coordinates(self._imbalances(of_variables))
+
+    @property
+    def coriolis(self) -> Vector:
+        """Inertial forces without accelerations."""
+        still = [self._graph.zero for _ in self._n]
+        return self._of_coordinates(self._inertial_forces(still))
+
     @cached_property
     def _forcing(self) -> Vector:
         still = [self._graph.zero for _ in self._n]

@@ -7,9 +7,10 @@ from functools import cached_property
 import sympy as sp
 
 from derive.codegen.expression_graph.node import Node
-from derive.codegen.expression_graph.rational import rationalised
+from derive.codegen.expression_graph.rational import rationalised, substitution
 from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion
+from derive.system.prescribed import motions
 from derive.system.symbols import TIME
 
 HALF = Fraction(1, 2)
@@ -39,6 +40,31 @@ class LagrangianForm(EquationsOfMotion):
             for k in self._dependencies[entry]
         ]
         return self._graph.sum(terms)
+
+    @property
+    def inverse_dynamics(self) -> list[Node]:
+        """M q̈ - f where inputs are 0, but for those of prescribed motions."""
+        prescribed = {s for parts in motions(self._system.inputs).values() for s in parts}
+        names = [u.name for u in self._system.u if u not in prescribed]
+        without_inputs = substitution(self._graph, dict.fromkeys(names, self._graph.zero))
+        return [without_inputs(one) for one in self._required(self._nodes(self._system.qddot))]
+
+    def _required(self, accelerations: Sequence[Node]) -> list[Node]:
+        """M q̈ - f."""
+        products = ([(self._inertia[i][j] * accelerations[j], 1) for j in self._n] for i in self._n)
+        pairs = zip(products, self._forcing, strict=True)
+        return [self._graph.sum([*terms, (f, -1)]) for terms, f in pairs]
+
+    @property
+    def coriolis(self) -> list[Node]:
+        """Σ Γ_ijk v_j v_k, with v the rates of coordinates, time and prescribed motions."""
+        v = self._rates(self._qdot)
+        return [self._inertial(i, v) for i in self._n]
+
+    @property
+    def gravity(self) -> list[Node]:
+        """∂V/∂q."""
+        return [self._derivative(self._potential, q.name) for q in self._system.q]
 
     @cached_property
     def _dependent(self) -> list[list[tuple[int, int]]]:
