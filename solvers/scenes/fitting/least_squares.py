@@ -163,7 +163,8 @@ def minimise(
         ) from error
     weight, before, u = 0.0, np.inf, len(params)
     step, squares, gaps = condensed(linear, u), linear.squares, _gaps(linear, scale)
-    for iteration in range(most := most or MOST_ITERATIONS):
+    most = most or MOST_ITERATIONS
+    for iteration in range(most + 1):
         values = np.count_nonzero(linear.residuals)
         is_closed = gaps <= CLOSED * len(nodes)
         # rounding errors, which chaotic motions amplify, let it stagnate
@@ -172,6 +173,8 @@ def minimise(
         before = decrease
         if is_closed and (is_stagnant or decrease <= DECREASE * squares + ROUNDING * values):
             return Minimum(nodes, params, linear, step, iteration)
+        if iteration == most:
+            break
         if gaps:  # so that the penalty function decreases along the step
             weight = max(weight, 2 * (step.predicted - squares) / gaps)
         size, accepted = longest(params, step.params, positive), None
