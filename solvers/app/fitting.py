@@ -1,6 +1,7 @@
 """Fits of parameters to measurements: the equations decide which of them can be unknown."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from os import PathLike, fspath
 from pathlib import Path
@@ -11,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from solvers.app.modules import generator_text, load, system_of
 from solvers.app.scenes import load_scene
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, motion_times
 from solvers.equations.module import inputs as input_names
 from solvers.equations.module_cache import cached_module
 from solvers.equations.signature_checks import checked
@@ -19,7 +20,12 @@ from solvers.integration.problem import validation
 from solvers.io.suggestion import did_you_mean
 from solvers.scenes.fitting import measurement_tables, prediction
 from solvers.scenes.fitting.fitted_model import Fit, fitted
-from solvers.scenes.fitting.measurement import Measurement, Outputs
+from solvers.scenes.fitting.measurement import (
+    Interpolation,
+    Measurement,
+    Outputs,
+    check_inputs,
+)
 from solvers.scenes.fitting.prediction import ModelComparison
 from solvers.scenes.scene import Scene
 
@@ -39,6 +45,7 @@ def fit(
     unknown: Sequence[str] | None = None,
     *,
     params: Mapping[str, float] | None = None,
+    inputs: Interpolation = "linear",
 ) -> Fit:
     """Fit parameters of a system to measured motions.
 
@@ -51,11 +58,17 @@ def fit(
         One run or several. Columns are named ``t`` and by components of the state, ``energy``,
         positions of masses (``x1``, ``y1``, ``x2`` ...), or formulas of these; units are in
         brackets, as in ``theta1 [deg]``, and SI units otherwise. NaN and empty cells are gaps.
+        Columns of inputs, such as a motor's torque, drive the motion.
     unknown : sequence of str, optional
         Names of the unknown parameters; by default all that the columns determine, where ``g`` is
         held first.
     params : mapping of str to float, optional
         Values of known parameters and first guesses of unknown ones, instead of the scene's.
+        Inputs without a column are constant, and 0 by default.
+    inputs : {'linear', 'held'}, optional
+        How inputs act between their values: each until the next one, as those of a digital
+        controller; or linearly, with their mean from each row to the next, so that the error is of
+        second order in the interval.
 
     Returns
     -------
@@ -85,14 +98,16 @@ def fit(
     module, start, values = _model(model)
     guesses = validation.parameters(module, values | dict(params or {}))
     values = dict(zip(module.PARAMETERS, guesses.tolist(), strict=True))
-    runs = _measurements(module, data)
+    check_inputs(runs := _measurements(module, data, inputs))
     outputs = outputs_of(module, runs)
-    names, held = _unknown(module, outputs, unknown, values)
+    names, held = _unknown(module, outputs, unknown, values, runs[0].inputs)
     return fitted(outputs, runs, names, values, start, held)
 
 
 @checked
-def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> ModelComparison:
+def compare(
+    fits: Mapping[str, Fit], kept: Data | Sequence[Data], *, inputs: Interpolation = "linear"
+) -> ModelComparison:
     """Compare fitted models by their predictions of runs that were kept back.
 
     Parameters
@@ -102,6 +117,8 @@ def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> ModelCompar
     kept : Measurement, mapping, path, or sequence of these
         Runs that were not fitted. The first half of each gives its start, the second half is
         predicted.
+    inputs : {'linear', 'held'}, optional
+        How inputs of these runs act between their values, as in `fit`.
 
     Returns
     -------
@@ -130,13 +147,17 @@ def compare(fits: Mapping[str, Fit], kept: Data | Sequence[Data]) -> ModelCompar
     if not fits:
         raise ValueError("fits = {} must hold one fit or more")
     first = next(iter(fits.values()))
-    runs = _measurements(first.outputs.module, kept)
+    runs = _measurements(first.outputs.module, kept, inputs)
     return prediction.compared(fits, [(run, None) for run in runs])
 
 
 @checked
 def read_measurement(
-    path: str | PathLike[str], module: GeneratedModule, ignored: Sequence[str] = ()
+    path: str | PathLike[str],
+    module: GeneratedModule,
+    ignored: Sequence[str] = (),
+    *,
+    inputs: Interpolation = "linear",
 ) -> Measurement:
     r"""The measurement of a system's motion in a file with comma-separated values.
 
@@ -148,11 +169,13 @@ def read_measurement(
         The generated equations of the system.
     ignored : sequence of str, optional
         Names of columns to leave out.
+    inputs : {'linear', 'held'}, optional
+        How inputs act between their values, as in `fit`.
 
     Returns
     -------
     Measurement
-        Times and values in SI units.
+        Times, values and inputs in SI units.
 
     Raises
     ------
@@ -169,23 +192,50 @@ def read_measurement(
     >>> read_measurement("swing.csv", sp)
     Measurement of theta: 3 times, 2 values
     """
-    return measurement_tables.read(Path(path), units(module), ignored)
+    run = measurement_tables.read(Path(path), units(module), ignored)
+    return _with_inputs(module, run, inputs)
+
+
+def _with_inputs(
+    module: GeneratedModule, run: Measurement, interpolation: Interpolation
+) -> Measurement:
+    """The measurement of which columns of inputs drive the motion."""
+    names = input_names(module)
+    for name in run.inputs:
+        if name not in names:
+            raise ValueError(
+                f"{run.name}: {module.SYSTEM} has no input {name!r}{did_you_mean(name, names)}; "
+                f"known are {', '.join(names) or 'none'}"
+            )
+    prescribed = {name.removesuffix("_time") for name in motion_times(module)}
+    for name in (*run.values, *run.inputs):
+        if any(name in (s, f"{s}_dot", f"{s}_ddot", f"{s}_time") for s in prescribed):
+            raise ValueError(
+                f"{run.name}: column {name} is of a prescribed motion, which a fit cannot follow: "
+                "replace it by a function of time, with derive.with_inputs"
+            )
+    return run.with_inputs(names, interpolation)
 
 
 def units(module: GeneratedModule) -> dict[str, str]:
     """Units of the quantities that a column can measure, by name."""
     rows = [f"{axis}{k}" for k in range(1, 1 + _masses(module)) for axis in "xyz"]
-    state = {name: module.UNITS[name] for name in module.STATE}
-    return {"energy": "J"} | dict.fromkeys(rows, "m") | state
+    own = {name: module.UNITS[name] for name in (*module.STATE, *input_names(module))}
+    return {"energy": "J"} | dict.fromkeys(rows, "m") | own
 
 
 def _masses(module: GeneratedModule) -> int:
     return len(module.positions(0.0, [1.0] * len(module.STATE), module.DEFAULTS))
 
 
-def outputs_of(module: GeneratedModule, runs: Iterable[Measurement]) -> Outputs:
+def outputs_of(module: GeneratedModule, runs: Sequence[Measurement]) -> Outputs:
     """The quantities that runs measure, as functions of the state."""
     names = tuple(dict.fromkeys(name for run in runs for name in run.values))
+    for name in names:
+        if used := {*re.findall(r"\w+", name)} & {*runs[0].inputs}:
+            raise ValueError(
+                f"column {name} contains the input {used.pop()}, which changes: leave it out"
+            )
     own = units(module)
     known = tuple(own.get(name, "") for name in names)
     if all(name in module.STATE for name in names):
@@ -225,8 +275,12 @@ def _unknown(
     outputs: Outputs,
     requested: Sequence[str] | None,
     values: Mapping[str, float],
+    measured: Collection[str],
 ) -> tuple[list[str], dict[str, str]]:
-    """The unknown parameters, and those that must be held, with reasons."""
+    """The unknown parameters, and those that must be held, with reasons.
+
+    The `measured` inputs are known; others have the `values`.
+    """
     inputs = input_names(module)
     parameters = [name for name in module.PARAMETERS if name not in inputs]
     if not parameters:
@@ -240,7 +294,8 @@ def _unknown(
     # a mass or length of 0 is absent
     exist = [name for name in parameters if values[name] or name not in module.POSITIVE]
     names = list(exist if requested is None else dict.fromkeys(requested))
-    absent = [name for name in parameters if not values[name] and name not in names]
+    others = [name for name in inputs if name not in measured]
+    absent = [name for name in (*parameters, *others) if not values[name] and name not in names]
     result = _identifiable(module, tuple(names), outputs.names, tuple(absent))
     if requested is not None and result.groups:
         raise ValueError(
@@ -283,17 +338,20 @@ def named_model(name: str) -> Scene | GeneratedModule:
         ) from None
 
 
-def _measurements(module: GeneratedModule, data: Data | Sequence[Data]) -> list[Measurement]:
+def _measurements(
+    module: GeneratedModule, data: Data | Sequence[Data], interpolation: Interpolation
+) -> list[Measurement]:
     items = [data] if isinstance(data, Measurement | Mapping | str | PathLike) else [*data]
     if not items:
         raise ValueError("data = [] must hold one run or more")
-    return [_measurement(module, item) for item in items]
+    return [_measurement(module, item, interpolation) for item in items]
 
 
-def _measurement(module: GeneratedModule, item: Data) -> Measurement:
+def _measurement(module: GeneratedModule, item: Data, interpolation: Interpolation) -> Measurement:
     match item:
         case Measurement():
-            return item
+            return _with_inputs(module, item, interpolation)
         case Mapping():
-            return measurement_tables.measurement(item, units(module))
-    return read_measurement(item, module)
+            run = measurement_tables.measurement(item, units(module))
+            return _with_inputs(module, run, interpolation)
+    return read_measurement(item, module, inputs=interpolation)

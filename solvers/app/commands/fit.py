@@ -26,7 +26,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "Fit the parameters of a scene's system to measured motions, with confidence intervals; "
         "write a table, plots, and a scene with the fitted values. Columns of the data are t and "
         "components of the state, energy, positions of masses (x1, y1, x2 ...) or formulas, with "
-        "units in brackets: theta1 [deg]. Empty cells are gaps."
+        "units in brackets: theta1 [deg]. Empty cells are gaps. Columns of inputs, such as a "
+        "torque, drive the motion."
     )
     meaning = "a scene or system: a name, or a file that ends in .toml; the first guess"
     action = parser.add_argument("scene", metavar="SCENE", help=meaning)
@@ -41,6 +42,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--compare", action="append", default=[], metavar="NAME=VALUE|SCENE",
         help="also fit a model with parameters held, such as c=0, or another scene or system, and "
         "select by prediction; can be repeated")  # fmt: skip
+    add("--inputs", choices=("linear", "held"), default="linear",
+        help="how inputs act between values: linearly, or each until the next")  # fmt: skip
     add("--ignore", default="", metavar="NAMES", help="columns to leave out, separated by commas")
     options.add_output(parser, "the table, plots and scene")
     options.add_json(parser)
@@ -48,6 +51,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         parser,
         "holonomic fit pendulum.toml swing.csv",
         "holonomic fit pendulum.toml a.csv b.csv --test c.csv --compare c=0",
+        "holonomic fit two_link_arm a.csv --unknown m1,m2 --inputs held --test b.csv",
     )
 
 
@@ -62,7 +66,7 @@ def run(arguments: Namespace) -> int:
     module = model.module if isinstance(model, Scene) else model
     ignored, unknown = _names(arguments.ignore), _names(arguments.unknown or "") or None
     runs, tests = (
-        [read_measurement(path, module, ignored) for path in files]
+        [read_measurement(path, module, ignored, inputs=arguments.inputs) for path in files]
         for files in (arguments.data, arguments.test)
     )
     kept: list[tuple[Measurement, float | None]] = [(one, None) for one in tests]
@@ -144,7 +148,9 @@ def _write(
     files = {kind: folder / f"{name}{end}" for kind, end in _endings(comparison)}
     save(fit_plots.figure(fit, title), files["plot"])
     write_text(files["table"], fit_summary.table(fit))
-    comments = [title, *(f"{k} = {v.value:.6g} ± {v.error:.2g}" for k, v in fit.intervals.items())]
+    driven = ", ".join(fit.runs[0].inputs)
+    comments = [title, *([f"without {driven}, which the data have over time"] if driven else [])]
+    comments += [*(f"{k} = {v.value:.6g} ± {v.error:.2g}" for k, v in fit.intervals.items())]
     write_text(files["scene"], fit_summary.scene_text(fit, _system(arguments, fit), comments))
     if comparison:
         save(fit_plots.prediction_figure(comparison, title), files["predictions"])

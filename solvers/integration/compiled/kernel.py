@@ -153,13 +153,17 @@ class Batch:
         """Leave out the first occurrences of each event, these many."""
         self._events["skip"][: len(numbers)] = numbers
 
-    def hold(self, ends: Array, values: Array) -> None:
-        """Let motions change their inputs at the ends of `values`, of shape (values, inputs)."""
+    def hold(self, ends: Array, values: Array, first: NDArray[np.intp] | int = 0) -> None:
+        """Let motions change their inputs at the ends of `values`, of shape (values, inputs).
+
+        Motions begin with the values at the indices `first`, and end before an end that is NaN.
+        """
         self._holds = (np.ascontiguousarray(ends), np.ascontiguousarray(values))
         self.task.holds, self.task.inputs = values.shape
         self.task.first_input = len(self.form.params) - values.shape[1]
         self.task.hold_ends, self.task.hold_values = (part.ctypes.data for part in self._holds)
-        self.motions["t_end"] = ends[0]
+        self.motions["held"], self.motions["t_end"] = first, ends[first]
+        self.motions["params"][:, self.task.first_input :] = values[first]
 
     def restart(self, time_limit: float = 0.0) -> None:
         """Let the next `run` start with the first motion, and return after `time_limit` seconds."""

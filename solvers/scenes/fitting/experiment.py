@@ -60,7 +60,7 @@ class Experiment:
         cuts = cuts or [_cuts(table, n, most) for table in self.tables]
         self.segments: list[Segment] = []
         for k, (run, own) in enumerate(zip(runs, cuts, strict=True)):
-            self.segments += segments(k, run.t, own)
+            self.segments += segments(k, run.t, own, run.held(self.module, params))
         self.shooting = MultipleShooting(self.module, self.indices, self.segments)
         shape = (len(self.segments), len(outputs.names), self.shooting.missing.shape[1])
         self.data = np.full(shape, np.nan)

@@ -24,6 +24,8 @@ def summary(fit: Fit) -> Iterator[str]:
         f"{counted(values, 'value')} of {names} in {counted(len(fit.runs), 'run')}, "
         f"{counted(len(fit.unknown), 'unknown parameter')}"
     )
+    if inputs := ", ".join(fit.runs[0].inputs):
+        yield f"inputs: {inputs}"
     for name, reason in fit.held.items():
         yield f"held: {name} = {with_unit(fit.params[name], units[name])}: {reason}"
     rows = []
@@ -87,6 +89,7 @@ def figures(fit: Fit) -> dict[str, Any]:
     }
     return {
         "system": fit.outputs.module.SYSTEM,
+        "inputs": [*fit.runs[0].inputs],
         "parameters": parameters,
         "held": {
             name: {"value": fit.params[name], "reason": why} for name, why in fit.held.items()

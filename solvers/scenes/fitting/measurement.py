@@ -1,16 +1,22 @@
 """Measurements of motions, and the quantities that they measure."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule, function
+from solvers.equations.module import inputs as input_names
 from solvers.equations.number_checks import Array, real_numbers
 from solvers.equations.signature_checks import checked
-from solvers.io.suggestion import counted
+from solvers.io.suggestion import counted, shortened
+
+#: How an input acts between its values: held from each to the next one, or linear.
+Interpolation: TypeAlias = Literal["held", "linear"]
 
 
 @checked
@@ -26,6 +32,9 @@ class Measurement:
         Measured quantities by name, or by formula, in SI units; NaN in gaps.
     name : str, optional
         A name for messages and plots, such as that of a file.
+    inputs : mapping of str to array_like of shape (times,), optional
+        Inputs of the system by name, in SI units, which act from each time to the next one; those
+        of the last time do not matter.
 
     Raises
     ------
@@ -42,9 +51,14 @@ class Measurement:
     t: Array
     values: Mapping[str, Array]
     name: str = "measurement"
+    inputs: Mapping[str, Array] = field(default_factory=dict)
 
     def __init__(
-        self, t: ArrayLike, values: Mapping[str, ArrayLike], name: str = "measurement"
+        self,
+        t: ArrayLike,
+        values: Mapping[str, ArrayLike],
+        name: str = "measurement",
+        inputs: Mapping[str, ArrayLike] = MappingProxyType({}),
     ) -> None:
         times = real_numbers(f"{name}: t", t, "s")
         if times.ndim != 1 or not times.size:
@@ -55,20 +69,18 @@ class Measurement:
                 f"{name}: t[{k}] = {times[k]} s is not after t[{k - 1}] = {times[k - 1]} s: sort "
                 "the rows by time, and give each time once"
             )
-        columns = {}
-        for column, given in values.items():
-            array = np.array(given, float)
-            if array.shape != times.shape:
-                count = counted(len(times), "time")
-                raise ValueError(f"{name}: {column} has shape {array.shape}, but t has {count}")
-            if np.isinf(array).any():
-                raise ValueError(f"{name}: {column} is infinite: write NaN where there is no value")
-            columns[column] = array
+        columns, held = (_columns(name, times, part) for part in (values, inputs))
+        for column, array in held.items():
+            if np.isnan(array[:-1]).any():
+                raise ValueError(
+                    f"{name}: the input {column} has gaps: it needs a value at each time"
+                )
         if not any(np.isfinite(array).any() for array in columns.values()):
             raise ValueError(f"{name} holds no measured value: give a column besides t")
         object.__setattr__(self, "t", times)
         object.__setattr__(self, "values", columns)
         object.__setattr__(self, "name", name)
+        object.__setattr__(self, "inputs", held)
 
     @property
     def count(self) -> int:
@@ -87,8 +99,68 @@ class Measurement:
     def between(self, begin: float, end: float) -> "Measurement":
         """The part from a time up to another, which is not included."""
         part = (self.t >= begin) & (self.t < end)
-        values = {name: column[part] for name, column in self.values.items()}
-        return Measurement(self.t[part], values, self.name)
+        values, inputs = (
+            {name: column[part] for name, column in columns.items()}
+            for columns in (self.values, self.inputs)
+        )
+        return Measurement(self.t[part], values, self.name, inputs)
+
+    def with_inputs(self, names: Collection[str], interpolation: Interpolation) -> "Measurement":
+        """The same with the columns of these names as inputs, and gaps of them filled.
+
+        They are held from each value to the next one; or they change linearly between values, of
+        which the mean acts from each time to the next one.
+        """
+        if interpolation not in (kinds := get_args(Interpolation)):
+            raise ValueError(f"inputs = {shortened(interpolation)}: give one of {', '.join(kinds)}")
+        inputs = dict(self.inputs)
+        for name in [name for name in self.values if name in names]:
+            column = self.values[name]
+            known = np.isfinite(column)
+            if not known.any() or (interpolation == "held" and not known[0]):
+                place = "any time" if not known.any() else f"the first time, t = {self.t[0]:g} s"
+                raise ValueError(f"{self.name}: the input {name} has no value at {place}: give one")
+            if interpolation == "held":
+                inputs[name] = column[np.maximum.accumulate(np.where(known, range(len(column)), 0))]
+            else:
+                filled = np.interp(self.t, self.t[known], column[known])
+                inputs[name] = np.append((filled[:-1] + filled[1:]) / 2, filled[-1])
+        others = {name: column for name, column in self.values.items() if name not in names}
+        return Measurement(self.t, others, self.name, inputs)
+
+    def held(self, module: GeneratedModule, params: Array) -> Array | None:
+        """All inputs, shape (inputs, times), of which others are those of `params`; or None."""
+        if not self.inputs:
+            return None
+        names, table = input_names(module), np.empty((len(input_names(module)), len(self.t)))
+        for row, name, constant in zip(table, names, params[-len(names) :], strict=True):
+            row[:] = self.inputs.get(name, constant)
+        return table
+
+
+def check_inputs(runs: Sequence[Measurement]) -> None:
+    """Raise `ValueError` where a run lacks an input that another one has."""
+    for run in runs:
+        if missing := sorted({*runs[0].inputs} ^ {*run.inputs}):
+            without, other = (runs[0], run) if missing[0] in run.inputs else (run, runs[0])
+            raise ValueError(
+                f"{without.name} has no column of the input {missing[0]}, which {other.name} has: "
+                "give it, with zeros if the input did not act, or leave it out of all runs"
+            )
+
+
+def _columns(name: str, times: Array, values: Mapping[str, ArrayLike]) -> dict[str, Array]:
+    """Columns as arrays, with as many values as there are times; NaN in gaps."""
+    columns = {}
+    for column, given in values.items():
+        array = np.array(given, float)
+        if array.shape != times.shape:
+            count = counted(len(times), "time")
+            raise ValueError(f"{name}: {column} has shape {array.shape}, but t has {count}")
+        if np.isinf(array).any():
+            raise ValueError(f"{name}: {column} is infinite: write NaN where there is no value")
+        columns[column] = array
+    return columns
 
 
 @dataclass(frozen=True)

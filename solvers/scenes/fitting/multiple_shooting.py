@@ -4,6 +4,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,13 @@ from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import compiled_loop, python_loop
 from solvers.integration.problem import validation
+from solvers.integration.problem.inputs import Schedule
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
 from solvers.integration.results.outcome import Outcome
 
-#: Method and tolerances.
-METHOD, RTOL, ATOL = "verner853", 1e-9, 1e-9
+#: Method, that with inputs, between changes of which steps are short, and tolerances.
+METHOD, METHOD_WITH_INPUTS, RTOL, ATOL = "verner853", "dp54", 1e-9, 1e-9
 #: Most steps of a segment: parameters that make a motion wild are not tried for long.
 MOST_STEPS = 10_000
 #: Samples of all motions below which threads take longer than they save.
@@ -41,15 +43,25 @@ class Segment:
     end: float
     first: int  # index of its first sample in the run
     times: Array  # of its samples
+    changes: Array  # times up to which inputs act, if these change
+    inputs: Array  # of shape (changes, inputs)
 
 
-def segments(run: int, t: Array, cuts: Sequence[int]) -> list[Segment]:
-    """The parts of a run with sample times `t`, which begin at the samples `cuts`."""
-    ends = [*cuts[1:], len(t)]
-    return [
-        Segment(run, t[first], t[min(end, len(t) - 1)], first, t[first:end])
-        for first, end in zip(cuts, ends, strict=True)
-    ]
+def segments(run: int, t: Array, cuts: Sequence[int], inputs: Array | None = None) -> list[Segment]:
+    """The parts of a run with sample times `t`, which begin at the samples `cuts`.
+
+    `inputs`, of shape (inputs, times), act from each sample to the next one.
+    """
+    parts = []
+    for first, stop in zip(cuts, [*cuts[1:], len(t)], strict=True):
+        last = min(stop, len(t) - 1)
+        changes, values = np.empty(0), np.empty((0, 0))
+        if inputs is not None:  # a run of one sample ends at its only change
+            changes, values = t[first + 1 : last + 1], inputs.T[first:last]
+            if not len(changes):
+                changes, values = t[first : first + 1], inputs.T[first : first + 1]
+        parts.append(Segment(run, t[first], t[last], first, t[first:stop], changes, values))
+    return parts
 
 
 @dataclass(frozen=True)
@@ -86,7 +98,9 @@ class MultipleShooting:
     ) -> None:
         self._unknown, self._n = [*unknown], len(module.STATE)
         times = [time for segment in segments for time in (segment.begin, segment.end)]
-        options = Options(METHOD, "sensitivity", RTOL, ATOL, max_steps=MOST_STEPS)
+        changes = max(len(segment.changes) for segment in segments)
+        method = METHOD_WITH_INPUTS if changes else METHOD
+        options = Options(method, "sensitivity", RTOL, ATOL, max_steps=MOST_STEPS + changes)
         problem = validation.problem_at_rest(module, (min(times), max(times)), options)
         if problem.form.switching_count:
             raise ValueError(
@@ -101,6 +115,8 @@ class MultipleShooting:
         self._samples: Array = np.full(self.missing.shape, np.inf)
         self._samples[~self.missing] = np.concatenate([segment.times for segment in segments])
         self._begins, self._ends = np.array([(s.begin, s.end) for s in segments]).T
+        self._segments, self._has_inputs = [*segments], changes > 0
+        self._last: tuple[Array, Array, Arcs] | None = None
 
     @property
     def times(self) -> Array:
@@ -109,6 +125,8 @@ class MultipleShooting:
 
     def __call__(self, nodes: Array, params: Array) -> Arcs:
         """The motions from nodes of shape (segments, state); `NoResidualsError` if one ends."""
+        if self._last and all(map(np.array_equal, self._last[:2], (nodes, params))):
+            return self._last[2]  # those of the minimum are asked for again
         lanes, n, count = self._directions, self._n, len(nodes)
         sizes = np.ones(lanes)
         sizes[n:] = np.where(params[self._unknown] == 0, 1.0, np.abs(params[self._unknown]))
@@ -124,7 +142,9 @@ class MultipleShooting:
         y = np.where(self.missing[:, :, np.newaxis], nodes[:, np.newaxis], states)
         ends = ends.reshape(count, lanes, 2 * n)
         ends_by = np.moveaxis(ends[:, :, n:], 1, 2) / sizes
-        return Arcs(np.moveaxis(y, 1, 2), by, ends[:, 0, :n], ends_by)
+        arcs = Arcs(np.moveaxis(y, 1, 2), by, ends[:, 0, :n], ends_by)
+        self._last = nodes.copy(), params.copy(), arcs
+        return arcs
 
     def _compiled(self, starts: Array, columns: list[Array]) -> tuple[Array, Array, Array]:
         """States and perturbations of all motions at samples, and both at ends."""
@@ -134,6 +154,8 @@ class MultipleShooting:
         batch = Batch(self._program, problem, starts, capacity=capacity)
         batch.motions["t"] = np.repeat(self._begins, lanes)
         batch.set_times(np.repeat(self._ends, lanes), np.repeat(self._samples, lanes, axis=0))
+        if self._has_inputs:
+            batch.hold(*self._held)
         batch.restart()
         if batch.rows.size < FEW:
             batch.run()
@@ -150,6 +172,16 @@ class MultipleShooting:
         perturbations = batch.rows["z"][:, :, shared[0] : shared[-1] + 1]
         return states.reshape(-1, capacity, self._n), perturbations, batch.ordinary(batch.motions)
 
+    @cached_property
+    def _held(self) -> tuple[Array, Array, NDArray[np.intp]]:
+        """Ends of held inputs, their values, and the index of the first ones of each motion."""
+        ends, values = list[Array](), list[Array]()
+        for segment in self._segments:
+            ends.append(np.append(segment.changes, np.nan))
+            values.append(np.concatenate([segment.inputs, segment.inputs[-1:]]))
+        firsts = np.cumsum([0, *map(len, ends[:-1])])
+        return np.concatenate(ends), np.concatenate(values), np.repeat(firsts, self._directions)
+
     def _in_python(self, starts: Array, columns: list[Array]) -> tuple[Array, Array, Array]:
         rows = np.zeros((len(starts), self._samples.shape[1], starts.shape[1]))
         ends = np.empty_like(starts)
@@ -160,6 +192,11 @@ class MultipleShooting:
             span = (float(self._begins[own]), float(self._ends[own]))
             problem = self._problem.with_params(values)
             problem = replace(problem, start=start, span=span, samples=times)
+            if self._has_inputs:
+                segment = self._segments[own]
+                samples = np.append(span[0], segment.changes[:-1])
+                schedule = Schedule(problem.form.module, samples, segment.inputs.T, None)
+                problem = replace(problem, schedule=schedule)
             outcome = Outcome.at_start(problem)
             python_loop.run(problem, outcome)
             if outcome.status is not Status.FINISHED:

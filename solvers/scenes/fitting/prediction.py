@@ -7,12 +7,13 @@ import numpy as np
 
 from solvers.equations.number_checks import Array
 from solvers.integration.integrate import integrate
+from solvers.integration.problem.inputs import Held
 from solvers.io.suggestion import counted
 from solvers.scenes.fitting.estimate import estimate
 from solvers.scenes.fitting.experiment import Experiment, unwrapped
 from solvers.scenes.fitting.fitted_model import Fit
 from solvers.scenes.fitting.least_squares import NotConvergedError
-from solvers.scenes.fitting.measurement import Measurement, wrapped
+from solvers.scenes.fitting.measurement import Measurement, check_inputs, wrapped
 
 #: Part of a run that is kept back, from which a prediction's start is estimated, and blocks whose
 #: means give the standard error of a difference between models.
@@ -54,6 +55,7 @@ def predicted(fit: Fit, run: Measurement, begin: float | None = None) -> Predict
 
     `ValueError` where the run has no values later, `NotConvergedError` where the motion has none.
     """
+    check_inputs([fit.runs[0], run])
     module, t, table = fit.outputs.module, run.t, unwrapped(fit.outputs, run)
     begin = float(t[0] + START * (t[-1] - t[0])) if begin is None else begin
     if not np.isfinite(table[:, t >= begin]).any():
@@ -65,7 +67,11 @@ def predicted(fit: Fit, run: Measurement, begin: float | None = None) -> Predict
     experiment = Experiment(fit.outputs, [known], (), fit.estimate.params)
     start = estimate(experiment, fit.estimate.starts[0], np.empty(0)).starts[0]
     span = (float(t[0]), float(t[-1]))
-    motion = integrate(module, span, start, fit.params, t_eval=t, rtol=1e-10, atol=1e-10)
+    held = run.held(module, fit.estimate.params)
+    inputs = None if held is None else Held(t, held)
+    motion = integrate(
+        module, span, start, fit.params, inputs=inputs, t_eval=t, rtol=1e-10, atol=1e-10
+    )
     y = np.full((len(module.STATE), len(t)), np.nan)
     y[:, : motion.y.shape[1]] = motion.y
     values = fit.outputs.values(t, y, fit.estimate.params.tolist())

@@ -48,7 +48,7 @@ static int change_inputs(Lanes *lanes, int lane)
     const Task *task = lanes->task;
     Motion *motion = &lanes->motion;
     const int64_t held = (int64_t)LANE(motion->held, lane) + 1;
-    if (held >= task->holds) {
+    if (held >= task->holds || isnan(task->hold_ends[held])) {
         return 0;
     }
     for (int64_t u = 0; u < task->inputs; u++) {

@@ -33,7 +33,7 @@ typedef struct {
     real jacobians;             /* evaluations of the Jacobian */
     real reductions;            /* consecutive failures, each of which shortens the step */
     real t_end;                 /* or the end of the inputs in params, if these are held */
-    real held;                  /* number of times that held inputs have changed */
+    real held;                  /* index of the values of held inputs that are in params */
     real min_h;                 /* shortest step */
     real longest;               /* longest accepted step */
     real last_switch;           /* time at which signs of switching functions changed last */
@@ -99,7 +99,7 @@ typedef struct {
     int64_t holds;              /* number of values that held inputs have, one after the other */
     int64_t first_input;        /* index of the first input in params, and number of inputs */
     int64_t inputs;
-    const double *hold_ends;    /* time at which each value ends */
+    const double *hold_ends;    /* time at which each value ends; NaN behind the last of a motion */
     const double *hold_values;  /* values of all inputs, one after the other */
 } Task;
 
