@@ -1,7 +1,9 @@
 """Inputs during an integration: constant, held between samples, or functions of the state."""
 
 import re
+import runpy
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -322,3 +324,19 @@ def test_a_run_that_resumes_has_the_shortest_step_of_its_times() -> None:
     assert batch.motions["min_h"][0] == shortest_step(0.0, 1.0)
     batch.resume(replace(problem, span=(1.0, 1e6)))
     assert batch.motions["min_h"][0] == shortest_step(1.0, 1e6)
+
+
+def test_errors_of_computed_torque_decay_as_those_of_a_damped_spring() -> None:
+    example = Path(__file__).parents[2] / "notebooks" / "gallery" / "computed_torque.py"
+    values = runpy.run_path(str(example))
+    arm, start, times = values["arm"], values["start"], np.linspace(0, 0.3, 31)
+    torques = Held(0.0005, values["computed_torque"])
+    motion = integrate(arm, (0, 0.3), start, {}, inputs=torques, t_eval=times)
+    error = motion.y[0] - np.array([values["path"](t)[0][0] for t in times])
+    # e'' + 40 e' + 400 e = 0; torques are those of the sample before
+    assert_allclose(error, 0.2 * (1 + 20 * times) * np.exp(-20 * times), atol=2e-3)
+    late = {name: distance[400:].max() for name, distance in values["errors"].items()}
+    exact, loaded, alone = sorted(late, key=late.__getitem__)
+    assert (exact, alone) == ("computed torque", "feedback alone")
+    assert 100 * late[exact] < late[loaded] < late[alone] / 2
+    assert late[exact] < 5e-4
