@@ -19,8 +19,9 @@ from solvers.scenes.fitting.multiple_shooting import NoResidualsError
 #: Iterations, and halvings of a step.
 MOST_ITERATIONS, MOST_HALVINGS = 100, 12
 #: Decrease of the sum of squares by a step, as a part of it and for each value, and gaps in units
-#: of the state, below which the iteration ends.
-DECREASE, ROUNDING, CLOSED = 1e-12, 1e-12, 1e-8
+#: of the state, below which the iteration ends. With N values, unknowns then change by less than
+#: √(1e-10 N) of their errors, 0.001 of 10,000 values.
+DECREASE, ROUNDING, CLOSED = 1e-10, 1e-12, 1e-8
 #: Decrease below which it may stagnate: values change by a thirtieth of their errors.
 STAGNANT = 1e-3
 
