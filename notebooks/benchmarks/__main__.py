@@ -94,8 +94,10 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
             crossings = events.figures(module, peer("heyoka"))
             return crossings, events.summary(crossings)
         case "fits":
-            programs = fits.figures(module, peer)
-            return programs, fits.summary(programs)
+            driven = fits.torque_figures(fits.arm_with_friction())
+            free = fits.figures(module, peer)
+            lines = [*fits.summary(driven), "", *fits.summary(free)]
+            return {"torques": driven, "free": free}, lines
         case "pipelines":
             rows = pipeline.pipelines(module, peer, timing.chain, timing.mechanics)
             return rows, [*pipeline.summary(rows), ""]

@@ -1,11 +1,13 @@
-"""One fit of a double pendulum by several programs, from the same guesses to the same minimum.
+"""Fits by several programs, from the same guesses to the same minimum.
 
-Other programs use single shooting with `scipy.optimize.least_squares`: SciPy with finite
-differences, by its own integration and by our compiled loop, and diffrax with derivatives by JAX.
-The motion is one on which single shooting converges.
+One is of a double pendulum, the other of a robot's arm with measured torques. Other programs use
+single shooting with `scipy.optimize.least_squares`: SciPy with finite differences, by its own
+integration and by our compiled loop, and diffrax with derivatives by JAX. The motions are such that
+single shooting converges.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -17,6 +19,7 @@ from scipy.optimize import least_squares
 from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule, with_functions
 from solvers.integration.integrate import integrate
+from solvers.integration.problem.inputs import Held
 from solvers.io.text_table import text_table
 from solvers.scenes.fitting.fitted_model import fitted
 from solvers.scenes.fitting.measurement import Measurement, Outputs
@@ -31,6 +34,10 @@ UNKNOWN = ("m2", "l1", "l2")
 TRUTH, GUESS = {"m2": 0.7, "l1": 1.3, "l2": 0.9}, {"m2": 0.72, "l1": 1.32, "l2": 0.92}
 #: Tolerance of all integrations: with it minima agree to a hundredth of the standard errors.
 TOLERANCE = 1e-8
+#: Samples of the arm's run over the same duration, noise in rad, and its parameters.
+SAMPLES, ARM_NOISE, ARM_START = 5000, 0.002, (-1.5, 0.1, 0.0, 0.0)
+ARM = {"m1": 2.2, "m2": 1.2, "I1": 0.05, "I2": 0.02, "b1": 0.35, "b2": 0.08}
+ARM_GUESS = {name: 1.03 * value for name, value in ARM.items()}
 
 
 def figures(module: GeneratedModule, peer: Callable[[str], Any]) -> dict[str, Any]:
@@ -56,6 +63,7 @@ def figures(module: GeneratedModule, peer: Callable[[str], Any]) -> dict[str, An
         differences[name] = float(np.max(np.abs(values - best) / result.errors))
     return {
         "values": run.count,
+        "unknown": len(UNKNOWN),
         "differences": differences,
         "seconds": median_times(programs, 20.0),
     }
@@ -68,6 +76,68 @@ def measurement(module: GeneratedModule) -> tuple[Array, dict[str, Array]]:
     motion = integrate(module, (0, END), START, params, t_eval=t, rtol=1e-11, atol=1e-11)
     noise = NOISE * np.random.default_rng(0).normal(size=(2, len(t)))
     return t, dict(zip(module.COORDINATES, motion.y[:2] + noise, strict=True))
+
+
+def arm_with_friction() -> GeneratedModule:
+    """The two-link arm with viscous friction in its joints."""
+    from sympy import symbols
+
+    from derive import Parameter, load, velocity
+    from solvers.app.modules import build
+
+    system, joints = load("two_link_arm"), symbols("b1 b2", positive=True)
+    friction = [Parameter(b, "N m s", 0.1, "friction of a joint") for b in joints]
+    terms = [b * velocity(q) ** 2 / 2 for b, q in zip(joints, system.q, strict=True)]
+    parameters = [*system.parameters, *friction]
+    changes = {"parameters": parameters, "dissipation": terms[0] + terms[1]}
+    return build(replace(system, name="arm_with_friction", **changes))
+
+
+def run_with_torques(module: GeneratedModule) -> Measurement:
+    """Angles and torques of a run of the arm, whose motors swing it about its lowest position."""
+
+    def torques(t: float, y: Array) -> tuple[float, float]:
+        first = -np.pi / 2 + 0.8 * np.sin(1.3 * t) + 0.3 * np.sin(3.1 * t)
+        second = 0.9 * np.sin(1.7 * t) - 0.4 * np.sin(2.3 * t)
+        return 60 * (first - y[0]) - 6 * y[2], 15 * (second - y[1]) - 1.5 * y[3]
+
+    t = np.linspace(0, END, SAMPLES)
+    held = Held(END / (SAMPLES - 1), torques)
+    motion = integrate(module, (0, END), ARM_START, ARM, inputs=held, t_eval=t, rtol=1e-11)
+    noise = ARM_NOISE * np.random.default_rng(0).normal(size=(2, SAMPLES))
+    values = dict(zip(module.COORDINATES, motion.y[:2] + noise, strict=True))
+    table = np.asarray(motion.inputs)
+    return Measurement(t, values, inputs=dict(zip(module.INPUTS, table, strict=True)))
+
+
+def torque_figures(module: GeneratedModule) -> dict[str, Any]:
+    """The same of the arm, beside SciPy over our compiled loop."""
+    run = run_with_torques(module)
+    outputs = Outputs(module.COORDINATES, ("rad", "rad"), module)
+    params = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True)) | ARM_GUESS
+    ours = partial(fitted, outputs, [run], tuple(ARM), params, np.array(ARM_START), {})
+    held = Held(run.t, np.array([*run.inputs.values()]))
+    measured = np.array([*run.values.values()])
+
+    def residuals(unknown: Array) -> Array:
+        values = dict(zip(ARM, unknown.tolist(), strict=False))
+        start = unknown[len(ARM) :].tolist()
+        tol = TOLERANCE
+        motion = integrate(
+            module, (0, END), start, values, inputs=held, t_eval=run.t, rtol=tol, atol=tol
+        )
+        return np.asarray((motion.y[:2] - measured).ravel() / ARM_NOISE)
+
+    first, result = np.array([*ARM_GUESS.values(), *ARM_START]), ours()
+    scipy = partial(_fit, residuals, "2-point", first)
+    best = np.array([result.params[name] for name in ARM])
+    difference = float(np.max(np.abs(scipy().x[: len(ARM)] - best) / result.errors))
+    return {
+        "values": run.count,
+        "unknown": len(ARM),
+        "differences": {"holonomic": 0.0, "SciPy, compiled loop": difference},
+        "seconds": median_times({"holonomic": ours, "SciPy, compiled loop": scipy}, 20.0),
+    }
 
 
 def _fit(residuals: Callable[[Array], Array], jacobian: Any, first: Array) -> Any:
@@ -133,7 +203,7 @@ def _diffrax(module: GeneratedModule, t: Array, data: Array, diffrax: Any, jax: 
 def summary(results: Mapping[str, Any]) -> Iterator[str]:
     """Lines of the times, and how much longer other programs take."""
     seconds = results["seconds"]
-    yield f"fit of {len(UNKNOWN)} parameters and a start to {results['values']} values"
+    yield f"fit of {results['unknown']} parameters and a start to {results['values']} values"
     rows = [
         (name, time * 1e3, time / seconds["holonomic"], results["differences"][name])
         for name, time in seconds.items()
