@@ -218,7 +218,8 @@ class Derivation(StepByStep):
         Parameters
         ----------
         unknown : sequence of str, optional
-            Names of the unknown parameters; by default all. The start of a motion is unknown, too.
+            Names of the unknown parameters; by default all. The start of a motion is unknown, too;
+            inputs are known functions of time.
         outputs : sequence of sympy.Expr, number or str, optional
             Measured functions of state, parameters and time, or names: components of the state,
             ``energy``, and positions of the masses, ``x1``, ``y1``, ``x2`` ...; by default the

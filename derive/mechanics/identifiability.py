@@ -2,8 +2,8 @@
 
 Outputs of a motion determine as many combinations of the unknown parameters and initial states as
 their Taylor coefficients in time have independent derivatives (A. Sedoglavic, Journal of Symbolic
-Computation 33 (2002) 735-755). The rank is computed exactly, modulo a prime, at random points, so
-that it is wrong with a probability below 1e-6 only.
+Computation 33 (2002) 735-755). Inputs are known, and have random coefficients. The rank is computed
+exactly, modulo a prime, at random points, so that it is wrong with a probability below 1e-6 only.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,6 +28,7 @@ from derive.formulas.evaluation.residues import (
     solved,
     without,
 )
+from derive.system.prescribed import motions
 from derive.system.symbols import TIME
 from derive.system.system import System
 from solvers.io.suggestion import counted
@@ -189,7 +190,8 @@ class _MotionSeries:
     ) -> None:
         self._system, self._point = system, point
         self._columns = [*system.q, *system.qdot, *unknown]
-
+        prescribed = {s for parts in motions(system.inputs).values() for s in parts}
+        self._varying = {*system.u} - prescribed
         self._numbers = parameters | {s: point.residue(s) for s in (*system.q, *system.qdot, TIME)}
 
     def derivatives(
@@ -201,7 +203,10 @@ class _MotionSeries:
         """Derivatives of the Taylor coefficients of the outputs, in echelon form."""
         n, rank, rows = len(self._system.q), -1, Rows()
         accelerations = [np.zeros((1 + len(self._columns), 0), np.int64)] * n
-        while len(rows) > rank:  # a derivative that adds no rank is followed by none that does
+        # a derivative that adds no rank is followed by none that does, unless inputs change
+        most = len(self._columns)
+        orders = most if self._varying else 0
+        while len(rows) < most and (len(rows) > rank or accelerations[0].shape[1] < orders):
             rank = len(rows)
             evaluation = self._evaluation(accelerations)
             series = [evaluation(output).rows for output in outputs]
@@ -221,6 +226,8 @@ class _MotionSeries:
                 rows[1 + self._columns.index(symbol), 0] = 1
             if symbol == TIME:
                 rows[0, 1:2] = 1
+            if symbol in self._varying:
+                rows[0, 1:] = [self._point.residue((symbol, k)) for k in range(1, length)]
             known[symbol] = ResidueSeries(rows)
         pairs = zip(self._system.q, self._system.qdot, accelerations, strict=True)
         for q, velocity, acceleration in pairs:

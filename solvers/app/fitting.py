@@ -261,12 +261,12 @@ def _identifiable(
     module: GeneratedModule,
     unknown: tuple[str, ...],
     outputs: tuple[str, ...],
-    absent: tuple[str, ...],
+    known: tuple[tuple[str, float], ...],
 ) -> "Identifiability":
     from derive import Derivation
     from derive.mechanics.specialisation import specialised
 
-    system = specialised(system_of(module), dict.fromkeys(absent, 0.0))
+    system = specialised(system_of(module), dict(known))
     return Derivation(system).identifiable(unknown, outputs)
 
 
@@ -294,9 +294,10 @@ def _unknown(
     # a mass or length of 0 is absent
     exist = [name for name in parameters if values[name] or name not in module.POSITIVE]
     names = list(exist if requested is None else dict.fromkeys(requested))
-    others = [name for name in inputs if name not in measured]
-    absent = [name for name in (*parameters, *others) if not values[name] and name not in names]
-    result = _identifiable(module, tuple(names), outputs.names, tuple(absent))
+    absent = {name: 0.0 for name in parameters if not values[name] and name not in names}
+    constant = {name: values[name] for name in inputs if name not in measured}
+    known = tuple((absent | constant).items())
+    result = _identifiable(module, tuple(names), outputs.names, known)
     if requested is not None and result.groups:
         raise ValueError(
             f"{', '.join(outputs.names)} cannot determine these unknown parameters: "

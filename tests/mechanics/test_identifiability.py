@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive import Coordinate, Derivation, Parameter, PointMass, System, load, velocity
+from derive import Coordinate, Derivation, Input, Parameter, PointMass, System, load, velocity
 from derive.formulas.evaluation.residue_values import Evaluation, RandomResidues
 from derive.formulas.evaluation.residues import (
     PRIME,
@@ -15,6 +15,7 @@ from derive.formulas.evaluation.residues import (
     echelon,
     null_space,
 )
+from derive.mechanics.specialisation import specialised
 from derive.system.parts import SystemDefinitionError
 
 x = sp.Symbol("x", real=True)
@@ -143,3 +144,15 @@ def test_unknown_names_are_refused_with_the_nearest() -> None:
         derivation.identifiable(["L1"])
     with pytest.raises(SystemDefinitionError, match="did you mean 'theta1'"):
         derivation.identifiable(outputs=["thet1"])
+
+
+def test_inputs_that_change_determine_more_than_constant_ones() -> None:
+    g, i = sp.symbols("g i", real=True)
+    k = sp.Symbol("k", positive=True)
+    hoist = System("hoist", "A load that a motor lifts", [Coordinate(x, "m", "height")],
+        [Parameter(s, "1", 1.0, "a number") for s in (m, k, g)], [PointMass(m, (x, 0))],
+        potential=m * g * x, forces=[k * i], inputs=[Input(i, "A", "current")])  # fmt: skip
+    assert lines(hoist, unknown=["k", "g"]) == ["k, g: determined"]
+    assert lines(hoist) == ["g: determined", "m, k: only as k/m; give one of them a value"]
+    (constant,) = lines(specialised(hoist, {"i": 2.0}), unknown=["k", "g"])
+    assert constant.startswith("k, g: only as")
