@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "a0a0d7c6117fae04"
+DIGEST = "21cd5567cb095106"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
@@ -152,6 +152,10 @@ LINKS = (
     ("rail", (10, 11)),
     ("rod", (12, 13, 14, 15)),
 )
+VARIABLES = {
+    "accelerations": ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot"),
+    "mass_matrix": ("theta1", "theta2", "theta3"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions", "points",

@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "52a98488ea060134"
+DIGEST = "0a1f7c6e4f4afcc0"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -120,6 +120,10 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "m3", "l1", "l2", "l3", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "m3", "l1", "l2", "l3")
+VARIABLES = {
+    "accelerations": ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot"),
+    "mass_matrix": ("theta1", "theta2", "theta3"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions",

@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "2a2be2f4d00aecfe"
+DIGEST = "c0f664195a46b5d2"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -94,6 +94,9 @@ POSITIVE = ("m", "J", "a")
 MULTIPLIERS = ("skate",)
 RESIDUALS = ("skate",)
 LINKS = (("rod", (0, 1)),)
+VARIABLES = {
+    "accelerations": ("theta", "x_dot", "y_dot", "theta_dot"), "mass_matrix": ("theta",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "constraints",

@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "d58085ae8c2a7651"
+DIGEST = "3eb650db123c53ae"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -113,6 +113,7 @@ PARAMETERS: tuple[str, ...] = ("m", "l", "k", "d", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m", "l", "k", "d")
 LINKS = (("rod", (0, 1)), ("rod", (2, 3)), ("spring", (1, 3)))
+VARIABLES = {"accelerations": ("theta1", "theta2"), "mass_matrix": ()}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "points",

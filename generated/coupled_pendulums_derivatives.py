@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "d58085ae8c2a7651"
+DIGEST = "3eb650db123c53ae"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

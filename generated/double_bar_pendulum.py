@@ -74,7 +74,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_bar_pendulum"
-DIGEST = "5429d44df7a8bb9c"
+DIGEST = "d49a6b01aca43e63"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -97,6 +97,10 @@ PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "l1", "l2")
 LINKS = (("rod", (0, 1, 2)),)
+VARIABLES = {
+    "accelerations": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
+    "mass_matrix": ("theta1", "theta2"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions", "points",

@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_pendulum"
-DIGEST = "19272a3d7583286b"
+DIGEST = "c9db18f51f3bebc4"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -94,6 +94,10 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "l1", "l2", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 2.0, 2.0, 9.81)
 POSITIVE = ("m1", "m2", "l1", "l2")
+VARIABLES = {
+    "accelerations": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
+    "mass_matrix": ("theta1", "theta2"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "reactions", "mass_matrix",

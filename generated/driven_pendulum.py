@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "0238cd07714377ae"
+DIGEST = "faef11811731c156"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -79,6 +79,7 @@ PARAMETERS: tuple[str, ...] = ("m", "l", "a", "Omega", "c", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 0.1, 100.0, 0.0, 9.81)
 POSITIVE = ("m", "l")
 LINKS = (("rod", (0, 1)),)
+VARIABLES = {"accelerations": ("theta", "theta_dot"), "mass_matrix": ()}
 TIMED = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "power", "positions", "points",
     "hamiltonian_state", "rhs_hamiltonian", "jacobian_hamiltonian", "energy_hamiltonian",

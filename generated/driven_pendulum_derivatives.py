@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "0238cd07714377ae"
+DIGEST = "faef11811731c156"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

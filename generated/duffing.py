@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "1c038ac326ed0397"
+DIGEST = "876ca5242b2318d6"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -66,6 +66,7 @@ PARAMETERS: tuple[str, ...] = ("m", "k", "beta", "c", "F", "Omega")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 0.1, 0.2, 1.0)
 POSITIVE = ("m",)
 LINKS = (("spring", (0, 1)), ("plate", (2, 3, 4, 5)))
+VARIABLES = {"accelerations": ("x", "x_dot"), "mass_matrix": ()}
 TIMED = (
     "rhs", "parameter_jacobian", "energy", "power", "rhs_hamiltonian", "energy_hamiltonian",
     "rhs_variational", "rhs_sensitivity",

@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "d7f110537cf2b4de"
+DIGEST = "7b56ba3436cf7dc5"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -84,6 +84,9 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "k", "l", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 100.0, 1.0, 9.81)
 POSITIVE = ("m", "k", "l", "r")
+VARIABLES = {
+    "accelerations": ("r", "theta", "r_dot", "theta_dot"), "mass_matrix": ("r",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "rhs_hamiltonian",

@@ -94,7 +94,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "017b81837932efcb"
+DIGEST = "079c598808cb8a15"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -111,6 +111,9 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "l", "g", "Omega", "latitude")
 DEFAULTS: tuple[float, ...] = (28.0, 67.0, 9.81, 7.292e-05, 0.8527)
 POSITIVE = ("m", "l")
+VARIABLES = {
+    "accelerations": ("x", "y", "x_dot", "y_dot"), "mass_matrix": ("x", "y"),
+}
 TIMED = ("positions",)
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "hamiltonian_state",

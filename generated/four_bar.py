@@ -88,7 +88,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "c956e9a0ef96fab2"
+DIGEST = "05a127f674756ae2"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -115,6 +115,10 @@ POSITIVE = ("a", "b", "c", "d", "m1", "m2", "m3")
 MULTIPLIERS = ("B_x", "B_y")
 RESIDUALS = ("B_x", "B_y", "B_x_dot", "B_y_dot")
 LINKS = (("rod", (0, 1)), ("rod", (1, 2)), ("rod", (3, 4)))
+VARIABLES = {
+    "accelerations": ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot"),
+    "mass_matrix": ("phi", "psi"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "constraints",

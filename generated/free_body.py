@@ -93,7 +93,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "free_body"
-DIGEST = "cfaa70155a85bec6"
+DIGEST = "ba4508e015f5412c"
 COORDINATES = ("w", "x", "y", "z")
 STATE = ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot")
 FORMS = ("lagrangian", "variational", "sensitivity")
@@ -121,6 +121,10 @@ LINKS = (
     ("plate", (0, 4, 5, 1)),
     ("plate", (3, 7, 6, 2)),
 )
+VARIABLES = {
+    "accelerations": ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot"),
+    "mass_matrix": ("w", "x", "y", "z"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = ("points",)
 OPERATIONS = {

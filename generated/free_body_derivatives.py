@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "cfaa70155a85bec6"
+DIGEST = "ba4508e015f5412c"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "c394b51d297eb5d8"
+DIGEST = "59ededc50af58c9c"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -102,6 +102,9 @@ INPUTS = ("tau",)
 DEFAULTS: tuple[float, ...] = (0.1, 0.3, 0.2, 9.81, 0.004, 0.001, 0.0)
 POSITIVE = ("m", "L", "l", "I", "J")
 LINKS = (("rod", (0, 1)), ("rod", (1, 2)))
+VARIABLES = {
+    "accelerations": ("theta", "alpha_dot", "theta_dot"), "mass_matrix": ("theta",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "input_jacobian", "parameter_jacobian", "energy", "mass_matrix",

@@ -83,7 +83,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "80c050407e3ba19f"
+DIGEST = "9a861dd8ed39a2be"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -115,6 +115,10 @@ LINKS = (
     ("wheel", (0, 7, 8)),
     ("rod", (9, 10)),
 )
+VARIABLES = {
+    "accelerations": ("beta", "alpha_dot", "beta_dot", "gamma_dot"),
+    "mass_matrix": ("beta",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "points",

@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "5a1e9e82ce336085"
+DIGEST = "e3db4880b0506810"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -106,6 +106,10 @@ PARAMETERS: tuple[str, ...] = ("m", "l", "A", "C", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 0.3, 0.02, 0.01, 9.81)
 POSITIVE = ("m", "l", "A", "C")
 LINKS = (("rod", (0, 1)), ("wheel", (1, 2, 3)))
+VARIABLES = {
+    "accelerations": ("theta", "phi_dot", "psi_dot", "theta_dot"),
+    "mass_matrix": ("theta",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions", "points",

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "f810fc8d459269a2"
+DIGEST = "ba759f153a4fc5d7"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")
@@ -66,6 +66,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ()
 DEFAULTS: tuple[float, ...] = ()
 POSITIVE = ()
+VARIABLES = {"accelerations": ("x", "y"), "mass_matrix": ()}
 TIMED = ()
 CALLS_FUNCTIONS = ()
 OPERATIONS = {

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "f810fc8d459269a2"
+DIGEST = "ba759f153a4fc5d7"
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "54bf690ae053d315"
+DIGEST = "4dbf20be2049d332"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
@@ -111,6 +111,10 @@ POSITIVE = ("m", "R", "k")
 MULTIPLIERS = ("ground_along", "ground_across")
 RESIDUALS = ("ground_along", "ground_across")
 LINKS = (("wheel", (0, 1, 2)),)
+VARIABLES = {
+    "accelerations": ("psi", "phi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot"),
+    "mass_matrix": ("psi", "phi"),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "constraints",

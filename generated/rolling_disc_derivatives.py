@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "54bf690ae053d315"
+DIGEST = "4dbf20be2049d332"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "6284beb77c088a9c"
+DIGEST = "3a313eaaf9ee40c6"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -75,6 +75,7 @@ PARAMETERS: tuple[str, ...] = ("m", "R", "Omega", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 4.0, 9.81)
 POSITIVE = ("m", "R")
 LINKS = (("ring", (0, 1, 2)),)
+VARIABLES = {"accelerations": ("theta",), "mass_matrix": ()}
 TIMED = ("positions", "points")
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "points",

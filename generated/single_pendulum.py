@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "087fd355ca21acad"
+DIGEST = "ed307174195dff13"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -73,6 +73,7 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "l", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 2.0, 9.81)
 POSITIVE = ("m", "l")
+VARIABLES = {"accelerations": ("theta",), "mass_matrix": ()}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "reactions", "positions",

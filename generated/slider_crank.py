@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "slider_crank"
-DIGEST = "6011996a96c811d8"
+DIGEST = "843e2799a0bed093"
 COORDINATES = ("phi",)
 STATE = ("phi", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -116,6 +116,7 @@ LINKS = (
     ("rail", (0, 3)),
     ("plate", (4, 5, 6, 7)),
 )
+VARIABLES = {"accelerations": ("phi", "phi_dot"), "mass_matrix": ("phi",)}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "outputs", "outputs_jacobian",

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "6011996a96c811d8"
+DIGEST = "843e2799a0bed093"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

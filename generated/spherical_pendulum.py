@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "9644189024f2cfcb"
+DIGEST = "d984ba763e081d10"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -84,6 +84,9 @@ STATES = {
 PARAMETERS: tuple[str, ...] = ("m", "l", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 9.81)
 POSITIVE = ("m", "l")
+VARIABLES = {
+    "accelerations": ("theta", "theta_dot", "phi_dot"), "mass_matrix": ("theta",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "mass_matrix", "positions",

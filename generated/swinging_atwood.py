@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "2ad849bf90bd12b9"
+DIGEST = "19af3084f7393a45"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -85,6 +85,9 @@ PARAMETERS: tuple[str, ...] = ("M", "m", "g")
 DEFAULTS: tuple[float, ...] = (3.0, 1.0, 9.81)
 POSITIVE = ("M", "m", "r")
 LINKS = (("thread", (0, 1, 2, 3)), ("ring", (1, 4, 5)), ("ring", (2, 6, 7)))
+VARIABLES = {
+    "accelerations": ("r", "theta", "r_dot", "theta_dot"), "mass_matrix": ("r",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "parameter_jacobian", "energy", "positions", "points",

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "2ad849bf90bd12b9"
+DIGEST = "19af3084f7393a45"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

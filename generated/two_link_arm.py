@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "4dcf4240e7bcb34c"
+DIGEST = "167812a8ce85b5f7"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -105,6 +105,9 @@ DEFAULTS: tuple[float, ...] = (0.4, 0.3, 0.2, 0.15, 2.0, 1.0, 0.03, 0.01, 9.81, 
 POSITIVE = ("l1", "l2", "c1", "c2", "m1", "m2", "I1", "I2")
 OUTPUTS = ("x", "y")
 LINKS = (("rod", (0, 1)), ("rod", (1, 2)))
+VARIABLES = {
+    "accelerations": ("q1", "q2", "q1_dot", "q2_dot"), "mass_matrix": ("q2",),
+}
 TIMED = ()
 CALLS_FUNCTIONS = (
     "rhs", "jacobian", "input_jacobian", "parameter_jacobian", "outputs",

@@ -63,6 +63,11 @@ class Function:
         """Whether the result depends on time."""
         return TIME.name in self.lowering.inputs
 
+    def variables_of(self, outputs: slice) -> tuple[str, ...]:
+        """Names of the components of the state that some entries of the result depend on."""
+        inputs = self.lowering.inputs_of(self.lowering.outputs[outputs])
+        return tuple(name for name in self.state if name in inputs)
+
     @property
     def cost(self) -> str:
         """The number of operations, in words."""

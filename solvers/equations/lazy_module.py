@@ -5,7 +5,7 @@ from types import ModuleType
 from typing import Any
 
 #: Attributes that depend on the content of all functions.
-OF_ALL = ("DIGEST", "TIMED", "CALLS_FUNCTIONS", "OPERATIONS", "__file__")
+OF_ALL = ("DIGEST", "VARIABLES", "TIMED", "CALLS_FUNCTIONS", "OPERATIONS", "__file__")
 
 
 class LazyModule(ModuleType):

@@ -73,6 +73,8 @@ class GeneratedModule(Protocol):
     @property
     def CALLS_FUNCTIONS(self) -> tuple[str, ...]: ...  # that call the mathematical library
     @property
+    def VARIABLES(self) -> Mapping[str, tuple[str, ...]]: ...  # of accelerations and mass_matrix
+    @property
     def TIMED(self) -> tuple[str, ...]: ...  # functions that depend on time
 
     def rhs(self, t: float, y: Numbers, params: Numbers) -> tuple[float, ...]: ...

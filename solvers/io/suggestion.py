@@ -2,7 +2,7 @@
 
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 #: Names of the step size, of which functions and files know one.
@@ -25,6 +25,12 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 def counted(number: int, noun: str) -> str:
     """A number and a noun, which is in the plural unless the number is 1."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a sentence lists them: with "and" before the last one."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def shortened(value: object) -> str:

@@ -17,7 +17,7 @@ from solvers.runge_kutta.continuous_extension import ContinuousExtension
 from solvers.runge_kutta.lagrange import lagrange
 from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start, UnsolvedError
 from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
-from solvers.runge_kutta.tableau import Tableau
+from solvers.runge_kutta.tableau import Splitting, Tableau
 
 Array = NDArray[np.float64]
 Rhs = Callable[[float, Array], Array]
@@ -91,6 +91,9 @@ class Stepper:
         if tableau.needs_jacobian:
             self._newton = Newton(tableau, self.derivative, self._slopes, rtol, atol)
             self._at_start = lagrange(self._c, np.zeros(1))[0]
+        self._drifts = np.empty(0)
+        if isinstance(tableau, Splitting):
+            self._drifts = np.array(tableau.drifts, dtype=float)
         self._parallel_stages = None
         if tableau.is_parallel:
             self._parallel_stages = ParallelStages(tableau, rtol, atol)
@@ -143,6 +146,8 @@ class Stepper:
         if self._newton:
             assert not isinstance(last, Polynomial)
             return self._implicit(self._newton, Start(t, y, h), first, last)
+        if self._tableau.is_splitting:
+            return self._kicks_and_drifts(t, y, h, first)
         k = self._explicit(t, y, h, first)
         end = y + h * (self._b @ k)
         error = h * (self._error_weights @ k) if self._tableau.b_hat else np.zeros((1, len(y)))
@@ -178,6 +183,19 @@ class Stepper:
         for i in range(1, len(self._b)):
             k[i] = self.derivative(t + self._c[i] * h, y + h * (self._A[i, :i] @ k[:i]))
         return k
+
+    def _kicks_and_drifts(self, t: float, y: Array, h: float, first: Array) -> StepResult:
+        """The step of a splitting, of which stages are states before kicks."""
+        n, b, d = len(y) // 2, self._b, self._drifts
+        k, (q, v) = np.empty((len(b), len(y))), (y[:n], y[n:])
+        k[0] = first
+        for i in range(1, len(b)):
+            velocity = v + h * (b[:i] @ k[:i, n:])
+            position = q + h * (d[:i] @ k[:i, :n] + d[i] * velocity)
+            k[i] = self.derivative(t + self._c[i] * h, np.concatenate([position, velocity]))
+        end = y + h * np.concatenate([d @ k[:, :n], b @ k[:, n:]])
+        # positions do not change after the last stage
+        return StepResult(end, np.zeros((1, len(y))), np.concatenate([end[n:], k[-1, n:]]), k=k)
 
     def _implicit(
         self, newton: Newton, start: Start, first: Array, last: NewtonStages | None

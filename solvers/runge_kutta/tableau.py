@@ -5,17 +5,37 @@ from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property
+from itertools import accumulate, pairwise
 from operator import sub
+from typing import NamedTuple
 
 import numpy as np
 
 from solvers.runge_kutta.collocation import is_collocation, quadrature_order
-from solvers.runge_kutta.order_conditions import WORKING_DIGITS, Number, order
+from solvers.runge_kutta.order_conditions import (
+    WORKING_DIGITS,
+    Matrix,
+    Number,
+    nystrom_order,
+    order,
+)
 
 #: A decimal with more digits is a rounded one, a shorter one is exact.
 LONG = 20
 #: Coefficients of R(z) below this are rounding errors of decimals, and count as 0.
 ROUNDING = 1e-25
+
+
+class StateWeights(NamedTuple):
+    """Weights of a part of the state, and stage matrices of the nodes of trees in turn.
+
+    `linear` is that of `solvers.runge_kutta.order_conditions.alternating_trees`; None for all
+    trees.
+    """
+
+    b: tuple[Number, ...]
+    matrices: tuple[Matrix, ...]
+    linear: int | None
 
 
 @dataclass(frozen=True)
@@ -107,6 +127,21 @@ class Tableau:
             return tuple(tuple(map(sub, self.b, weights)) for weights in embedded)
 
     @property
+    def state_weights(self) -> tuple[StateWeights, ...]:
+        """Weights of the whole state, or of its halves if they differ."""
+        return (StateWeights(self.b, (self.A,), None),)
+
+    @property
+    def is_splitting(self) -> bool:
+        """Whether it is of kicks and drifts, for accelerations of positions alone."""
+        return False
+
+    @property
+    def takes_any_form(self) -> bool:
+        """Whether it integrates every form of the equations, not Lagrange's only."""
+        return not self.needs_jacobian
+
+    @property
     def is_explicit(self) -> bool:
         """Whether each stage needs earlier ones only."""
         return all(a == 0 for i, row in enumerate(self.A) for a in row[i:])
@@ -171,6 +206,119 @@ class Tableau:
         # a stage with zero weight adds no power of z
         degree = max((k for k, x in enumerate(numerator) if abs(float(x)) > ROUNDING), default=0)
         return numerator[: degree + 1], denominator
+
+
+@dataclass(frozen=True)
+class Splitting(Tableau):
+    """Kicks and drifts in turn: a symplectic, explicit method for q' = v, v' = a(t, q).
+
+    A step kicks the velocities, by b h a(t, q), and drifts the positions, by d h v, in turn: `b`
+    are the kicks, and `drifts` the drift before each of them, 0 before the first one. Both are
+    exact flows of parts of the Hamiltonian, so that a step preserves phase space as the motion does
+    (E. Hairer, Ch. Lubich, G. Wanner, Geometric Numerical Integration, sections II.5, VI.3). The
+    acceleration at its end is that at the start of the next one.
+
+    A stage is the state before a kick. Its velocities have the stage matrix A, b below the
+    diagonal, and its positions `position_matrix`, drifts up to the diagonal: a pair of tableaus
+    (the same book, section II.2).
+
+    Examples
+    --------
+    >>> leapfrog = Splitting.symmetric("Leapfrog", kicks="1/2", drifts="1")
+    >>> [str(b) for b in leapfrog.b], [str(d) for d in leapfrog.drifts], leapfrog.order
+    (['1/2', '1/2'], ['0', '1'], 2)
+    """
+
+    drifts: tuple[Number, ...] = ()
+
+    @classmethod
+    def symmetric(cls, title: str, kicks: str, drifts: str) -> "Splitting":
+        """A splitting that is the same backwards, by its first half up to the middle.
+
+        Kicks and drifts alternate, first a kick. Numbers are as in `Tableau.explicit`.
+        """
+        numbers = f"{kicks} {drifts}".split()
+        rounded = any(len(number) > LONG and "/" not in number for number in numbers)
+        read = _decimal if rounded else Fraction
+        return cls._mirrored(title, [*map(read, kicks.split())], [*map(read, drifts.split())])
+
+    @classmethod
+    def composition(cls, title: str, factors: str) -> "Splitting":
+        """Leapfrog steps of these parts of a step, and backwards but for the last one."""
+        with localcontext(prec=WORKING_DIGITS):
+            drifts = [*map(_decimal, factors.split())]
+            kicks = [drifts[0] / 2, *((x + y) / 2 for x, y in pairwise(drifts))]
+        return cls._mirrored(title, kicks, drifts)
+
+    @classmethod
+    def _mirrored(
+        cls, title: str, kicks: Sequence[Number], drifts: Sequence[Number]
+    ) -> "Splitting":
+        middle = slice(-2 if len(kicks) > len(drifts) else None, None, -1)
+        other = slice(-2 if len(kicks) == len(drifts) else None, None, -1)
+        zero = kicks[0] - kicks[0]
+        b, d = (*kicks, *kicks[middle]), (zero, *drifts, *drifts[other])
+        A = tuple((*b[:i], *[zero] * (len(b) - i)) for i in range(len(b)))
+        return cls(title, A, b, drifts=d)
+
+    @property
+    def position_matrix(self) -> Matrix:
+        """Stage matrix of the positions."""
+        d, s = self.drifts, self.stages
+        return tuple((*d[: i + 1], *[d[0]] * (s - i - 1)) for i in range(s))
+
+    @cached_property
+    def c(self) -> tuple[Number, ...]:
+        """Nodes: the sums of the drifts."""
+        with localcontext(prec=WORKING_DIGITS):
+            return tuple(accumulate(self.drifts))
+
+    @cached_property
+    def order(self) -> int:
+        """Order for q' = v, v' = a(t, q), by the order conditions of these equations."""
+        return nystrom_order(self.A, self.b, self.position_matrix, self.drifts)
+
+    @property
+    def state_weights(self) -> tuple[StateWeights, ...]:
+        """Weights of the positions, and of the velocities."""
+        return (
+            StateWeights(self.drifts, (self.A, self.position_matrix), 0),
+            StateWeights(self.b, (self.position_matrix, self.A), 1),
+        )
+
+    @property
+    def is_splitting(self) -> bool:
+        """Whether it is of kicks and drifts."""
+        return True
+
+    @property
+    def takes_any_form(self) -> bool:
+        """Whether it integrates every form; a splitting needs states (q, q̇)."""
+        return False
+
+    @property
+    def is_fsal(self) -> bool:
+        """Whether the acceleration at the last stage is the first of the next step."""
+        return True
+
+    @cached_property
+    def half_trace(self) -> tuple[Number, ...]:
+        """Half the trace of a step of q'' = -ω²q, as coefficients of powers of (hω)²."""
+        with localcontext(prec=WORKING_DIGITS):
+            one = self.b[0] - self.b[0] + 1
+            q, v = [(one,), ()], [(), (one,)]  # q and h v, by those at the start
+            for kick, drift in zip(self.b, self.drifts, strict=True):
+                q = [_sum(x, y, drift) for x, y in zip(q, v, strict=True)]
+                v = [_sum(y, (0 * one, *x), -kick) for x, y in zip(q, v, strict=True)]
+            trace = _sum(q[0], v[1], one)
+            return tuple(x / 2 for x in trace)
+
+
+def _sum(p: Sequence[Number], q: Sequence[Number], factor: Number) -> tuple[Number, ...]:
+    """The polynomial p + factor q."""
+    length = max(len(p), len(q))
+    p, q = ((*x, *[0 * factor] * (length - len(x))) for x in (p, q))
+    return tuple(x + factor * y for x, y in zip(p, q, strict=True))
 
 
 def _decimal(text: str) -> Decimal:

@@ -6,6 +6,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, has_perturbation
 from solvers.equations.number_checks import real_numbers
+from solvers.integration.problem.validation import check_splitting
 from solvers.io.suggestion import did_you_mean
 from solvers.player.sampled_motion import curves_of
 from solvers.runge_kutta.method_catalogue import SCIPY, load
@@ -40,6 +41,8 @@ def check_method(
         return
     if not isinstance(method, str):
         raise ValueError(f"method = {str(method)[:50]} must be text in quotes")
+    if load(method).is_splitting:
+        check_splitting(module, method, str(form or "lagrangian"))
     if load(method).needs_jacobian and form == "rational":
         raise ValueError(f"method = {method!r} needs a Jacobian: not form = 'rational'")
 

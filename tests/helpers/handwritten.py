@@ -19,6 +19,7 @@ def handwritten(
         "PARAMETERS": parameters,
         "DEFAULTS": (1.0,) * len(parameters),
         "POSITIVE": (),
+        "VARIABLES": {"accelerations": state},
         "TIMED": (),
         "CALLS_FUNCTIONS": (),
         "OPERATIONS": {"rhs": (0, 0)},

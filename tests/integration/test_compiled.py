@@ -29,7 +29,7 @@ from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.method_catalogue import load, names
 
-EXPLICIT = [name for name in names() if load(name).is_explicit]
+EXPLICIT = [name for name in names() if load(name).is_explicit and not load(name).is_splitting]
 FORMS = ("lagrangian", "hamiltonian", "rational")
 REPORT = (pi / 2, pi, 0.0, 0.0)
 

@@ -18,7 +18,7 @@ from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.order_conditions import Tree, density, trees
 from solvers.runge_kutta.stepper import Stepper
 
-SEQUENTIAL = [name for name in names() if not load(name).is_parallel]
+SEQUENTIAL = [m for m in names() if not load(m).is_parallel and not load(m).is_splitting]
 EXPLICIT = [name for name in names() if load(name).is_explicit]
 ORDERS = {"rk4": 3, "dp54": 4, "tsit54": 4, "dop853": 5, "verner853": 5, "verner98": 6, "radau7": 7}
 

@@ -226,4 +226,5 @@ def test_the_stability_study_has_fixed_steps_of_each_method_once(
     methods: list[str] = []
     monkeypatch.setattr(scene_stability, "critical_step", lambda name, *_: methods.append(name))
     scene_stability.SceneStability.of(find("report", load_module))
-    assert {*names()} - {*methods} == {"radau"}
+    left_out = {name for name in {*names()} - {*methods} if not load(name).is_splitting}
+    assert left_out == {"radau"}

@@ -22,7 +22,8 @@ from solvers.runge_kutta.stepper import Rhs, Stepper
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau
 
-EXPLICIT = [name for name in names() if load(name).is_explicit]
+RUNGE_KUTTA = [name for name in names() if not load(name).is_splitting]
+EXPLICIT = [name for name in RUNGE_KUTTA if load(name).is_explicit]
 
 #: Properties that the docstring of a method states, as published.
 STATEMENT = re.compile(
@@ -87,7 +88,7 @@ def test_coefficients_that_can_be_exact_are(name: str) -> None:
 
 
 @pytest.mark.long("more cases of the same kind", keep=12)
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", RUNGE_KUTTA)
 def test_a_mistake_in_any_coefficient_loses_the_order(name: str) -> None:
     method = load(name)
     # in rounded decimals the fifteenth significant digit: beyond what a float would show
@@ -146,7 +147,7 @@ def one_step(name: str, rhs: Rhs, y: list[float], jacobian: Rhs | None = None) -
     return stepper.step(0.0, start, 1.0, stepper.derivative(0.0, start))[0]
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", RUNGE_KUTTA)
 def test_one_step_multiplies_by_the_stability_function(name: str) -> None:
     # as a black box: y' = λy for complex λ, written as two real equations
     numerator, denominator = (

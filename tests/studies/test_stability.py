@@ -30,9 +30,10 @@ from solvers.studies.stability.critical_step import CriticalStep, critical_step,
 from solvers.studies.stability.stability_plots import boundaries
 
 F = Fraction
+RUNGE_KUTTA = [name for name in names() if not load(name).is_splitting]
 
 
-@pytest.mark.parametrize("method", names())
+@pytest.mark.parametrize("method", RUNGE_KUTTA)
 def test_a_step_of_the_linear_test_equation_multiplies_by_the_stability_function(
     method: str,
 ) -> None:
@@ -46,7 +47,7 @@ def test_a_step_of_the_linear_test_equation_multiplies_by_the_stability_function
         assert complex(*end) == pytest.approx(complex(function(z)), rel=1e-12)
 
 
-@pytest.mark.parametrize("method", names())
+@pytest.mark.parametrize("method", RUNGE_KUTTA)
 def test_the_stability_function_agrees_with_the_exponential_to_the_order(method: str) -> None:
     tableau, function = load(method), StabilityFunction.of(load(method))
     order = tableau.order
@@ -96,7 +97,7 @@ def test_intervals_are_those_of_the_textbooks() -> None:
         assert found[name].real_stability_interval == pytest.approx(interval, rel=1e-10), name
 
 
-@pytest.mark.parametrize("method", names())
+@pytest.mark.parametrize("method", RUNGE_KUTTA)
 def test_intervals_end_where_the_stability_function_leaves_the_unit_circle(method: str) -> None:
     function = StabilityFunction.of(load(method))
     for direction, interval in (
@@ -188,7 +189,7 @@ def test_without_a_scene_the_command_studies_where_methods_fail(
 
 
 @pytest.mark.long("critical steps of all methods")
-@pytest.mark.parametrize("method", [name for name in names() if not load(name).lower])
+@pytest.mark.parametrize("method", [name for name in RUNGE_KUTTA if not load(name).lower])
 def test_the_critical_step_is_what_the_interval_predicts(
     method: str, report_steps: dict[str, CriticalStep]
 ) -> None:

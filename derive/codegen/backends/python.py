@@ -388,6 +388,7 @@ def _constants(contents: Contents) -> str:
         **({"SWITCHES": _literal(map(str, switching))} if switching else {}),
         **({"INTEGRALS": _literal(map(str, integrals))} if integrals else {}),
         **({"FUNCTIONS": _literal(names)} if len(names) > len(functions) else {}),
+        "VARIABLES": _dict(_variables(functions)),
         "TIMED": _literal(f.name for f in functions if f.depends_on_time),
         "CALLS_FUNCTIONS": _literal(f.name for f in functions if f.lowering.library_functions),
         "OPERATIONS": _dict({f.name: repr(f.lowering.cost) for f in functions}),
@@ -395,6 +396,18 @@ def _constants(contents: Contents) -> str:
     }
     texts = [f'SYSTEM = "{system.name}"', f'DIGEST = "{DIGEST}"']
     return "\n".join([*texts, *(f"{k} = {v}" for k, v in tables.items())])
+
+
+def _variables(functions: Iterable[Function]) -> dict[str, str]:
+    """Components of the state that accelerations and the mass matrix depend on."""
+    rows = {}
+    for function in functions:
+        if function.name == "rhs":  # after the velocities
+            accelerations = slice(len(function.state) // 2, None)
+            rows["accelerations"] = _literal(function.variables_of(accelerations))
+        elif function.name == "mass_matrix":
+            rows["mass_matrix"] = _literal(function.variables_of(slice(None)))
+    return rows
 
 
 def _of_constraints(derivation: Derivation) -> dict[str, str]:
@@ -437,7 +450,7 @@ def _filled(start: str, items: Sequence[str], end: str) -> str:
         return line
     lines = [""]
     for item in items:
-        if len(lines[-1]) + len(item) > WIDTH - 6:
+        if lines[-1] and len(lines[-1]) + len(item) > WIDTH - 6:
             lines.append("")
         lines[-1] += f" {item}," if lines[-1] else f"{item},"
     rows = "\n".join(lines)

@@ -51,7 +51,10 @@ class Lowering:
     @cached_property
     def used(self) -> tuple[op.Operation, ...]:
         """The operations that the outputs depend on."""
-        numbers, pending = set(self.outputs), list(self.outputs)
+        return self._required(self.outputs)
+
+    def _required(self, outputs: Iterable[int]) -> tuple[op.Operation, ...]:
+        numbers, pending = set(outputs), list(outputs)
         while pending:
             new = set(self.operations[pending.pop()].operands) - numbers
             numbers |= new
@@ -61,7 +64,11 @@ class Lowering:
     @property
     def inputs(self) -> frozenset[str]:
         """Names of the leaves."""
-        return frozenset(o.name for o in self.used if isinstance(o, op.LeafOperation))
+        return self.inputs_of(self.outputs)
+
+    def inputs_of(self, outputs: Sequence[int]) -> frozenset[str]:
+        """Names of the leaves that some of the outputs depend on."""
+        return frozenset(o.name for o in self._required(outputs) if isinstance(o, op.LeafOperation))
 
     @property
     def functions(self) -> frozenset[str]:

@@ -49,10 +49,9 @@ class MethodChoice:
 
 
 def usual_form(module: GeneratedModule, method: str) -> str:
-    """The fastest form; Lagrange's for SciPy's methods and those that need a Jacobian."""
-    needs_jacobian = method in names() and load(method).needs_jacobian
-    is_ours = method == SERIES or method in names()
-    return fastest_form(module) if is_ours and not needs_jacobian else "lagrangian"
+    """The fastest form that a method takes; Lagrange's for SciPy's methods."""
+    takes_any = method == SERIES or (method in names() and load(method).takes_any_form)
+    return fastest_form(module) if takes_any else "lagrangian"
 
 
 @cache

@@ -11,12 +11,13 @@ from solvers.runge_kutta.parallel_stages import (
     legendre_matrix,
     symplectic_ratios,
 )
-from solvers.runge_kutta.tableau import Tableau
+from solvers.runge_kutta.tableau import Splitting, Tableau
 
 CONSTANTS = """\
 /* {title} */
 #define VARIES_ORDER {varies_order}
 enum {{ STAGES = {stages}, IS_FSAL = {is_fsal}, IS_EXPLICIT = {is_explicit} }};
+enum {{ IS_SPLITTING = {is_splitting} }};
 enum {{ ESTIMATES = {estimates}, ERROR_ORDER = {error_order} }};
 enum {{ ENDS = {ends}, LEAST_SAMPLES = {least_samples} }};
 """
@@ -41,7 +42,7 @@ static const double ERROR_POWER = {error_power};
 PARALLEL_FILES = ("stage_vectors.h", "parallel_stages.h", "parallel.h")
 
 #: Matrices of the continuous extension: columns of the first and last, rows of
-#: others. Each method of a family has a natural extension.
+#: others. Each method of a family has a natural extension, and each half of a splitting's state.
 EXTENSION = """\
 enum {{ DEGREE = {degree}, ROUNDS = {rounds}, EXTENSION_NODES = {nodes} }};
 static const int STAGES_OF[] = {{{stages}}};
@@ -49,7 +50,7 @@ static const double NATURAL[][STAGES + ENDS][DEGREE + 1] = {{
 {natural}
 }};
 static const double EXTENSION_C[EXTENSION_NODES] = {{{c}}};
-static const double FIRST[EXTENSION_NODES][STAGES] = {{
+static const double FIRST[][EXTENSION_NODES][STAGES] = {{
 {first}
 }};
 static const double INTEGRALS[EXTENSION_NODES][EXTENSION_NODES] = {{
@@ -76,6 +77,11 @@ static inline void stages(
 {rows}    (void)t; (void)z; (void)h; (void)stage; (void)k; (void)params;
 }}"""
 
+SPLITTING = """\
+static const double KICKS[STAGES] = {kicks}, DRIFTS[STAGES] = {drifts};
+static const double NODES[STAGES] = {nodes};
+{splitting_h}"""
+
 STAGE = """\
     for (int n = 0; n < DIM; n++) {{
         stage[n] = z[n] + {sum};
@@ -92,6 +98,7 @@ def constants_text(tableau: Tableau) -> str:
         stages=tableau.stages,
         is_fsal=int(tableau.is_fsal),
         is_explicit=int(tableau.is_explicit),
+        is_splitting=int(tableau.is_splitting),
         ends=2 * tableau.needs_jacobian,
         estimates=len(tableau.error_weights),
         error_order=tableau.error_order,
@@ -107,10 +114,14 @@ def method_text(tableau: Tableau) -> str:
         files = {name: source(f"{name}.h") for name in IMPLICIT_FILES}
         return implicit(tableau, files)
     first, second, *_ = *tableau.error_weights, (), ()
-    sums = {"increment": tableau.b, "estimate": first, "second_estimate": second}
+    sums = {"estimate": first, "second_estimate": second}
+    if isinstance(tableau, Splitting):
+        solution = _splitting(tableau)
+    else:
+        solution, sums = _explicit(tableau), {"increment": tableau.b, **sums}
     return METHOD.format(
         sequential_h=source("sequential.h"),
-        solution=_explicit(tableau),
+        solution=solution,
         sums="\n".join(WEIGHTED_SUM.format(name=name, sum=_sum(w)) for name, w in sums.items()),
     )
 
@@ -122,6 +133,15 @@ def _explicit(tableau: Tableau) -> str:
         if i
     ]
     return EXPLICIT.format(rows="".join(rows))
+
+
+def _splitting(tableau: Splitting) -> str:
+    return SPLITTING.format(
+        kicks=row(tableau.b),
+        drifts=row(tableau.drifts),
+        nodes=row(tableau.c),
+        splitting_h=source("splitting.h"),
+    )
 
 
 def _parallel(tableau: Tableau) -> str:
@@ -140,19 +160,22 @@ def _parallel(tableau: Tableau) -> str:
 def extension_text(tableau: Tableau) -> str:
     """The continuous extension of a step."""
     extension, members = ContinuousExtension.of(tableau), tableau.members
-    degree = max(len(extension.natural) - 1, 3)  # as that of switching functions
+    degree = max(len(extension.naturals[0]) - 1, 3)  # as that of switching functions
     extensions = [ContinuousExtension.of(member) for member in members]
     ends = 2 * tableau.needs_jacobian
-    naturals = [one.with_ends if ends else elevated(one.natural, degree) for one in extensions]
-    naturals = [elevated(natural, degree) for natural in naturals]
+    naturals = [
+        (member.stages + ends, elevated(natural, degree))
+        for member, one in zip(members, extensions, strict=True)
+        for natural in ((one.with_ends,) if ends else one.naturals)
+    ]
     return EXTENSION.format(
         degree=degree,
-        stages=", ".join(str(member.stages + ends) for member in members),
+        stages=", ".join(str(stages) for stages, _ in naturals),
         rounds=extension.rounds,
         nodes=len(extension.nodes),
-        natural=",\n".join(f"{{{_rows(natural.T)}}}" for natural in naturals),
+        natural=",\n".join(f"{{{_rows(natural.T)}}}" for _, natural in naturals),
         c=", ".join(map(real, extension.nodes)),
-        first=_rows(extension.first),
+        first=",\n".join(f"{{{_rows(first)}}}" for first in extension.firsts),
         integrals=_rows(extension.integrals),
         extended=_rows(extension.extended.T),
         extension_h=source("extension.h"),

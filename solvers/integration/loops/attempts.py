@@ -86,7 +86,7 @@ class Accepted:
             yield curve(extension.with_ends @ np.vstack([*ends, step.stages.k]))
             return
         assert step.k is not None
-        yield curve(extension.natural @ step.k)
+        yield curve(extension.change(step.k))
         yield curve(self._extended)
 
     @cached_property

@@ -70,7 +70,7 @@ def select(problem: Problem, *, lanes: bool) -> tuple[Problem, Kernel | None]:
         warn_caller(f"integrating one motion after another in Python: {reason}")
     if reason:
         return problem, None
-    is_free = problem.options.form is None and not load(problem.options.method).needs_jacobian
+    is_free = problem.options.form is None and load(problem.options.method).takes_any_form
     compilable = problem.with_form(fastest_form(problem.form.module)) if is_free else problem
     try:
         return compilable, loop(compilable, lanes=lanes)

@@ -24,6 +24,7 @@ from solvers.equations.number_checks import (
     real_numbers,
     without_texts,
 )
+from solvers.equations.separability import coupling
 from solvers.equations.signature_checks import check_module
 from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import consistent, given_names, guesses
@@ -72,6 +73,13 @@ def problem(
         raise ValueError("atol can be an array in form 'lagrangian' only")
     if tableau is not None and tableau.needs_jacobian and not form.has_jacobian:
         raise ValueError(f"method {method!r} needs a Jacobian, which form {name!r} does not have")
+    if tableau is not None and tableau.is_splitting:
+        check_splitting(module, method, name)
+        if form.feedback:
+            raise ValueError(
+                f"method {method!r} needs accelerations that do not depend on velocities, on which "
+                "inputs that are a function may: hold the inputs between samples (solvers.Held)"
+            )
     check_times(options.t_eval, len(start))
     samples = None if options.t_eval is None else times(options.t_eval, span)
     events = event_functions(options.events, module)
@@ -103,6 +111,20 @@ def _with_inputs(
         return Form(module, form.name, form.params, feedback), None
     constants = given("inputs", module, values)
     return Form(module, form.name, (*form.params[: -len(constants)], *constants.tolist())), None
+
+
+def check_splitting(module: GeneratedModule, method: str, form: str) -> None:
+    """Refuse equations of which a splitting has not the accelerations by coordinates alone."""
+    if form != "lagrangian":
+        raise ValueError(
+            f"method {method!r} kicks velocities and moves coordinates in turn, for which form "
+            f"{form!r} is not: leave out form"
+        )
+    if reason := coupling(module):
+        raise ValueError(
+            f"method {method!r} needs accelerations that depend on coordinates and time alone, and "
+            f"{reason}; use a Gauss method, which is symplectic, too, such as 'gauss4'"
+        )
 
 
 def problem_at_rest(
@@ -253,7 +275,10 @@ def step_control(
     if options.h is None:
         rtol, atol = tolerances(options.rtol, options.atol, size)
         if tableau is not None and not tableau.estimates_error:
-            raise ValueError(f"method {method!r} does not estimate its error: give a fixed step h")
+            why = "does not estimate its error"
+            if tableau.is_splitting:
+                why = "keeps energies over long times since its steps are equal"
+            raise ValueError(f"method {method!r} {why}: give a fixed step h")
         return rtol, atol, None
     if tableau is None:
         raise ValueError(f"method {method!r} is SciPy's and controls its steps: leave out h")

@@ -30,10 +30,11 @@ class SceneStability:
     def of(cls, scene: Scene, report: Callable[[str], None] = lambda _: None) -> "SceneStability":
         """The critical steps of all methods, each reported before it is computed.
 
-        Fixed steps of a method with variable order are those of another method.
+        Fixed steps of a method with variable order are those of another method, and splittings have
+        no stability region.
         """
-        steps = []
-        for method in (name for name in names() if not load(name).lower):
+        steps, tableaus = [], {name: load(name) for name in names()}
+        for method in (m for m, t in tableaus.items() if not t.lower and not t.is_splitting):
             report(f"{scene.name}: {method}")
             steps.append(critical_step(method, scene.module, scene.params))
         return cls(scene, steps)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from solvers.equations.energy import EnergyUnit, energy_unit
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
+from solvers.equations.separability import coupling
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.timing import timed_run
 from solvers.runge_kutta.method_catalogue import SCIPY, load, names
@@ -38,6 +39,8 @@ def combinations(module: GeneratedModule) -> Iterator[Combination]:
     with_jacobian = [f for f in forms if Form(module, f, module.DEFAULTS).has_jacobian]
     for method in names():
         possible = with_jacobian if load(method).needs_jacobian else forms
+        if load(method).is_splitting:
+            possible = [] if coupling(module) else ["lagrangian"]
         yield from product([method], possible, ("compiled", "python"))
     yield from product(SCIPY, forms, ["scipy"])
 

@@ -124,7 +124,7 @@ class Sweep:
         """The form of the equations: variational where a map needs it, or with a Jacobian."""
         if any(one.is_variational for one in self.maps.values()):
             return "variational"
-        return "lagrangian" if load(self.method).needs_jacobian else fastest_form(self.module)
+        return fastest_form(self.module) if load(self.method).takes_any_form else "lagrangian"
 
     @property
     def samples(self) -> int:

@@ -6,10 +6,11 @@
    Where many samples lie in a step, LEAST_SAMPLES or more, this extension gives them, too.
 
    Defined before this file: of the natural extension DEGREE, and NATURAL, the Bernstein coefficients
-   of its weights for each method of a family, STAGES_OF of them; of the other one ROUNDS,
+   of its weights for each method of a family, or of a splitting for positions and for velocities,
+   STAGES_OF of them; of the other one ROUNDS,
    EXTENSION_NODES, the nodes EXTENSION_C, FIRST and INTEGRALS, the weights of the states at the
-   nodes in the first round and later, and EXTENDED, Bernstein coefficients; the method of a step,
-   member_of(), and the change of component n that belongs to stage m, stage_change(). */
+   nodes in the first round and later, and EXTENDED, Bernstein coefficients; which of the natural
+   weights are those of component n, weights_of(), and the change of component n that belongs to stage m, stage_change(). */
 
 enum { EXTENSION_DEGREE = ROUNDS > 0 ? EXTENSION_NODES : DEGREE };
 
@@ -102,8 +103,8 @@ static __attribute__((noinline)) mask has_several(
     const Event *event, const State *start, const State *end, const StepResult *result, real h,
     const real *params, real before, real after, real *coefficients)
 {
-    const int member = member_of(start), is_switch = event->is_switch != 0;
-    const int n = is_switch ? 0 : component_of(event);
+    const int is_switch = event->is_switch != 0, n = is_switch ? 0 : component_of(event);
+    const int own = weights_of(start, n);
     const real first = is_switch ? before : value_at_start(event, start, before);
     real steepness, distance;
     real given[DEGREE + 1];
@@ -113,14 +114,14 @@ static __attribute__((noinline)) mask has_several(
         for (int k = 0; k <= DEGREE; k++) {
             c[k] = is_switch ? PART(given[k], part) : PART(first, part);
         }
-        for (int m = 0; m < STAGES_OF[member] && !is_switch; m++) {
+        for (int m = 0; m < STAGES_OF[own] && !is_switch; m++) {
             half change = stage_change(end, result, &h, part, m, n);
             if (event->is_angle) {
                 change = event->cosine*change
                     - event->sine*stage_change(end, result, &h, part, m, n + 1);
             }
             for (int k = 1; k <= DEGREE; k++) {
-                c[k] += NATURAL[member][m][k]*change;
+                c[k] += NATURAL[own][m][k]*change;
             }
         }
         for (int k = 1; k < DEGREE; k++) {
@@ -155,11 +156,11 @@ static __attribute__((noinline)) void extend(
         const int terms = round == 0 ? STAGES : EXTENSION_NODES;
         real (*from)[DIM] = round == 0 ? own : changes;
         for (int i = 0; i < EXTENSION_NODES; i++) {
-            const double *weights = round == 0 ? FIRST[i] : INTEGRALS[i];
             memcpy(z[i], start->z, sizeof z[i]);
             for (int m = 0; m < terms; m++) {
                 for (int n = 0; n < DIM; n++) {
-                    z[i][n] += weights[m]*from[m][n];
+                    const double *first = FIRST[weights_of(start, n)][i];
+                    z[i][n] += (round == 0 ? first : INTEGRALS[i])[m]*from[m][n];
                 }
             }
         }

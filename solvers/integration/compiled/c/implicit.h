@@ -62,9 +62,10 @@ static inline double increment(const Method *method, double h, const double (*k)
     return sum;
 }
 
-/* The method of the step, of those of a family. */
-static inline int member_of(const State *start)
+/* Which natural weights are those of component n: those of the method of the step, of a family. */
+static inline int weights_of(const State *start, int n)
 {
+    (void)n;
     return VARIES_ORDER ? (int)start->order[0] : 0;
 }
 

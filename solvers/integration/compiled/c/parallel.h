@@ -29,9 +29,10 @@ static inline void collocate(
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
 }
 
-/* The method of the step, of those of a family. */
-static inline int member_of(const State *start)
+/* Which natural weights are those of component n: there is one method. */
+static inline int weights_of(const State *start, int n)
 {
+    (void)n;
     (void)start;
     return 0;
 }

@@ -1,6 +1,7 @@
 /* One step of an explicit method in every lane.
 
-   Defined before this file, beside that of step.h: the method, by STAGES, IS_FSAL, ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and second_estimate() where there are
+   Defined before this file, beside that of step.h: the method, by STAGES, IS_FSAL, IS_SPLITTING,
+   ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and second_estimate() where there are
    two. */
 
 #define HAS_POLYNOMIAL 0
@@ -19,11 +20,11 @@ static inline real squared_error_norm(
                          : squares[0]*squares[0]/(squares[0] + 0.01*squares[1] + 1e-300);
 }
 
-/* The method of the step, of those of a family. */
-static inline int member_of(const State *start)
+/* Which natural weights are those of component n: of a splitting, velocities have the second. */
+static inline int weights_of(const State *start, int n)
 {
     (void)start;
-    return 0;
+    return IS_SPLITTING && n >= DIM/2;
 }
 
 /* The change of component n that belongs to stage m, in one register of a real. */
@@ -32,6 +33,13 @@ static inline half stage_change(
 {
     (void)end;
     return PART(*h, part)*PART(result->k[m][n], part);
+}
+
+/* Component n of the derivative at the end, if the last stage has it: of a splitting its velocities
+   are those before the last kick. */
+static inline real last_derivative(const State *end, real (*k)[DIM], int n)
+{
+    return IS_SPLITTING && n < DIM/2 ? end->z[DIM/2 + n] : k[STAGES - 1][n];
 }
 
 /* The state after h; with step control also the norm of the estimated error. */
@@ -53,7 +61,7 @@ static __attribute__((noinline)) void step(
         move_component(start, end, n, increment(h, k, n));
     }
     for (int n = 0; n < DIM && IS_FSAL; n++) {
-        end->derivative[n] = k[STAGES - 1][n];
+        end->derivative[n] = last_derivative(end, k, n);
     }
     end->t = two_sum(start->t, h + start->t_low, &end->t_low);
     for (int n = 0; n < DIM && !task->fixed_h; n++) {
