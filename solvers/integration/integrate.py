@@ -69,7 +69,8 @@ def integrate(
         Without `accuracy`, the error of a step in a component may be atol + rtol * abs(y); in
         Lagrange's form `atol` may be an array of shape (state,). They are unused with fixed steps.
     h : float, optional
-        A fixed step size in s; methods without error estimate need one. The last step is
+        A fixed step size in s; methods without error estimate need one, as leapfrog and other
+        splittings, of systems whose accelerations depend on coordinates alone. The last step is
         shortened to end at the end of `t_span`.
     t_eval : array_like of shape (n,), optional
         Times in s of the states to return; by default the start and every step's end.
@@ -125,6 +126,9 @@ def integrate(
         When errors grow to the size of the motion before its end.
     solvers.integration.checks.energy_change.EnergyWarning
         When a motion that conserves its energy ends with another one.
+    solvers.integration.checks.energy_change.DriftWarning
+        When that energy drifts over 1000 fixed steps and more of an explicit method, by a
+        thousandth and more; it names a symplectic method.
     solvers.equations.singularities.mass_matrix.MassMatrixWarning
         When the mass matrix is nearly singular at the start, or where all coordinates are equal.
     solvers.equations.singularities.singular_configuration.SingularConfigurationWarning

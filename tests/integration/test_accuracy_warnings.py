@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from collections.abc import Callable
 from functools import partial
 from math import pi
 from types import ModuleType
@@ -16,7 +17,7 @@ import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 import generated.swinging_atwood as atwood
-from solvers.integration.checks.energy_change import EnergyWarning
+from solvers.integration.checks.energy_change import DriftWarning, EnergyWarning
 from solvers.integration.checks.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
@@ -165,3 +166,72 @@ def test_ignored_warnings_are_not_computed(monkeypatch: pytest.MonkeyPatch) -> N
         integrate(dp, (0, 60), REPORT, dp.DEFAULTS, rtol=1e-6)
     with pytest.raises(AssertionError):
         integrate(dp, (0, 60), REPORT, dp.DEFAULTS, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("module", "start", "method", "h", "steps", "named"),
+    [
+        (sp, (1.0, 0.0), "rk4", 0.1, 1500, "method = 'leapfrog4' with"),
+        (dp, (0.5, -0.4, 0.0, 0.0), "rk4", 0.12, 4000, "'gauss4', form = 'hamiltonian' with"),
+        (sp, (1.0, 0.0), "rk4", 0.1, 900, None),  # a shorter step costs little
+        (sp, (1.0, 0.0), "rk4", 0.02, 5000, None),  # the energy changes by less than a thousandth
+        (sp, (1.0, 0.0), "leapfrog", 0.1, 5000, None),  # its change, of a hundredth, stays bounded
+        (sp, (1.0, 0.0), "gauss1", 0.1, 5000, None),
+    ],
+)
+def test_a_drift_over_many_fixed_steps_warns_with_a_symplectic_method(
+    module: ModuleType,
+    start: tuple[float, ...],
+    method: str,
+    h: float,
+    steps: int,
+    named: str | None,
+) -> None:
+    span, params = (0, steps * h), module.DEFAULTS
+    starts = np.tile(start, (3, 1)).T
+
+    def texts(run: Callable[[], object]) -> list[str]:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            run()
+        return [str(one.message) for one in caught if one.category is DriftWarning]
+
+    found = texts(lambda: integrate(module, span, start, params, method=method, h=h))
+    of_many = texts(lambda: ensemble(module, span, starts, params, method=method, h=h))
+    prepared = prepare(module, params, method=method, h=h)
+    prepared(span, start)
+    if named is None:
+        assert not found
+        assert not of_many
+        assert not prepared.warnings
+    else:
+        for (text,) in (found, of_many, prepared.warnings):
+            assert named in text
+            assert "'rk4' is not symplectic" in text
+    assert ("3 of 3 motions" in str(of_many)) == (named is not None)
+
+
+@pytest.mark.parametrize(
+    ("module", "start", "h", "options"),
+    [
+        (sp, (1.0, 0.0), 0.1, {"method": "leapfrog4"}),
+        (dp, (0.5, -0.4, 0.0, 0.0), 0.12, {"method": "gauss4", "form": "hamiltonian"}),
+    ],
+)
+def test_the_suggested_method_keeps_the_energy_with_the_same_step(
+    module: ModuleType, start: tuple[float, ...], h: float, options: dict[str, str]
+) -> None:
+    def errors(**options: object) -> list[float]:
+        """Largest errors of the energy in each quarter of the run, relative to the motion's."""
+        span = (0, 4000 * h)
+        run = integrate(module, span, start, module.DEFAULTS, h=h, energy=True, **options)
+        depth = module.energy(0.0, np.zeros(len(start)), module.DEFAULTS)
+        error = np.abs(run.energy - run.energy[0]) / (run.energy[0] - depth)
+        return [float(part.max()) for part in np.array_split(error, 4)]
+
+    first, *_, last = errors(**options)
+    assert last == pytest.approx(first, rel=0.05)
+    assert last < 2e-5
+    with pytest.warns(DriftWarning):
+        first, *_, last = errors(method="rk4")
+    assert last > 2 * first > 1e-3

@@ -218,12 +218,13 @@ def energy_errors(periods: float, **options: object) -> np.ndarray:
     [1e4, pytest.param(1e6, marks=pytest.mark.long("a million periods of a pendulum"))],
 )
 def test_the_energy_error_stays_bounded_while_that_of_rk4_grows(name: str, periods: float) -> None:
-    h = 2.8 / 40 * load(name).stages if name != "leapfrog" else 0.05
-    error = np.abs(energy_errors(periods, method=name, h=min(h, 0.7), compensated=True))
-    first, last = error[:100].max(), error[-100:].max()
-    assert last < 1.05 * first + 1e-14
+    h = {"leapfrog": 0.05, "leapfrog4": 0.15, "leapfrog6": 0.3, "leapfrog8": 0.4}[name]
+    error = np.abs(energy_errors(periods, method=name, h=h, compensated=True))
+    # samples meet few of the peaks, so their root mean squares are compared; a drift doubles these
+    first, last = (np.sqrt(np.mean(half**2)) for half in np.array_split(error, 2))
+    assert last == pytest.approx(first, rel=0.2)
     drifting = np.abs(energy_errors(periods, method="rk4", h=0.05))
-    assert drifting[-1] > 50 * drifting[10]
+    assert drifting[-1] > 5 * max(drifting[100], error.max())
 
 
 def test_hoop_and_pendulums_keep_their_energies() -> None:

@@ -14,6 +14,7 @@ from solvers.io.text_table import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, ChaosResults, statistics
+from solvers.studies.failure_modes.conservation import Conservation, cost
 from solvers.studies.failure_modes.drift import CASES, EnergyDrift
 from solvers.studies.failure_modes.horizon import horizon, reference_motion
 from solvers.studies.failure_modes.largest_exponent import INDEPENDENT, Mean, lyapunov
@@ -24,6 +25,7 @@ def test_each_file_that_defines_a_study_is_found() -> None:
     names = [study.name for study in studies()]
     assert names == [
         "chaos",
+        "conservation",
         "drift",
         "oscillation",
         "separatrix",
@@ -32,7 +34,7 @@ def test_each_file_that_defines_a_study_is_found() -> None:
         "tolerances",
     ]
     full, small = studies(), studies(small=True)
-    assert sum(a != b for a, b in zip(full, small, strict=True)) == 5
+    assert sum(a != b for a, b in zip(full, small, strict=True)) == 6
 
 
 def test_tables_are_as_wide_as_their_cells() -> None:
@@ -122,6 +124,33 @@ def test_energy_drifts_steadily_with_rk_and_stays_bounded_with_gauss() -> None:
         else:
             assert found.exponent == pytest.approx(1.0, abs=0.1)
             assert abs(found.rate) * 2000 == pytest.approx(found.largest_error, rel=0.2)
+
+
+def test_splittings_conserve_energy_at_the_least_cost() -> None:
+    wanted = ("rk4", 60), ("leapfrog", 60), ("leapfrog4", 8), ("leapfrog6", 8), ("gauss4", 8)
+    study = Conservation(2000, tuple((method, "lagrangian", steps) for method, steps in wanted))
+    rk4, *kept = results = study.run(load)
+    assert rk4.exponent == pytest.approx(1, abs=0.1)
+    assert rk4.largest_error > 50 * rk4.early_error
+    for found in kept:
+        assert found.largest_error == pytest.approx(found.early_error, rel=0.2)
+    # in calls, which unlike times repeat: of orders 4 and 6 less than a third of rk4's and gauss4's
+    calls = {row.method: row.calls for row in results}
+    assert max(calls["leapfrog4"], calls["leapfrog6"]) < min(calls["rk4"], calls["gauss4"]) / 2.5
+    assert [row.method for row in results if row.largest_error < 1e-5] == ["leapfrog6", "gauss4"]
+    figure = study.plot(results)
+    for axes, name in zip(figure.axes, ("calls", "microseconds"), strict=True):
+        drawn = {line.get_label(): line.get_xydata() for line in axes.lines}
+        for row in results:
+            assert drawn[row.method].tolist() == [[getattr(row, name), row.largest_error]]
+        low, high = axes.get_xlim()
+        assert low < min(getattr(row, name) for row in results)
+        assert high > max(getattr(row, name) for row in results)
+    # between two runs, costs are interpolated on logarithmic axes; outside they are unknown
+    coarse = replace(kept[0], microseconds=2.0, largest_error=1e-2)
+    fine = replace(kept[0], microseconds=8.0, largest_error=1e-6)
+    assert cost([coarse, fine], 1e-4) == pytest.approx(4.0)
+    assert np.isnan(cost([coarse, fine], 1e-7))
 
 
 def test_both_forms_lose_accuracy_as_the_mass_matrix_becomes_singular() -> None:

@@ -4,10 +4,18 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.energy import conserves_energy
+from solvers.equations.separability import coupling
 from solvers.equations.singularities.mass_matrix import examined
-from solvers.integration.checks.energy_change import EnergyWarning, changed_energy
+from solvers.integration.checks.energy_change import (
+    LONG,
+    VISIBLE,
+    DriftWarning,
+    EnergyWarning,
+    changed_energy,
+)
 from solvers.integration.checks.predictability import (
     PredictabilityWarning,
     is_ignored,
@@ -15,6 +23,10 @@ from solvers.integration.checks.predictability import (
 )
 from solvers.integration.problem.problem import Problem
 from solvers.runge_kutta.stepper import Array
+from solvers.runge_kutta.tableau import Tableau
+
+#: The methods that are suggested for long motions: of separable systems, and of others.
+SPLITTING, GAUSS = "leapfrog4", "gauss4"
 
 
 def accuracy_warnings(problem: Problem, t: float, y: Array) -> Iterator[PredictabilityWarning]:
@@ -22,7 +34,8 @@ def accuracy_warnings(problem: Problem, t: float, y: Array) -> Iterator[Predicta
     if is_ignored():
         return
     if conserves_energy(problem.form.module):
-        energies = changed_energy(problem.form, problem.start[:, np.newaxis], y[:, np.newaxis])
+        ends = problem.start[:, np.newaxis], y[:, np.newaxis]
+        energies = changed_energy(problem.form, *ends)
         before, after, has_changed = (float(values[0]) for values in energies)
         if has_changed:
             yield EnergyWarning(
@@ -30,6 +43,11 @@ def accuracy_warnings(problem: Problem, t: float, y: Array) -> Iterator[Predicta
                 f"{after:.4g} J: its end is meaningless; {_remedy(problem)}"
             )
             return
+        if _drifts(problem, t) and changed_energy(problem.form, *ends, VISIBLE)[2][0]:
+            yield DriftWarning(
+                f"the energy of this motion, which is constant, drifted from {before:.6g} to "
+                f"{after:.6g} J: {_symplectic(problem)}"
+            )
     if problem.has_varying_inputs:  # the variational equations have constant ones
         return
     begin, until = problem.span[0], predictable_until(problem, t)
@@ -58,6 +76,13 @@ def ensemble_warnings(
                 f"ends are meaningless; {_remedy(problem)}"
             )
             return
+        drifted = changed_energy(form, starts.T, y.T, VISIBLE)[2] & _drifts(problem, t)
+        if drifted.any():
+            k = int(np.argmax(drifted))
+            yield DriftWarning(
+                f"the energy of {int(drifted.sum())} of {n} motions, which is constant, drifted, "
+                f"as from {before[k]:.6g} to {after[k]:.6g} J: {_symplectic(problem)}"
+            )
     if problem.has_varying_inputs:
         return
     limits, some = [], examined(n)
@@ -78,3 +103,28 @@ def ensemble_warnings(
 
 def _remedy(problem: Problem) -> str:
     return "reduce rtol and atol" if problem.h is None else f"reduce h = {problem.h}"
+
+
+def _drifts(problem: Problem, t: ArrayLike) -> NDArray[np.bool_]:
+    """Whether energies change in proportion to the time `t` in s: by many equal, explicit steps."""
+    h, method = problem.h, problem.method
+    if (
+        h is None
+        or not isinstance(method, Tableau)
+        or not method.is_explicit
+        or method.is_splitting
+    ):
+        return np.zeros(np.shape(t), bool)
+    return np.asarray(np.abs(np.asarray(t) - problem.span[0]) >= LONG * h)
+
+
+def _symplectic(problem: Problem) -> str:
+    """The method that keeps the energy with the same steps."""
+    module, method = problem.form.module, f"method = {SPLITTING!r}"
+    if coupling(module):
+        has_momenta = "hamiltonian" in module.FORMS
+        method = f"method = {GAUSS!r}" + ", form = 'hamiltonian'" * has_momenta
+    return (
+        f"{problem.options.method!r} is not symplectic, and errors of its steps add up; use "
+        f"{method} with a fixed step, whose errors of the energy do not"
+    )

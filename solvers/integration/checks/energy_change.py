@@ -8,6 +8,10 @@ from solvers.equations.forms import Form
 from solvers.integration.checks.predictability import PredictabilityWarning
 from solvers.runge_kutta.stepper import Array
 
+#: Part of the motion's energy, and number of steps, from which on its change is a drift that calls
+#: for another method. Errors of a symplectic method do not add up, and shorter steps that reduce a
+#: thousandth cost little in runs of fewer steps.
+VISIBLE, LONG = 1e-3, 1000
 #: The tolerable change, in units of the motion's energy. In 10,000 runs of twelve systems every
 #: larger change had errors above a tenth of the motion, and errors below 0.3 only at tolerances
 #: of 0.1.
@@ -16,6 +20,10 @@ TOLERABLE = 1.0
 
 class EnergyWarning(PredictabilityWarning):
     """The energy of a motion that conserves it has changed by more than itself."""
+
+
+class DriftWarning(PredictabilityWarning):
+    """The energy of a long motion drifts, as it does not by a symplectic method."""
 
 
 def energies(form: Form, y: Array) -> Array:

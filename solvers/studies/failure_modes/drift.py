@@ -1,11 +1,12 @@
 """Energy in long runs: Runge–Kutta methods lose it, symplectic methods keep it bounded."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from math import pi
 from operator import attrgetter
+from time import perf_counter
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -42,7 +43,7 @@ BLOCKS, LENGTH = 40, 3
 
 @dataclass(frozen=True)
 class Drift:
-    """Energy error of a long run; times are in periods of the slow mode."""
+    """Energy error and cost of a long run; times are in periods of the slow mode."""
 
     method: str
     form: str
@@ -53,28 +54,33 @@ class Drift:
     rate: float  # drift per period, from a straight line fitted to the whole run
     early_error: float  # the largest in the first hundredth of the run
     largest_error: float  # the largest in the whole run
+    calls: float  # of the right-hand side, per period
+    microseconds: float  # of a period, once the loop is compiled
 
 
 @ignore_predictability()
-def drift(pendulum: GeneratedModule, periods: float, case: Case) -> Drift:
-    """Energy error of the double pendulum over a number of periods of its slow mode."""
-    params, (method, form, steps) = pendulum.DEFAULTS, case
-    period = 2 * pi / Modes.at_rest(pendulum, params).frequencies[0]
+def drift(module: GeneratedModule, start: Sequence[float], periods: float, case: Case) -> Drift:
+    """Energy error of a system over a number of periods of its slow mode."""
+    params, (method, form, steps) = module.DEFAULTS, case
+    period = 2 * pi / Modes.at_rest(module, params).frequencies[0]
     h = period / steps
     # blocks hold whole periods, so that oscillations of the error are sampled completely
     blocks = np.logspace(0, np.log10(periods - LENGTH), BLOCKS) * steps
     ends = np.unique(blocks.astype(np.int64)[:, None] + np.arange(LENGTH * steps))
     solve = partial(integrate, method=method, form=form, h=h, energy=True, max_steps=10**9)
-    run = solve(pendulum, (0, periods * period), START, params, t_eval=h * np.array([0, *ends]))
+    solve(module, (0, h), start, params)  # compiles the loop
+    before = perf_counter()
+    run = solve(module, (0, periods * period), start, params, t_eval=h * np.array([0, *ends]))
+    costs = run.nfev / periods, 1e6 * (perf_counter() - before) / periods
     assert run.energy is not None
-    error = energy_error(pendulum, params, run.energy)
+    error = energy_error(module, params, run.energy)
     t = run.t / period
     largest = np.maximum.accumulate(np.abs(error))
     late = t >= periods / 100
     exponent = float(np.polyfit(np.log(t[late]), np.log(largest[late]), 1)[0])
     rate = float(np.polyfit(t, error, 1)[0])
     errors = float(largest[~late][-1]), float(largest[-1])
-    return Drift(method, form, steps, t, error, exponent, rate, *errors)
+    return Drift(method, form, steps, t, error, exponent, rate, *errors, *costs)
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,7 @@ class EnergyDrift(Study[list[Drift]]):
         pendulum = load("double_pendulum")
         with ThreadPoolExecutor() as pool:
             try:
-                return list(pool.map(partial(drift, pendulum, self.periods), self.cases))
+                return list(pool.map(partial(drift, pendulum, START, self.periods), self.cases))
             except KeyboardInterrupt:
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise
