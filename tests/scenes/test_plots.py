@@ -272,6 +272,23 @@ def test_a_section_has_a_panel_for_each_energy_and_a_colour_for_each_motion(
         assert len({tuple(line.get_color()) for line in panel.lines}) == 2
         assert "y" in panel.get_xlabel()
         assert r"\dot" in panel.get_ylabel()
+        # the points fill the axes
+        drawn_points = np.concatenate([points(line) for line in panel.lines])
+        spans = np.nanmax(drawn_points, axis=0) - np.nanmin(drawn_points, axis=0)
+        assert (spans > 0.8 * np.ptp([panel.get_xlim(), panel.get_ylim()], axis=1)).all()
+
+
+@pytest.mark.parametrize(("direction", "way"), [
+    ({}, "upwards"), ({"direction": -1}, "downwards"), ({"direction": 0}, "in both directions"),
+])  # fmt: skip
+def test_a_section_states_the_crossings(
+    direction: dict[str, int], way: str, tmp_path: Path
+) -> None:
+    values = {"x": 0.0, "x_dot": "energy", "energy": 0.1}
+    section = Section(("y", "y_dot"), 5, "x", **direction)
+    axes = Grid({"y": [0.1, 0.2]})
+    _, chart = drawn(tmp_path, axes, {"cut": section}, 60.0, module=hh, values=values)
+    assert chart.get_supxlabel() == f"crossings of $x$ = 0 m {way}"
 
 
 def test_angles_are_wrapped_to_half_a_turn_on_either_side() -> None:

@@ -43,7 +43,7 @@ from solvers.sweeps.definition.sweep_reading import find
     (('"final"\nof = ["theta1", "theta2"]', '"extremes"\nof = ["theta1_dot"]'),
      "theta1_dot is not a coordinate: extremes are those of theta1, theta2"),
     (("[maps.end]", '[maps.x]\nkind = "section"\ncount = 1\nwhere = "theta1"\n'
-      'direction = ["up"]\n[maps.end]'), "direction = .'up'. must be one of both"),
+      'direction = ["up"]\n[maps.end]'), "direction = .'up'. must be one of up"),
     (("[maps.end]", f'[maps.{"x" * 60}]\nkind = "lyapunov"\n[maps.end]'), "up to 50 letters"),
     (("[maps.end]", '[maps.theta2]\nkind = "lyapunov"\n[maps.end]'), "cannot be a map's name"),
     (("count = 120", "count = 1000000000000"), "must be a whole number from 1 to 10000000"),

@@ -256,12 +256,18 @@ def test_a_section_equals_the_crossings_of_single_motions(tmp_path: Path) -> Non
         assert_allclose(results.maps["section"][a, b, :, :n], passes[:n, [1, 3]].T, atol=1e-6)
 
 
-def test_a_section_without_a_direction_has_crossings_in_both(tmp_path: Path) -> None:
+def test_a_section_without_a_direction_has_crossings_upwards(tmp_path: Path) -> None:
     axes, values = Grid({"y": [0.1]}), {"x": 0.0, "x_dot": "energy", "energy": 0.1}
-    both, up, down = (
+    both, up, down, default = (
         run(tmp_path / name, hh, axes, 30.0, {"s": Section(("y",), 12, "x", **way)}, values=values)
-        for name, way in (("both", {}), ("up", {"direction": 1}), ("down", {"direction": -1}))
+        for name, way in (
+            ("both", {"direction": 0}),
+            ("up", {"direction": 1}),
+            ("down", {"direction": -1}),
+            ("default", {}),
+        )
     )
+    assert_allclose(default.maps["s"], up.maps["s"], rtol=0, atol=0)
     count = [np.isfinite(one.maps["s"]).sum() for one in (both, up, down)]
     assert count[0] == count[1] + count[2]
     assert min(count[1:]) >= 3

@@ -122,6 +122,10 @@ class Map:
         units = {module.UNITS[name] for name in ([component] if component else self.components)}
         return units.pop() if len(units) == 1 else ""
 
+    def remark(self, module: GeneratedModule) -> str:
+        """A remark below the figures of the map, if any."""
+        return ""
+
     def events(self, module: GeneratedModule) -> list[Event]:
         """Events to locate."""
         return []

@@ -85,6 +85,9 @@ def _remarks(results: Results) -> Iterator[str]:
     has_curves = any(one.plot == "curves" for one in definition.maps.values())
     if has_curves and definition.motions > CURVES:
         yield f"about {CURVES} of {definition.motions:,} motions over time"
+    remarks = {name: one.remark(definition.module) for name, one in definition.maps.items()}
+    several = len(remarks) > 1
+    yield from (f"{name}: {text}" if several else text for name, text in remarks.items() if text)
     yield from (f"{name}: {n:,} motions" for name, n in count.items() if name not in GOOD)
 
 
