@@ -292,10 +292,32 @@ def test_a_figure_marks_stability_and_special_orbits() -> None:
     ]  # fmt: skip
     stable, unstable, *_ = axes.get_lines()
     assert (stable.get_linestyle(), unstable.get_linestyle()) == ("-", "--")
+    assert stable.get_color() != unstable.get_color()
     located = doubling.orbit.params[2]
     assert stable.get_xdata()[-1] == unstable.get_xdata()[0] == located
     with pytest.raises(ValueError, match=r"quantity = 'perod' \(did you mean 'period'\?\)"):
         family.figure("perod")
+
+
+def test_a_figure_shows_amplitudes_over_the_energy() -> None:
+    # a pendulum of energy E swings to the angle at which its potential energy is E
+    orbit = periodic_orbit(single, {"theta": 0.5}, 3.0, {})
+    family = orbit_family(single, orbit, bounds=(-19.0, 15.0))
+    (axes,) = family.figure().axes
+    (line,) = axes.get_lines()
+    energies, amplitudes = line.get_data()
+    assert amplitudes == pytest.approx(np.arccos(-energies / (2 * 9.81)), rel=1e-8)
+    assert np.array_equal(amplitudes, family.amplitudes[0])
+    assert axes.get_ylabel() == r"amplitude of $\theta$ / rad"
+    assert axes.get_xlabel() == "energy / J"
+    # the drawn curve fills the axes
+    for limits, values in ((axes.get_xlim(), energies), (axes.get_ylim(), amplitudes)):
+        assert np.ptp(values) > 0.85 * np.ptp(limits)
+    assert np.array_equal(
+        family.figure("amplitude of theta").axes[0].lines[0].get_ydata(), amplitudes
+    )
+    with pytest.raises(ValueError, match="did you mean 'amplitude of theta'"):
+        family.figure("amplitude of thet")
 
 
 def test_a_table_of_a_family() -> None:

@@ -2,13 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, title
+from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
+from solvers.integration.problem.events import Event
+from solvers.integration.problem.problem import Options
+from solvers.integration.single_motion import single_motion
 from solvers.io.figure_names import axis_label, symbol
 from solvers.io.suggestion import did_you_mean
 from solvers.runge_kutta.stepper import Array
@@ -19,8 +24,12 @@ if TYPE_CHECKING:  # a run does not load matplotlib
 
 #: Markers of special orbits, by their kinds.
 MARKERS = {"turning point": "^", "branch point": "s", "period doubling": "o", "Neimark-Sacker": "D"}
-#: Line styles of orbits that are not unstable, and of those that are, with their labels.
-STYLES = {False: ("-", "stable"), True: ("--", "unstable")}
+#: Colours and line styles of orbits that are not unstable, and of those that are, with labels.
+STYLES = {False: ("#0072B2", "-", "stable"), True: ("#D55E00", "--", "unstable")}
+#: Quantities of figures: the amplitude of the coordinate that moves most, and of a given one.
+AMPLITUDE, AMPLITUDE_OF = "amplitude", "amplitude of {}"
+#: Times of an orbit at which its coordinates are compared, besides those of their extrema.
+SAMPLES = 65
 
 
 @dataclass(frozen=True)
@@ -99,6 +108,11 @@ class OrbitFamily:
         """Floquet multipliers, shape (state, orbits)."""
         return np.array([orbit.multipliers for orbit in self.orbits]).T
 
+    @cached_property
+    def amplitudes(self) -> Array:
+        """Half the range of each coordinate over each orbit, shape (coordinates, orbits)."""
+        return np.array([orbit_amplitudes(self.module, orbit) for orbit in self.orbits]).T
+
     @property
     def stability(self) -> list[str]:
         """The stability of each orbit."""
@@ -128,15 +142,18 @@ class OrbitFamily:
             return orbit.energy
         return orbit.params[self.module.PARAMETERS.index(self.parameter)]
 
-    def figure(self, quantity: str = "period", others: "Sequence[OrbitFamily]" = ()) -> "Figure":
+    def figure(self, quantity: str = "amplitude", others: "Sequence[OrbitFamily]" = ()) -> "Figure":
         """A figure of this family, over its parameter or the energy.
 
-        Unstable orbits are dashed, and special ones marked. Dashes change at special orbits.
+        Stable orbits are blue, unstable ones red and dashed, and special ones marked. Colours
+        change at special orbits.
 
         Parameters
         ----------
         quantity : str, optional
-            ``period``, ``energy``, or a component of the state at t = 0.
+            ``amplitude``, half the range of the coordinate that moves most in the first family, or
+            of another one, such as ``amplitude of theta2``; ``period``, ``energy``, or a component
+            of the state at t = 0, which depends on the point of the orbit that is the start.
         others : sequence of OrbitFamily, optional
             Families with the same parameter, such as those that branch off.
 
@@ -158,12 +175,15 @@ def _figure(families: Sequence[OrbitFamily], quantity: str) -> "Figure":
     from solvers.io import figures
 
     module, parameter = families[0].module, families[0].parameter
-    known = ("period", ENERGY, *module.STATE)
+    of_coordinates = [AMPLITUDE_OF.format(name) for name in module.COORDINATES]
+    known = (AMPLITUDE, *of_coordinates, "period", ENERGY, *module.STATE)
     if quantity not in known:
         hint = did_you_mean(str(quantity), known)
         raise ValueError(f"quantity = {quantity!r}{hint} must be one of {', '.join(known)}")
     if len({family.parameter for family in families}) > 1:
         raise ValueError("families in one figure must have the same parameter")
+    if quantity == AMPLITUDE:
+        quantity = of_coordinates[int(np.argmax(families[0].amplitudes.max(axis=1)))]
     result, (axes,) = figures.panels(title(module), size=(8.4, 5.2))
     for family in families:
         _draw_curve(axes, family, quantity)
@@ -177,21 +197,48 @@ def _figure(families: Sequence[OrbitFamily], quantity: str) -> "Figure":
     return result
 
 
+def orbit_amplitudes(module: GeneratedModule, orbit: PeriodicOrbit) -> Array:
+    """Half the range of each coordinate over an orbit: extremes are where its velocity is 0."""
+    n, times = len(module.COORDINATES), np.linspace(0, orbit.period, SAMPLES)
+    extrema = [Event(module, name, 0.0) for name in module.STATE[n:]]
+    options = Options(t_eval=times, events=extrema, rtol=1e-10, atol=1e-12)
+    with ignore_predictability():
+        motion = single_motion(module, (0.0, orbit.period), orbit.y, orbit.params, options)
+    states = np.hstack([motion.y, *(rows.T for rows in motion.y_events)])[:n]
+    return np.asarray(np.ptp(states, axis=1) / 2)
+
+
 def _label(family: OrbitFamily, name: str) -> str:
+    units = family.module.UNITS
+    if name.startswith(AMPLITUDE):
+        coordinate = name.rpartition(" ")[2]
+        return axis_label(AMPLITUDE_OF.format(symbol(coordinate)), units[coordinate])
     words = {"period": ("period", "s"), ENERGY: ("energy", "J")}
-    return axis_label(*words.get(name, (symbol(name), family.module.UNITS.get(name, "1"))))
+    return axis_label(*words.get(name, (symbol(name), units.get(name, "1"))))
 
 
-def _point(family: OrbitFamily, quantity: str, orbit: PeriodicOrbit) -> tuple[float, float]:
-    if quantity in family.module.STATE:
-        return family.value(orbit), float(orbit.y[family.module.STATE.index(quantity)])
-    return family.value(orbit), orbit.period if quantity == "period" else orbit.energy
+def _values(family: OrbitFamily, quantity: str, orbits: Sequence[PeriodicOrbit]) -> Array:
+    """The parameter, or energy, of orbits, and the quantity, in rows."""
+    state = family.module.STATE
+    if quantity.startswith(AMPLITUDE):
+        index = state.index(quantity.rpartition(" ")[2])
+        own = {
+            id(orbit): row for orbit, row in zip(family.orbits, family.amplitudes.T, strict=True)
+        }
+        rows = (own.get(id(orbit)) for orbit in orbits)
+        values = [
+            float((orbit_amplitudes(family.module, orbit) if row is None else row)[index])
+            for orbit, row in zip(orbits, rows, strict=True)
+        ]
+    elif quantity in state:
+        values = [float(orbit.y[state.index(quantity)]) for orbit in orbits]
+    else:
+        values = [orbit.period if quantity == "period" else orbit.energy for orbit in orbits]
+    return np.array([[family.value(orbit) for orbit in orbits], values])
 
 
 def _draw_curve(axes: "Axes", family: OrbitFamily, quantity: str) -> None:
     """Lines of stable and of unstable orbits, which end at special orbits."""
-    from solvers.io import figures
-
     runs: list[tuple[bool, list[PeriodicOrbit]]] = []
     for k, orbit in enumerate(family.orbits):
         is_unstable = orbit.stability == "unstable"
@@ -203,16 +250,13 @@ def _draw_curve(axes: "Axes", family: OrbitFamily, quantity: str) -> None:
             runs.append((is_unstable, before[-1:]))
         runs[-1][1].append(orbit)
     for is_unstable, orbits in runs:
-        style, label = STYLES[is_unstable]
-        points = np.array([_point(family, quantity, orbit) for orbit in orbits])
-        axes.plot(*points.T, style, color=figures.COLOURS[0], label=label)
+        colour, style, label = STYLES[is_unstable]
+        axes.plot(*_values(family, quantity, orbits), style, color=colour, label=label)
 
 
 def _draw_special(axes: "Axes", family: OrbitFamily, quantity: str) -> None:
-    from solvers.io import figures
-
-    for colour, (kind, marker) in zip(figures.COLOURS[1:], MARKERS.items(), strict=False):
-        own: list[SpecialOrbit] = [point for point in family.special if point.kind == kind]
+    for kind, marker in MARKERS.items():
+        own = [point.orbit for point in family.special if point.kind == kind]
         if own:
-            points = np.array([_point(family, quantity, point.orbit) for point in own])
-            axes.plot(*points.T, marker, color=colour, label=kind, zorder=3)
+            values = _values(family, quantity, own)
+            axes.plot(*values, marker, color="black", markerfacecolor="white", label=kind, zorder=3)
