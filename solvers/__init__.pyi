@@ -43,6 +43,7 @@ from solvers.sweeps.definition.sweep import Sweep as Sweep
 from solvers.sweeps.execution.pool import Pool as Pool
 from solvers.sweeps.execution.sweep_run import partial_results as partial_results
 from solvers.sweeps.maps.basins import Basins as Basins
+from solvers.sweeps.maps.bifurcation import Bifurcation as Bifurcation
 from solvers.sweeps.maps.energy_error import EnergyError as EnergyError
 from solvers.sweeps.maps.extremes import Extremes as Extremes
 from solvers.sweeps.maps.final import Final as Final

@@ -158,7 +158,7 @@ def test_both_directions_are_distinguished_in_the_figure(bent: Results) -> None:
     ({"axes": Grid({"Omega": [1.0], "F": [1.0]})}, "last axis of a grid, whose axes are Omega, F"),
     ({"axes": Grid({"F": [1.0]})}, "along = 'Omega' must be a parameter and the last axis"),
     ({"axes": Random({"Omega": (1, 2)}, 5, 0)}, "last axis of a grid"),
-    ({"maps": {"r": ONE, "e": Extremes(("x",))}}, "map r is a response: it must be the only map"),
+    ({"maps": {"r": ONE, "e": Extremes(("x",))}}, "map r follows motions .* be the only map"),
     ({"maps": {"r": Response(("x_dot",), "Omega", PERIOD, 5)}}, "x_dot is not a coordinate"),
     ({"duration": 5.0}, "leave it out"),
 ])  # fmt: skip

@@ -81,7 +81,9 @@ def check_maps(
         check_type(f"maps[{name!r}]", one, Map, "a map, such as Final(('theta1',))")
     continued = [name for name, one in maps.items() if one.continued_along]
     if continued and len(maps) > 1:
-        raise ValueError(f"map {continued[0]} is a response: it must be the only map")
+        raise ValueError(
+            f"map {continued[0]} follows motions along an axis: it must be the only map"
+        )
     reserved = (STATUS, ENERGY, *module.STATE, *module.PARAMETERS)
     taken = {*map(str.casefold, reserved)}  # names of files, whose case may not count
     for name, one in maps.items():

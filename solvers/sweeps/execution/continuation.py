@@ -46,6 +46,8 @@ def continued(
             begins = np.where(before.success, before.y, state[alive].T).T
             duration = times[:, -1] - times[:, 0]
             options |= {"events": one.events(module), "occurrences": one.occurrences}
+            if one.sample_count:
+                options["t_eval"] = times - times[:, :1]
             after = integrate_all(sweep, (0.0, duration), begins, own, stop, options)
             ensembles += [before, after]
             ends = np.where(before.success, after.status, before.status)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -50,7 +50,7 @@ class Response(ComponentMap):
     count: int = 1
 
     example = 'of = ["x"], along = "Omega", every = "2*pi/Omega", skip = 100, count = 1'
-    dimensions = ("component", "direction")
+    dimensions: ClassVar[tuple[str, ...]] = ("component", "direction")
     plot = "response"
     occurrences = 2
 

@@ -14,6 +14,7 @@ from solvers.io import figures
 from solvers.io.figure_names import symbol
 from solvers.io.units import with_unit
 from solvers.sweeps.definition.sweep_checks import ENERGY
+from solvers.sweeps.plots.bifurcation import bifurcation
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
 from solvers.sweeps.plots.plot_quantity import Quantity, label_axis, letter
 from solvers.sweeps.plots.response_plot import response
@@ -149,8 +150,31 @@ def _response(name: str, results: Results) -> Panels:
         yield f"{name}: {symbol(component)}", draw
 
 
+def _bifurcation(name: str, results: Results) -> Panels:
+    """A panel for each component and each set of values of the other axes."""
+    *others, _ = results.axes
+    for indices in np.ndindex(*(len(results.axes[axis]) for axis in others)):
+        words = [
+            f"{letter(q)} = {with_unit(results.axes[q][i], results.unit(q), 4)}"
+            for q, i in zip(others, indices, strict=True)
+        ]
+        for k, component in enumerate(results.definition.maps[name].labels[0]):
+            draw = partial(
+                bifurcation,
+                quantity=Quantity(results, name, (k,)),
+                selection=(*indices, slice(None)),
+            )
+            yield ", ".join([f"{name}: {symbol(component)}", *words]), draw
+
+
 #: Panels of each kind of plot.
-PANELS = {"response": _response, "numbers": _numbers, "curves": _curves, "section": _section}
+PANELS = {
+    "response": _response,
+    "bifurcation": _bifurcation,
+    "numbers": _numbers,
+    "curves": _curves,
+    "section": _section,
+}
 
 
 def diagram(panel: Axes, *, quantity: Quantity, axis: str, selection: tuple[Any, ...]) -> None:
