@@ -13,5 +13,5 @@ for frequency in (100.0, 30.0):
     params = {"Omega": frequency, "c": 0.2}
     motion = integrate(pendulum, (0, 10), {"theta": 2.9}, params, rtol=1e-10)
     panel.plot(motion.t, motion.y[0], label=f"{frequency:g} rad/s")
-panel.set(xlabel="t / s", ylabel=r"$\theta$ / rad", ylim=(-8, 8))
-panel.legend(frameon=False)
+panel.set(xlabel="t / s", ylabel=r"$\theta$ / rad")
+panel.legend(frameon=False, loc="lower right")
