@@ -15,7 +15,8 @@ Links: `Block`, `Box`, `Cart`, `Plate`, `Rail`, `Rod`, `Spring`, `Thread`, `Whee
 Joints: `ball`, `fixed_distance`, `hinge`, `pin`, `prismatic`, `rolling_on_line`,
 `rolling_on_plane`, `slider`.
 
-Derivations: `Derivation`, `Regressor`, `Linearisation`, `StateSpace`, `reduced`, `with_inputs`, `write`.
+Derivations: `Derivation`, `Regressor`, `Linearisation`, `StateSpace`, `reduced`, `with_inputs`,
+`write`.
 """
 
 from pathlib import Path

@@ -17,8 +17,8 @@ Scenes and fits: `load_scene`, `run_scene`, `Scene`, `SceneResult`; `read_measur
 `compare`, `Measurement`, `Fit`.
 
 Sweeps: `load_sweep`, `sweep`, `partial_results`, `Sweep`, `Results`, `Pool`; axes: `Grid`,
-`Random`, `Table`; maps: `Basins`, `EnergyError`, `Extremes`, `Final`, `First`, `Lyapunov`,
-`Response`, `Samples`, `Section`, `Spectrum`, `Stroboscopic`.
+`Random`, `Table`; maps: `Basins`, `Bifurcation`, `EnergyError`, `Extremes`, `Final`, `First`,
+`Lyapunov`, `Response`, `Samples`, `Section`, `Spectrum`, `Stroboscopic`.
 
 Figures: `panels`, `save`.
 """
