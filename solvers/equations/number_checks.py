@@ -169,5 +169,5 @@ def _in_order(
             hint, known = did_you_mean(str(name), names), ", ".join(names) or "none"
             raise ValueError(f"{what} has no {name!r}{hint}; known names: {known}")
     if missing := [name for name in names if name not in values and name not in defaults]:
-        raise ValueError(f"{what} lacks {', '.join(missing)}: only velocities may be left out")
+        raise ValueError(f"{what} lacks {', '.join(missing)}, on which the motion depends")
     return [values.get(name, defaults.get(name)) for name in names]

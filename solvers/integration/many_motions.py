@@ -72,7 +72,7 @@ class MotionBatch:
         """From the arguments; ValueError where one is invalid."""
         check_module(module)
         check_type("form", options.form, str | None, "the name of a form")
-        states = validation.state_rows(module, y0, options.form or "lagrangian")
+        states = validation.state_rows(module, y0, params, options.form or "lagrangian")
         memory.check_times(options.t_eval, states.shape[1])
         times = EnsembleTimes.of(t_span, options.t_eval, len(states))
         problem = validation.problem_at_rest(module, times.span, replace(options, t_eval=()))

@@ -10,7 +10,8 @@ from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.number_checks import positive
 from solvers.equations.signature_checks import check_module, known_names
 from solvers.equations.singularities.mass_matrix import check_condition
-from solvers.equations.starts.consistent_start import consistent_start
+from solvers.equations.starts.consistent_start import consistent_start, given_names
+from solvers.equations.starts.default_start import default_coordinates, default_words
 from solvers.integration.problem import validation
 from solvers.io.argument_types import check_texts, check_type
 from solvers.io.toml_input import whole
@@ -71,7 +72,7 @@ class Scene:
     guess : mapping of str to float, optional
         Values near which to find components of `y0` that constraints determine, by default 0.
     completed : str, optional
-        A description of these components, which a mapping `y0` results in.
+        A description of the coordinates that a mapping `y0` leaves out.
 
     Raises
     ------
@@ -155,7 +156,10 @@ class Scene:
         if has_constraints(self.module) and isinstance(self.y0, Mapping):
             start = consistent_start(self.module, self.y0, params, guess=self.guess)
             return {"y0": tuple(start.y.tolist()), "guess": {}, "completed": start.words}
-        return {"y0": tuple(validation.initial_state(self.module, self.y0, params=params).tolist())}
+        state = validation.initial_state(self.module, self.y0, params=params)
+        given = given_names(self.module, self.y0)
+        own = default_coordinates(self.module, given, np.array(params))
+        return {"y0": tuple(state.tolist()), "completed": default_words(self.module, own)}
 
     @property
     def times(self) -> NDArray[np.float64]:

@@ -7,8 +7,11 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from solvers.equations.module import GeneratedModule, has_constraints, title
 from solvers.equations.number_checks import check_outputs
+from solvers.equations.starts.default_start import default_coordinates
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
@@ -106,7 +109,7 @@ def _scene(
     if values.get("outputs") == ():
         raise InputError("outputs = [] requests nothing: leave it out to request the state")
     params = _parameters(module, table.get("parameters", {}))
-    y0, guess = _initial(module, table["initial"])
+    y0, guess = _initial(module, table["initial"], params)
     samples = table.get("samples", 0)
     if isinstance(samples, list):
         samples = [toml_input.number(f"samples[{k}]", t, "s") for k, t in enumerate(samples)]
@@ -128,7 +131,9 @@ def _parameters(module: GeneratedModule, table: object) -> tuple[float, ...]:
     return tuple(values.values())
 
 
-def _initial(module: GeneratedModule, table: object) -> tuple[dict[str, float], dict[str, float]]:
+def _initial(
+    module: GeneratedModule, table: object, params: Sequence[float]
+) -> tuple[dict[str, float], dict[str, float]]:
     """Components of the initial state, and guesses of those that constraints determine."""
     check_outputs(module, "[initial]", toml_input.table("initial", table))
     given, units = _table("initial", table, module.STATE), module.UNITS
@@ -138,7 +143,9 @@ def _initial(module: GeneratedModule, table: object) -> tuple[dict[str, float], 
             toml_input.check_keys(f"initial.{name}", value, ("guess",))
             guesses |= {name: value.get("guess", 0.0)}
             del given[name]
-    if missing := [q for q in module.COORDINATES if q not in given and not is_constrained]:
+    defaults = {} if is_constrained else default_coordinates(module, given, np.array(params))
+    known = {*given, *defaults}
+    if missing := [q for q in module.COORDINATES if q not in known and not is_constrained]:
         remedy = f"give {', '.join(module.COORDINATES)}; velocities that are left out are 0"
         raise InputError(f"initial.{missing[0]} is missing: {remedy}")
     for name, value in (given | guesses).items():

@@ -83,7 +83,7 @@ def test_states_of_ensembles_have_the_axes_of_generated_functions() -> None:
 @pytest.mark.parametrize(("y0", "params", "message"), [
     ({"theta": 1.0, "theta_dott": 0.0}, {}, "y0 has no 'theta_dott' .did you mean 'theta_dot'"),
     ({"theta": 1.0, "phi": 0.0}, {}, "y0 has no 'phi'; known names: theta, theta_dot"),
-    ({"theta_dot": 1.0}, {}, "y0 lacks theta: only velocities may be left out"),
+    ({"theta_dot": 1.0}, {}, "y0 lacks theta, on which the motion depends"),
     ({}, {}, "y0 lacks theta"),
     ({"theta": "1 m"}, {}, "theta: '1 m' has another unit: give rad or a unit of that kind"),
     ({"theta": ["1 deg", "x"]}, {}, r"theta\[1\]: unit 'x' is not known"),

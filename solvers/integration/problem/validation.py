@@ -28,6 +28,7 @@ from solvers.equations.separability import coupling
 from solvers.equations.signature_checks import check_module
 from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import consistent, given_names, guesses
+from solvers.equations.starts.default_start import default_coordinates
 from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
@@ -158,10 +159,10 @@ def initial_state(
 ) -> Array:
     """A state in the order of the module; a mapping may leave out velocities, which are 0.
 
-    With `params`, those of the form, constraints determine components that a mapping leaves out.
+    With `params`, those of the form, a mapping may leave out coordinates, too, which constraints
+    determine, or `default_coordinates`.
     """
-    is_complete = params is not None and has_constraints(module)
-    state = _states(module, values, form, is_complete)
+    state = _states(module, values, form, None if params is None else np.array(params, float))
     state = _vector("y0", state, state_names(module, form))
     if params is None:
         return state
@@ -203,9 +204,9 @@ def parameter_rows(
     return rows
 
 
-def state_rows(module: GeneratedModule, values: Values, form: str) -> Array:
+def state_rows(module: GeneratedModule, values: Values, params: Values, form: str) -> Array:
     """Initial states, component first, as rows; guesses of coordinates that constraints give."""
-    states = _states(module, values, form, has_constraints(module))
+    states = _states(module, values, form, _parameters(module, params, form))
     return _rows("y0", states, state_names(module, form))
 
 
@@ -216,13 +217,16 @@ def _parameters(module: GeneratedModule, values: Values, form: str) -> Array:
     return quantities(module, "params", names, values, defaults)
 
 
-def _states(module: GeneratedModule, values: Values, form: str, is_complete: bool) -> Array:
+def _states(module: GeneratedModule, values: Values, form: str, params: Array | None) -> Array:
     velocities = module.STATE[len(module.COORDINATES) :]
     # in the variational form, the perturbation is that of the state alone
     perturbed = module.STATE if form == "sensitivity" else velocities
-    defaults = dict.fromkeys([*velocities, *perturbations(perturbed)], 0.0)
-    if is_complete:
+    defaults: dict[str, Any] = dict.fromkeys([*velocities, *perturbations(perturbed)], 0.0)
+    if params is not None and has_constraints(module):
         defaults |= guesses(module) | dict.fromkeys(perturbations(module.STATE), 0.0)
+    elif params is not None and isinstance(values, Mapping):
+        own = params[len(params) - len(module.PARAMETERS) :]
+        defaults |= default_coordinates(module, values, own)
     return quantities(module, "y0", state_names(module, form), values, defaults)
 
 
