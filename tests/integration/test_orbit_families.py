@@ -58,6 +58,12 @@ def test_the_backbone_of_the_pendulum_is_an_elliptic_integral(symmetry: tuple[st
         exact = pendulum_period(orbit.y, 1.0)
         assert abs(orbit.period / exact - 1) < 1e-12
         assert orbit.stability == "neutral"
+    shown = family.sampled_motions()
+    assert len({one.label for one in shown}) == 5
+    for one in shown:  # one period each, which ends where it starts
+        assert one.t[-1] == pytest.approx(float(pendulum_period(one.y[:, 0], 1.0)), rel=1e-11)
+        assert one.y[:, -1] == pytest.approx(one.y[:, 0], abs=1e-7)
+    assert shown[0].y[0].max() < 0.2 < 2.0 < shown[-1].y[0].max()
 
 
 @pytest.mark.parametrize("bound", [-9.8, -9.805])

@@ -1,7 +1,7 @@
 """A family of periodic orbits, and its special points."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,9 +13,12 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
+from solvers.integration.results.solution import Solution
 from solvers.integration.single_motion import single_motion
 from solvers.io.figure_names import axis_label, symbol
 from solvers.io.suggestion import did_you_mean
+from solvers.player.playable import Playable
+from solvers.player.sampled_motion import SampledMotion, sample_times
 from solvers.runge_kutta.stepper import Array
 
 if TYPE_CHECKING:  # a run does not load matplotlib
@@ -30,6 +33,8 @@ STYLES = {False: ("#0072B2", "-", "stable"), True: ("#D55E00", "--", "unstable")
 AMPLITUDE, AMPLITUDE_OF = "amplitude", "amplitude of {}"
 #: Times of an orbit at which its coordinates are compared, besides those of their extrema.
 SAMPLES = 65
+#: Orbits of a family that pages and films show.
+SHOWN = 5
 
 
 @dataclass(frozen=True)
@@ -58,8 +63,8 @@ class SpecialOrbit:
 
 
 @dataclass(frozen=True, repr=False)
-class OrbitFamily:
-    """Periodic orbits along a curve.
+class OrbitFamily(Playable):
+    """Periodic orbits along a curve; pages, films and plots show some of them.
 
     Attributes
     ----------
@@ -169,6 +174,19 @@ class OrbitFamily:
         """
         return _figure([self, *others], quantity)
 
+    def sampled_motions(self) -> list[SampledMotion]:
+        """Orbits evenly along the family, from the first to the last, each over its period."""
+        chosen = {*np.linspace(0, len(self.orbits) - 1, SHOWN).round().astype(int).tolist()}
+        motions = []
+        for k in sorted(chosen):
+            orbit = self.orbits[k]
+            with ignore_predictability():
+                times = sample_times(0.0, orbit.period)
+                motion = _motion(self.module, orbit, Options(t_eval=times))
+            label = f"{self.parameter} = {self.value(orbit):.6g}, {orbit.stability}"
+            motions += [replace(one, label=label) for one in motion.sampled_motions()]
+        return motions
+
 
 def _figure(families: Sequence[OrbitFamily], quantity: str) -> "Figure":
     """A quantity of orbits over the parameter of their families, or over the energy."""
@@ -201,11 +219,16 @@ def orbit_amplitudes(module: GeneratedModule, orbit: PeriodicOrbit) -> Array:
     """Half the range of each coordinate over an orbit: extremes are where its velocity is 0."""
     n, times = len(module.COORDINATES), np.linspace(0, orbit.period, SAMPLES)
     extrema = [Event(module, name, 0.0) for name in module.STATE[n:]]
-    options = Options(t_eval=times, events=extrema, rtol=1e-10, atol=1e-12)
     with ignore_predictability():
-        motion = single_motion(module, (0.0, orbit.period), orbit.y, orbit.params, options)
+        motion = _motion(module, orbit, Options(t_eval=times, events=extrema))
     states = np.hstack([motion.y, *(rows.T for rows in motion.y_events)])[:n]
     return np.asarray(np.ptp(states, axis=1) / 2)
+
+
+def _motion(module: GeneratedModule, orbit: PeriodicOrbit, options: Options) -> Solution:
+    """The motion over one period."""
+    options = replace(options, rtol=1e-10, atol=1e-12)
+    return single_motion(module, (0.0, orbit.period), orbit.y, orbit.params, options)
 
 
 def _label(family: OrbitFamily, name: str) -> str:
