@@ -81,6 +81,7 @@ sphinx_gallery_conf = {
     "examples_dirs": str(ROOT / "notebooks" / "gallery"),
     "gallery_dirs": "notebooks/docs/gallery",
     "filename_pattern": r"\.py$",
+    "thumbnail_size": (720, 504),
     "show_memory": False,
     "min_reported_time": 1e9,
     "download_all_examples": False,
@@ -99,6 +100,7 @@ html_theme_options = {
 html_show_sourcelink = False
 html_copy_source = False
 templates_path = ["templates"]
+html_static_path, html_css_files = ["static"], ["gallery.css"]
 html_additional_pages = {"index": "index.html"}
 html_math_renderer = "mathml"
 

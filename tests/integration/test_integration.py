@@ -77,6 +77,7 @@ CONVERGED = {
 
 
 @pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.energy_change.DriftWarning")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("form", ["lagrangian", "hamiltonian"])
 @pytest.mark.parametrize("method", CONVERGED)

@@ -26,6 +26,7 @@ from derive import (
     velocity,
 )
 from derive import load as load_system
+from derive.codegen.function_specs import FORCES
 from derive.codegen.module_files import texts
 from derive.commands.regenerate import main
 from derive.mechanics.derivation import RedundancyWarning
@@ -49,6 +50,7 @@ OTHER = {
     "multipliers",
     "reactions",
     "points",
+    *FORCES,
 }
 #: Functions of reduced and full systems that have the same values.
 COMPARED = ("rhs", "multipliers", "energy", "positions")
