@@ -152,8 +152,11 @@ class Scene:
         scene_checks.check_pictures(self.pictures, state)
 
     def _start(self, params: list[float]) -> dict[str, object]:
-        """The initial state, and a description of what constraints determine of it."""
-        if has_constraints(self.module) and isinstance(self.y0, Mapping):
+        """The initial state, and a description of the coordinates that are not given."""
+        if not isinstance(self.y0, Mapping):  # it may have been completed before
+            y0 = validation.initial_state(self.module, self.y0, params=params)
+            return {"y0": tuple(y0.tolist())}
+        if has_constraints(self.module):
             start = consistent_start(self.module, self.y0, params, guess=self.guess)
             return {"y0": tuple(start.y.tolist()), "guess": {}, "completed": start.words}
         state = validation.initial_state(self.module, self.y0, params=params)

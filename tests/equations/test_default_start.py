@@ -1,5 +1,6 @@
 """Starts complete themselves: coordinates without effect are 0, lengths at their equilibrium."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,7 @@ def test_a_scene_states_what_it_completed(tmp_path: Path) -> None:
     scene = load_scene(path)
     assert scene.y0[0] == pytest.approx(1.1962, rel=1e-15)
     assert scene.completed == "at equilibrium: r = 1.1962 m"
+    assert replace(scene, duration=2.0).completed == scene.completed
     path.write_text(
         'system = "cart_3"\nduration = "1 s"\n[initial]\ntheta1 = 1\ntheta2 = 0.5\ntheta3 = 0\n'
     )

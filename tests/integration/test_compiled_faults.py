@@ -152,7 +152,7 @@ def test_problems_that_cannot_be_compiled_run_in_python() -> None:
         ({"y0": [(1.0, 0.0)] * 3}, r"y0 has shape \(3, 2\): .*transpose it: y0.T"),
         ({"y0": [[1.0], [float("inf")]]}, "finite"),
         ({"y0": {"theta": [1.0, 2.0], "omega": 0.0}}, "y0 has no 'omega'.*theta, theta_dot"),
-        ({"y0": {"theta_dot": [1.0, 2.0]}}, "y0 lacks theta: only velocities"),
+        ({"y0": {"theta_dot": [1.0, 2.0]}}, "y0 lacks theta, on which"),
         ({"y0": {"theta": [1.0, 2.0], "theta_dot": [0.0] * 3}}, "differ in shape: theta: "),
         ({"params": np.ones((3, 3))}, "params holds values for 3 motions, but y0 has"),
         ({"params": np.ones((2, 3))}, "transpose it: params.T"),
