@@ -28,7 +28,7 @@ from derive.mechanics.regressor import Regressor, regressor
 from derive.mechanics.steps import StepByStep
 from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
-from derive.system.prescribed import motions
+from derive.system.prescribed import prescribed_symbols
 from derive.system.rigid_body import RigidBody
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean
@@ -134,7 +134,7 @@ class Derivation(StepByStep):
     def _check_inputs(self) -> None:
         system = self.system
         positions = sp.Tuple(*(r for mass in system.masses for r in mass.placement))
-        prescribed = {s for parts in motions(system.inputs).values() for s in parts}
+        prescribed = prescribed_symbols(system.inputs)
         if others := positions.free_symbols & {*system.u} - prescribed:
             names = ", ".join(sorted(symbol.name for symbol in others))
             raise SystemDefinitionError(
@@ -270,7 +270,7 @@ class Derivation(StepByStep):
         Inputs of prescribed motions keep their values. With constraints, the forces include those
         of the constraints.
         """
-        prescribed = {s for parts in motions(self.system.inputs).values() for s in parts}
+        prescribed = prescribed_symbols(self.system.inputs)
         at_rest = {u: sp.S.Zero for u in self.system.u if u not in prescribed}
         rows = range(len(self.system.q))
         accelerations = Matrix(self.system.qddot)

@@ -28,7 +28,7 @@ from derive.formulas.evaluation.residues import (
     solved,
     without,
 )
-from derive.system.prescribed import motions
+from derive.system.prescribed import prescribed_symbols
 from derive.system.symbols import TIME
 from derive.system.system import System
 from solvers.io.suggestion import counted
@@ -190,7 +190,7 @@ class _MotionSeries:
     ) -> None:
         self._system, self._point = system, point
         self._columns = [*system.q, *system.qdot, *unknown]
-        prescribed = {s for parts in motions(system.inputs).values() for s in parts}
+        prescribed = prescribed_symbols(system.inputs)
         self._varying = {*system.u} - prescribed
         self._numbers = parameters | {s: point.residue(s) for s in (*system.q, *system.qdot, TIME)}
 

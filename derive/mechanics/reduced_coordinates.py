@@ -19,7 +19,7 @@ from derive.mechanics.derivation import warn_of_redundancy
 from derive.mechanics.equations import Equations
 from derive.system.constraints import Constraint, Eliminated
 from derive.system.parts import SystemDefinitionError
-from derive.system.prescribed import motions
+from derive.system.prescribed import prescribed_symbols
 from derive.system.symbols import TIME
 from derive.system.system import System, as_system
 
@@ -111,7 +111,7 @@ def _next_solution(
     system: System, formulas: dict[Constraint, sp.Expr], coordinates: list[sp.Symbol]
 ) -> _Solution | None:
     # positions must not depend on inputs other than prescribed motions
-    prescribed = {s for parts in motions(system.inputs).values() for s in parts}
+    prescribed = prescribed_symbols(system.inputs)
     excluded, moving = {*system.u} - prescribed, {*system.qdot}
     stages: tuple[tuple[Solver, bool], ...] = (
         (_divided_by_number, False),

@@ -25,6 +25,11 @@ def motions(inputs: Iterable[Input]) -> dict[sp.Symbol, tuple[sp.Symbol, ...]]:
     return {s: (s, velocity(s), acceleration(s), _time(s)) for s in symbols}
 
 
+def prescribed_symbols(inputs: Iterable[Input]) -> set[sp.Symbol]:
+    """The symbols of the `parts` of all motions."""
+    return {symbol for symbols in motions(inputs).values() for symbol in symbols}
+
+
 def as_functions_of_time(inputs: Iterable[Input]) -> Mapping[sp.Symbol, sp.Expr]:
     """Each motion and its velocity at any time, with a constant acceleration."""
     values: dict[sp.Symbol, sp.Expr] = {}

@@ -143,11 +143,11 @@ def _initial(
             toml_input.check_keys(f"initial.{name}", value, ("guess",))
             guesses |= {name: value.get("guess", 0.0)}
             del given[name]
-    defaults = {} if is_constrained else default_coordinates(module, given, np.array(params))
-    known = {*given, *defaults}
-    if missing := [q for q in module.COORDINATES if q not in known and not is_constrained]:
-        remedy = f"give {', '.join(module.COORDINATES)}; velocities that are left out are 0"
-        raise InputError(f"initial.{missing[0]} is missing: {remedy}")
+    if not is_constrained:
+        known = {*given, *default_coordinates(module, given, np.array(params))}
+        if missing := [q for q in module.COORDINATES if q not in known]:
+            remedy = f"give {', '.join(module.COORDINATES)}; velocities that are left out are 0"
+            raise InputError(f"initial.{missing[0]} is missing: {remedy}")
     for name, value in (given | guesses).items():
         if units[name] == "rad" and isinstance(value, int | float) and abs(value) > TURN:
             text = f"initial.{name} = {value} is {value / TURN:.3g} turns"

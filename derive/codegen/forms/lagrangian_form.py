@@ -10,7 +10,7 @@ from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import rationalised, substitution
 from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion
-from derive.system.prescribed import motions
+from derive.system.prescribed import prescribed_symbols
 from derive.system.symbols import TIME
 
 HALF = Fraction(1, 2)
@@ -44,7 +44,7 @@ class LagrangianForm(EquationsOfMotion):
     @property
     def inverse_dynamics(self) -> list[Node]:
         """M q̈ - f where inputs are 0, but for those of prescribed motions."""
-        prescribed = {s for parts in motions(self._system.inputs).values() for s in parts}
+        prescribed = prescribed_symbols(self._system.inputs)
         names = [u.name for u in self._system.u if u not in prescribed]
         without_inputs = substitution(self._graph, dict.fromkeys(names, self._graph.zero))
         return [without_inputs(one) for one in self._required(self._nodes(self._system.qddot))]

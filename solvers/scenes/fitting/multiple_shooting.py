@@ -126,7 +126,7 @@ class MultipleShooting:
     def __call__(self, nodes: Array, params: Array) -> Arcs:
         """The motions from nodes of shape (segments, state); `NoResidualsError` if one ends."""
         if self._last and all(map(np.array_equal, self._last[:2], (nodes, params))):
-            return self._last[2]  # those of the minimum are asked for again
+            return self._last[2]  # those of the minimum, for the statistics
         lanes, n, count = self._directions, self._n, len(nodes)
         sizes = np.ones(lanes)
         sizes[n:] = np.where(params[self._unknown] == 0, 1.0, np.abs(params[self._unknown]))

@@ -38,21 +38,21 @@ class DocumentNamespace:
 
     def __init__(
         self,
-        meaning: SystemLetters,
+        system_letters: SystemLetters,
         letters: Letters,
         formulas: Sequence[DocumentFormula],
         derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
         meanings: Mapping[str, str],
     ) -> None:
-        self.derivation = Derivation(meaning.system)
+        self.derivation = Derivation(system_letters.system)
         self.letters, self.derivatives = letters, derivatives
-        self._system = meaning.system
+        self._system = system_letters.system
         #: Names with their values.
         self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))
         #: Formulas that define a name, with the text that does.
         self.defining: dict[str, tuple[DocumentFormula, str]] = {}
-        self._add_letters(meaning)
-        own = meaning.multipliers or next(usual_names(self._system))
+        self._add_letters(system_letters)
+        own = system_letters.multipliers or next(usual_names(self._system))
         self.names |= own
         self._add_energies()
         self._add_routhians(formulas)
@@ -78,7 +78,7 @@ class DocumentNamespace:
         #: Parameters with the numbers that the document sets them to.
         self.special_values = self._special_values(formulas)
         equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
-        if meaning.multipliers:
+        if system_letters.multipliers:
             self.model = ReferenceSystem(self.derivation, self.names)
             return
         others = {name: value for name, value in self.names.items() if name not in own}
@@ -111,16 +111,19 @@ class DocumentNamespace:
                 result |= dict.fromkeys(names, sp.Integer(last))
         return result
 
-    def _add_letters(self, meaning: SystemLetters) -> None:
+    def _add_letters(self, system_letters: SystemLetters) -> None:
         system = self._system
-        for name, symbol in meaning.symbols.items():
+        for name, symbol in system_letters.symbols.items():
             self.names[name] = symbol
             if symbol in system.q:
                 self.names[f"{name}_dot"] = velocity(symbol)
                 self.names[f"{name}_ddot"] = acceleration(symbol)
         for name, coordinate in self.letters.momenta.items():
-            if coordinate in meaning.symbols and meaning.symbols[coordinate] in system.q:
-                index = system.q.index(meaning.symbols[coordinate])
+            if (
+                coordinate in system_letters.symbols
+                and system_letters.symbols[coordinate] in system.q
+            ):
+                index = system.q.index(system_letters.symbols[coordinate])
                 self.names[name] = system.p[index]
                 rate = time_derivative(system, self.derivation.momenta[index])
                 self.names[f"{name}_dot"] = rate

@@ -7,10 +7,10 @@
 
    Defined before this file: of the natural extension DEGREE, and NATURAL, the Bernstein coefficients
    of its weights for each method of a family, or of a splitting for positions and for velocities,
-   STAGES_OF of them; of the other one ROUNDS,
-   EXTENSION_NODES, the nodes EXTENSION_C, FIRST and INTEGRALS, the weights of the states at the
-   nodes in the first round and later, and EXTENDED, Bernstein coefficients; which of the natural
-   weights are those of component n, weights_of(), and the change of component n that belongs to stage m, stage_change(). */
+   STAGES_OF of them; of the other one ROUNDS, EXTENSION_NODES, the nodes EXTENSION_C, FIRST and
+   INTEGRALS, the weights of the states at the nodes in the first round and later, and EXTENDED,
+   Bernstein coefficients; which of the natural weights are those of component n, weights_of(), and
+   the change of component n that belongs to stage m, stage_change(). */
 
 enum { EXTENSION_DEGREE = ROUNDS > 0 ? EXTENSION_NODES : DEGREE };
 

@@ -2,7 +2,7 @@
 
    Defined before this file, beside that of step.h: the method, by STAGES, IS_FSAL, IS_SPLITTING,
    ERROR_ORDER, ESTIMATES, stages(), increment(), estimate(), and second_estimate() where there are
-   two. */
+   two of them. */
 
 #define HAS_POLYNOMIAL 0
 #define INTERPOLATES 0
