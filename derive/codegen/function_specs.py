@@ -10,6 +10,8 @@ from derive.system.symbols import TIME
 
 #: Functions of generalized forces, which controllers and identification need.
 FORCES = ("inverse_dynamics", "coriolis", "gravity", "regressor", "base_parameters")
+#: Functions that exports need, in no file of a system.
+OF_EXPORTS = ("energy_rational",)
 
 Form = Literal["lagrangian", "hamiltonian", "rational", "variational", "sensitivity", "parameters"]
 
@@ -163,6 +165,9 @@ SPECS = (
         "Changes of coordinates, of velocities, and of the perturbations of both.",
         exists=lambda derivation: not _is_free(derivation)
         and bool(derivation.system.params) and is_small(derivation)),
+    FunctionSpec("energy_rational", "rational", "",
+        "`energy` of the rational state.",
+        "Energy in J."),
     FunctionSpec("reactions", "lagrangian", "reactions",
         "Forces that hold {} constant, by Lagrange's multipliers.",
         "One for each: a rod's tension, positive where it pulls.",

@@ -12,7 +12,7 @@ from derive.codegen.forms.lagrangian_form import LagrangianForm
 from derive.codegen.forms.output_form import OutputForm
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.codegen.forms.quaternion_form import QuaternionForm
-from derive.codegen.function_specs import FORCES, SPECS, Form, FunctionSpec, is_small
+from derive.codegen.function_specs import FORCES, OF_EXPORTS, SPECS, Form, FunctionSpec, is_small
 from derive.codegen.operations.lowering import Lowering
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
@@ -129,12 +129,13 @@ class Functions:
 
     @property
     def usual(self) -> list[str]:
-        """Names of the functions in files: without forces if there are no inputs to produce them.
+        """Names of the functions in files: of forces only if there are inputs to produce them.
 
         Others are generated when they are first used, of modules that are built.
         """
         is_driven = bool(self._derivation.system.inputs)
-        return [name for name in self.names if is_driven or name not in FORCES]
+        left_out = OF_EXPORTS if is_driven else (*OF_EXPORTS, *FORCES)
+        return [name for name in self.names if name not in left_out]
 
     def part(self, names: Collection[str]) -> Contents:
         """The contents of files of some functions of a system that has all."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
 #: Modules of `solvers.app.commands`, in the order of the help text.
-COMMANDS = "systems derive verify demo run fit sweep chart stability".split()
+COMMANDS = "systems derive verify export demo run fit sweep chart stability".split()
 
 #: Invalid input, numerical failure, and files or environment.
 EXIT_CODES = {ValueError: 2, ArithmeticError: 3, MemoryError: 3, OSError: 4}

@@ -212,6 +212,11 @@ class LagrangianForm(EquationsOfMotion):
         return rationalised(self._rational_rates, [q.name for q in self.angles])
 
     @property
+    def energy_rational(self) -> list[Node]:
+        """The energy as a function of the rational state."""
+        return rationalised(self.energy, [q.name for q in self.angles])
+
+    @property
     def jacobian(self) -> list[Node]:
         """Rows of ∂(q̇, q̈)/∂(q, q̇)."""
         return self._derivatives((*self._system.q, *self._system.qdot))

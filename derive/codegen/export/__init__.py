@@ -1,0 +1,1 @@
+"""Export of equations and of whole simulations to other languages."""

@@ -1,0 +1,1 @@
+"""Target languages of exports: one file each, with a `Target` called ``target``."""
