@@ -3,7 +3,7 @@
 The stages of the derivation::
 
     System ─▶ Derivation ─▶ EquationsOfMotion ─▶ Lowering ─▶ Assignments ─▶ backend ─▶ files
-    positions  SymPy values  one graph            operations  names, texts   Python, C
+    positions  SymPy values  one graph            operations  names, texts   Python, C, others
 
 Systems: `System`, `Coordinate`, `Parameter`, `PointMass`, `RigidBody`, `Input`, `Constraint`,
 `TIME`, `velocity`; those that ship: `names`, `load`.
@@ -15,8 +15,9 @@ Links: `Block`, `Box`, `Cart`, `Plate`, `Rail`, `Rod`, `Spring`, `Thread`, `Whee
 Joints: `ball`, `fixed_distance`, `hinge`, `pin`, `prismatic`, `rolling_on_line`,
 `rolling_on_plane`, `slider`.
 
-Derivations: `Derivation`, `Regressor`, `Linearisation`, `StateSpace`, `reduced`, `with_inputs`,
-`write`.
+Derivations: `Derivation`, `Regressor`, `Linearisation`, `StateSpace`, `reduced`, `with_inputs`.
+
+Files of equations and simulations: `write`, `export`, `Simulation`.
 """
 
 from pathlib import Path

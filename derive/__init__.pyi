@@ -1,3 +1,5 @@
+from derive.codegen.export.exported_system import Simulation as Simulation
+from derive.codegen.export.language_export import export as export
 from derive.codegen.module_files import write as write
 from derive.mechanics.derivation import Derivation as Derivation
 from derive.mechanics.linearisation.small_oscillations import Linearisation as Linearisation

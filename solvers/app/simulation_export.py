@@ -15,7 +15,7 @@ from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import run_scene
 
 if TYPE_CHECKING:
-    from derive.codegen.export.exported_program import Simulation
+    from derive.codegen.export.exported_system import Simulation
     from derive.system.system import System
 
 #: Methods of controlled and of fixed steps, where a scene names none.
@@ -52,7 +52,7 @@ def of_scene(name: str, event: str = "", *, single: bool = False) -> "tuple[Syst
     ArithmeticError
         If the motion of the scene, or of the exported program, is not finite.
     """
-    from derive.codegen.export.exported_program import Simulation
+    from derive.codegen.export.exported_system import Simulation
 
     scene = find(name, load)
     rows = len(scene.times) - 1

@@ -12,7 +12,10 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("derive", "solvers", "notebooks/benchmarks")
 #: Folders of which each file is found by its name.
-REGISTERS = ("backends", "commands", "formats", "languages", "maps", "methods", "models", "systems")
+REGISTERS = (
+    *("backends", "commands", "formats", "languages", "maps", "methods", "models", "systems"),
+    "targets",
+)
 Arrows = dict[str, set[str]]
 
 

@@ -1,96 +1,101 @@
-"""One file adds a target language."""
+"""One file adds a target language: exports of functions and of simulations find it."""
 
-import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from math import pi
 from pathlib import Path
 
 import pytest
 
-import generated.double_pendulum as dp
-from derive import load, write
-from derive.codegen import backends
-from derive.codegen.backend import find_backends
+from derive import Simulation, export, load
+from derive.codegen.export import targets
+from derive.codegen.export.target import find_targets
+from solvers.runge_kutta import method_catalogue
 
 TARGET = '''
-"""JavaScript modules."""
+"""Perl: one file, with vectors as references to arrays."""
 
-from derive.codegen.operations.assignments import ValueAssignment
-from derive.codegen.backend import Backend
-
-
-class JavaScriptBackend(Backend):
-    """Functions of arrays, as an ECMAScript module."""
-
-    suffix = ".mjs"
-
-    def call(self, function, argument):
-        return f"Math.{function}({argument})"
-
-    def comment(self, text):
-        return f"  // {text}"
-
-    def statement(self, statement, function):
-        assert isinstance(statement, ValueAssignment), "large systems are not supported"
-        yield f"  const {statement.name} = {statement.text};"
-
-    def file(self, contents):
-        return "\\n".join(map(self.function, contents.functions))
-
-    def function(self, function):
-        assigned = self.assignments(function)
-        lines = self.body(function, self.inputs(function), assigned)
-        outputs = ", ".join(assigned.outputs)
-        arguments = "t, y, params" if function.state else "params"
-        return "\\n".join([
-            f"export function {function.name}({arguments}) {{",
-            *lines,
-            f"  return [{outputs}];",
-            "}",
-        ])
-
-    def inputs(self, function):
-        parameters = [symbol.name for symbol in function.system.params]
-        for argument, names in (("y", function.state), ("params", parameters)):
-            for k, name in enumerate(names):
-                if name in function.lowering.inputs:
-                    yield f"  const {name} = {argument}[{k}];"
+from derive.codegen.export.target import Target
 
 
-backend = JavaScriptBackend()
+class Perl(Target):
+    """Subroutines."""
+
+    title, suffix, command = "Perl", ".pl", "perl {file}"
+    row = """
+sub print_row {{
+    my ($t, $values) = @_;
+    print join(",", map {{ sprintf("%.17g", $_) }} ($t, @$values)), "\\\\n";
+}}
+"""
+    main = 'print "{heading}\\\\n"; exit(simulate() ? 0 : 3);'
+    comment, truth = "# {}", ("0", "1")
+    variable = fixed = "my {name} = {value};"
+    vector = "my {name} = [(0.0) x ({size})];"
+    loop = "for (my {name} = {start}; {name} < {stop}; {name}++) {{"
+    another, leave = "}} elsif ({test}) {{", "last;"
+    element, conversion = "{name}->[{index}]", "{}"
+    functions = {"floor": "POSIX::floor"}
+    integer = real = "my ${name} = {value};"
+    table = "my ${name} = [", "];"
+
+    def name(self, name):
+        return f"${name}"
+
+    def head(self):
+        return "use strict; use warnings; use POSIX ();"
+
+    def signature(self):
+        return f"sub {self.routine.name} {{"
+
+    def declarations(self):
+        yield f"my ({', '.join(map(self.name, self.routine.parameters))}) = @_;"
+
+
+target = Perl
 '''
 
 
 @pytest.fixture
-def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    folder = tmp_path / "targets"
+def perl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The name of a target whose file lies in a temporary folder."""
+    folder = tmp_path / "languages"
     folder.mkdir()
-    (folder / "javascript.py").write_text(TARGET.lstrip())
-    monkeypatch.setattr(backends, "__path__", [*backends.__path__, str(folder)])
-    path = write(load("double_pendulum"), tmp_path / "build")
-    yield path.with_suffix(".mjs")
-    sys.modules.pop("derive.codegen.backends.javascript", None)
+    (folder / "perl.py").write_text(TARGET.lstrip())
+    monkeypatch.setattr(targets, "__path__", [*targets.__path__, str(folder)])
+    yield "perl"
+    sys.modules.pop("derive.codegen.export.targets.perl", None)
 
 
-def test_the_targets_that_ship_are_files() -> None:
-    assert [backend.suffix for backend in find_backends()] == [".h", ".py"]
+def test_the_targets_that_ship_are_files_of_at_most_150_lines() -> None:
+    files = {path.stem: path for path in Path(targets.__path__[0]).glob("[a-z]*.py")}
+    assert set(files) == set(find_targets())
+    assert max(len(path.read_text().splitlines()) for path in files.values()) <= 150
 
 
-def test_its_file_is_written_beside_the_others(file: Path) -> None:
-    assert {path.suffix for path in file.parent.iterdir()} == {".h", ".mjs", ".py"}
-    functions = re.findall(r"^export function (\w+)", file.read_text(), re.MULTILINE)
-    assert functions == [*dp.OPERATIONS]
-    assert "Math.sin(" in file.read_text()
+@pytest.mark.skipif(shutil.which("perl") is None, reason="needs Perl")
+def test_its_simulation_has_the_bits_of_other_targets(perl: str, tmp_path: Path) -> None:
+    method = method_catalogue.load("verner853")
+    simulation = Simulation(method, (1, 1, 2, 2, 9.81), (pi / 2, pi, 0, 0), 5.0, samples=5)
+    rows = []
+    for target, program in ((perl, "perl"), ("python", sys.executable)):
+        path = export(load("double_pendulum"), target, tmp_path, simulation=simulation)
+        run = subprocess.run([program, path], capture_output=True, text=True, check=True)
+        rows.append([[*map(float, line.split(","))] for line in run.stdout.splitlines()[1:]])
+    assert rows[0] == rows[1]
+    assert len(rows[0]) == 6
 
 
-@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node.js")
-def test_its_functions_have_the_values_of_the_python_functions(file: Path) -> None:
+@pytest.mark.skipif(shutil.which("perl") is None, reason="needs Perl")
+def test_its_functions_have_the_values_of_the_python_functions(perl: str, tmp_path: Path) -> None:
+    import generated.double_pendulum as dp
+
+    path = export(load("double_pendulum"), perl, tmp_path)
     y, params = [1.0, 2.0, 0.5, -0.3], list(dp.DEFAULTS)
-    call = f"console.log(rhs_hamiltonian(0, {y}, {params}).join())"
-    script = f"import {{ rhs_hamiltonian }} from '{file}'; {call}"
-    command = ["node", "--input-type=module", "-e", script]
-    run = subprocess.run(command, capture_output=True, text=True, check=True)
-    result = [float(number) for number in run.stdout.split(",")]
-    assert result == pytest.approx(dp.rhs_hamiltonian(0.0, y, params), rel=1e-14)
+    call = f"my $r = []; rhs_hamiltonian(0, {y}, {params}, $r); printf('%.17g ', $_) for @$r;"
+    run = subprocess.run(
+        ["perl", "-e", f"do '{path}'; {call}"], capture_output=True, text=True, check=True
+    )
+    assert tuple(map(float, run.stdout.split())) == dp.rhs_hamiltonian(0.0, y, params)

@@ -1,322 +1,288 @@
-"""The program of an exported file: functions of a system, and a simulation with a method."""
+"""Programs in the subset of Python that targets translate: their functions, types and parts."""
 
 import ast
-import re
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from importlib import resources
-from math import cos, sin
-from typing import Any, Protocol
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
 
-import numpy as np
+Type = Literal["float", "int", "bool", "vector"]
 
-from derive.codegen.export.program_backend import ProgramBackend, stores
-from derive.codegen.export.program_tree import Program, Without
-from derive.codegen.function_specs import Form
-from derive.codegen.module_functions import Functions, split
-from derive.codegen.module_summary import units
-from derive.mechanics.derivation import Derivation
-from solvers.io.suggestion import did_you_mean
-
-#: Steps of Newton's method onto the constraints, after every step of the motion.
-CORRECTIONS = 2
-#: Parts of the simulation that need an event, angles, or control of the step size.
-EVENT = ("event", "is_event", "report_event", "locate", "kind")
-ANGLES = ("angles", "there", "follow", "START_ANGLES", "ANGLE_COUNT")
-CONTROL = ("advance",)
-FIXED = ("advance_steps",)
+#: Types by their annotations.
+ANNOTATIONS: dict[str, Type] = {
+    "float": "float", "int": "int", "bool": "bool", "Vector": "vector",
+}  # fmt: skip
+COMPARISONS = (ast.Compare, ast.BoolOp)
 
 
-class Method(Protocol):
-    """An explicit Runge–Kutta method, such as `solvers.runge_kutta.tableau.Tableau`."""
+@dataclass
+class Routine:
+    """A function of a program, with the types of its variables."""
 
-    @property
-    def title(self) -> str:
-        """Its usual name."""
+    node: ast.FunctionDef
+    returns: Type | None
+    parameters: dict[str, Type]
+    #: Variables in order of their first assignment; counters of loops are not among them.
+    variables: dict[str, Type] = field(default_factory=dict)
+    counters: list[str] = field(default_factory=list)
+    #: Parameters whose elements it changes, directly or by calls.
+    changed: set[str] = field(default_factory=set)
+    #: Variables that are assigned more than once, or whose elements change.
+    mutable: set[str] = field(default_factory=set)
 
     @property
-    def A(self) -> Sequence[Sequence[Any]]:  # noqa: N802  the usual name
-        """The matrix of stages; numbers convert to float."""
+    def name(self) -> str:
+        """Its name."""
+        return self.node.name
 
     @property
-    def b(self) -> Sequence[Any]:
-        """Weights."""
+    def doc(self) -> list[str]:
+        """The lines of its docstring."""
+        return (ast.get_docstring(self.node) or "").splitlines()
 
     @property
-    def c(self) -> Sequence[Any]:
-        """Nodes."""
+    def body(self) -> list[ast.stmt]:
+        """Its statements, without the docstring."""
+        return self.node.body[1 if self.doc else 0 :]
+
+    @cached_property
+    def used(self) -> set[str]:
+        """Names that occur in its body."""
+        return names_in(self.body)
 
     @property
-    def error_weights(self) -> Sequence[Sequence[Any]]:
-        """Weights of one or two error estimates."""
-
-    @property
-    def error_order(self) -> int:
-        """The order of the error estimate."""
+    def calls(self) -> set[str]:
+        """Names of the functions that it calls."""
+        return {called(node) for one in self.body for node in ast.walk(one)} - {""}
 
 
-@dataclass(frozen=True)
-class Simulation:
-    """What an exported simulation computes.
+def called(node: ast.AST) -> str:
+    """The name of the function that a call calls; empty for other nodes."""
+    match node:
+        case ast.Call(func=ast.Name(id=name)):
+            return name
+    return ""
 
-    Parameters
+
+def names_in(nodes: Iterable[ast.AST]) -> set[str]:
+    """All names in some nodes."""
+    return {node.id for one in nodes for node in ast.walk(one) if isinstance(node, ast.Name)}
+
+
+class ExportedProgram:
+    """Constants and functions, from a tree of Python, that functions called `entry` need.
+
+    Attributes
     ----------
-    method : Tableau
-        An explicit Runge–Kutta method.
-    params : sequence of float
-        In the order of the system's parameters and inputs.
-    y0 : sequence of float
-        The start: coordinates, then velocities.
-    duration : float
-        In s.
-    samples : int
-        Number of rows of output after the start, evenly spaced.
-    steps : int
-        Number of equal steps between two rows; 0 for steps that are controlled.
-    rtol, atol : float
-        Tolerances of controlled steps.
-    event : tuple of str and float, optional
-        A coordinate or velocity, and the value where it has a row of output.
-    name, note : str, optional
-        The name of the file, by default that of the system; and a remark for its header.
+    constants : dict
+        Values by name: int, float, or a list of float.
+    routines : dict
+        Functions by name, each after those that it calls.
     """
 
-    method: Method
-    params: Sequence[float]
-    y0: Sequence[float]
-    duration: float
-    samples: int = 100
-    steps: int = 0
-    rtol: float = 1e-9
-    atol: float = 1e-9
-    event: tuple[str, float] | None = None
-    name: str = ""
-    note: str = ""
-
-
-class ExportedSystem:
-    """The functions of a system, as programs in the subset of Python."""
-
-    def __init__(self, derivation: Derivation) -> None:
-        self.derivation, self.functions = derivation, Functions(derivation)
-        self.system = derivation.system
+    def __init__(self, tree: ast.Module, entry: Collection[str]) -> None:
+        self._functions = {one.name: one for one in tree.body if isinstance(one, ast.FunctionDef)}
+        every = dict(_constants(tree))
+        self.routines: dict[str, Routine] = {}
+        for name in entry:
+            self._add(name, every)
+        own = ((one, {*one.variables, *one.parameters}) for one in self.routines.values())
+        used = {name for one, names in own for name in one.used - names}
+        self.constants = {name: value for name, value in every.items() if name in used}
 
     @property
-    def form(self) -> Form:
-        """The form of the equations that calls the fewest functions."""
-        return "rational" if self.functions.fastest == "rhs_rational" else "lagrangian"
+    def library(self) -> set[str]:
+        """Names of the functions of the mathematical library, and of Python, that are called."""
+        return {name for one in self.routines.values() for name in one.calls} - {*self.routines}
 
-    def library(self, names: Iterable[str]) -> Program:
-        """A program of functions of these names."""
-        texts = [_template(), *map(self._text, names)]
-        return Program(ast.parse("\n\n".join(texts)), [*names])
+    def type_of(self, node: ast.expr, routine: Routine) -> Type:
+        """The type of an expression."""
+        match node:
+            case ast.Constant(value=value):
+                return "bool" if isinstance(value, bool) else _type_of_value(value)
+            case ast.Name(id=name):
+                if name in routine.counters:
+                    return "int"
+                known = routine.variables | routine.parameters
+                return known[name] if name in known else _type_of_value(self._every[name])
+            case ast.Call():
+                name = called(node)
+                routine = self.routines.get(name) or routine
+                return (routine.returns or "float") if name in self.routines else "float"
+            case ast.BinOp(left=ast.List()):
+                return "vector"
+            case ast.BinOp(left=left, right=right):
+                types = {self.type_of(left, routine), self.type_of(right, routine)}
+                return "float" if "float" in types or isinstance(node.op, ast.Div) else "int"
+            case ast.UnaryOp(op=ast.Not()):
+                return "bool"
+            case ast.UnaryOp(operand=operand):
+                return self.type_of(operand, routine)
+        return "bool" if isinstance(node, COMPARISONS) else "float"
 
-    def simulation(self, of: Simulation, *, is_program: bool = True) -> Program:
-        """A program that integrates and prints a motion, or a library with its steps."""
-        suffix = "_rational" if self.form == "rational" else ""
-        names = {f"rhs{suffix}": "rhs", f"energy{suffix}": "energy"}
-        if self.system.conditions:
-            names[f"correction{suffix}"] = "correction"
-        texts = [re.sub(rf"\b{name}\b", new, self._text(name)) for name, new in names.items()]
-        texts += [self._project(), self._row(of), self._follow(), *self._event(of)]
-        tree = ast.parse(_template())
-        own = ast.parse("\n\n".join(texts)).body
-        replaced = {one.name for one in own if isinstance(one, ast.FunctionDef)}
-        others = [one for one in tree.body if getattr(one, "name", "") not in replaced]
-        tree.body = [*others, *self._constants(of), *own]
-        entry = [*names.values(), "step", *(["simulate"] if is_program else [])]
-        return Program(Without(tree, self._absent(of)).visit(tree), entry)
+    def _add(self, name: str, constants: Mapping[str, object]) -> None:
+        """Add a function after those that it calls."""
+        if name in self.routines or name not in self._functions:
+            return
+        self._every = constants
+        node = self._functions[name]
+        returns = ANNOTATIONS.get(ast.unparse(node.returns)) if node.returns else None
+        arguments = ((one.arg, one.annotation) for one in node.args.args)
+        parameters = {arg: ANNOTATIONS[ast.unparse(kind)] for arg, kind in arguments if kind}
+        routine = Routine(node, returns, parameters)
+        for inner in [*routine.calls]:
+            self._add(inner, constants)
+        for statement in _flat(routine.body):
+            self._note(statement, routine)
+        self.routines[name] = routine
 
-    @property
-    def usual(self) -> list[str]:
-        """Names of the functions of libraries: those of the first file of a module."""
-        contents = self.functions.contents()
-        return [one.name for one in split(contents.functions)[0]]
+    def _note(self, statement: ast.stmt, routine: Routine) -> None:
+        """The variables that a statement assigns, and the vectors that it changes."""
+        match statement:
+            case ast.For(target=ast.Name(id=name)):
+                if name not in routine.counters:
+                    routine.counters.append(name)
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                if name in routine.variables:
+                    routine.mutable.add(name)
+                else:
+                    routine.variables[name] = self.type_of(value, routine)
+            case ast.AugAssign(target=ast.Name(id=name)):
+                routine.mutable.add(name)
+            case ast.Assign(targets=[ast.Subscript(value=ast.Name(id=name))]):
+                routine.mutable.add(name)
+        for node in _own_nodes(statement):
+            if inner := self.routines.get(called(node)):
+                assert isinstance(node, ast.Call)
+                pairs = zip(inner.parameters, node.args, strict=True)
+                changed = (arg for name, arg in pairs if name in inner.changed)
+                routine.mutable |= {arg.id for arg in changed if isinstance(arg, ast.Name)}
+        routine.changed = routine.mutable & {*routine.parameters}
 
-    def forms(self, names: Iterable[str]) -> set[Form]:
-        """Forms of the equations whose states these functions take."""
-        return {one.form for one in self.functions.part([*names]).functions if one.state}
 
-    def columns(self, of: Simulation) -> tuple[str, ...]:
-        """Names of the columns of rows of output, with units."""
-        unit = units(self.system)
-        names = [f"{s.name} [{unit[s.name]}]" for s in (*self.system.q, *self.system.qdot)]
-        return ("t [s]", *names, "energy [J]", *(["event"] if of.event else []))
+def _type_of_value(value: object) -> Type:
+    return "vector" if isinstance(value, list) else "int" if isinstance(value, int) else "float"
 
-    def check(self, of: Simulation) -> None:
-        """Raise `ValueError` if a simulation is not possible."""
-        state = [s.name for s in (*self.system.q, *self.system.qdot)]
-        method = of.method
-        if any(a != 0 for i, row in enumerate(method.A) for a in row[i:]):
-            raise ValueError(
-                f"the method {method.title!r} is implicit: exports have explicit methods, such as "
-                "verner853 or rk4"
-            )
-        if not of.steps and not method.error_weights:
-            raise ValueError(
-                f"the method {method.title!r} estimates no error, which step control needs: give "
-                "the number of steps, or choose another method, such as verner853"
-            )
-        for name, values, names in (
-            ("y0", of.y0, state),
-            ("params", of.params, [s.name for s in self.system.params]),
-        ):
-            if len(values) != len(names) or not np.isfinite(values).all():
-                raise ValueError(
-                    f"{name} is {[*map(float, values)]}, not finite numbers for {', '.join(names)}"
-                )
-        if of.event and of.event[0] not in state:
-            raise ValueError(
-                f"no coordinate or velocity is called {of.event[0]!r}"
-                f"{did_you_mean(of.event[0], state)}; known: {', '.join(state)}"
-            )
 
-    def _text(self, name: str) -> str:
-        (function,) = self.functions.part([name]).functions
-        return ProgramBackend().function(function)
+def _constants(tree: ast.Module) -> Iterator[tuple[str, object]]:
+    """Constants of a module, several of which one statement may define."""
+    for statement in tree.body:
+        match statement:
+            case ast.Assign(targets=[ast.Tuple(elts=targets)], value=ast.Tuple(elts=values)):
+                for target, one in zip(targets, values, strict=True):
+                    yield ast.unparse(target), ast.literal_eval(one)
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                if not isinstance(value, ast.Subscript):  # not an alias of a type
+                    yield name, ast.literal_eval(value)
 
-    @property
-    def _angles(self) -> list[int]:
-        """Numbers of the coordinates whose sine and cosine are in the state."""
-        if self.form != "rational":
-            return []
-        state = self.functions.contents([]).states["rational"]
-        return [k for k, q in enumerate(self.system.q) if f"sin_{q.name}" in state]
 
-    @property
-    def _places(self) -> list[str]:
-        """The components of (q, q̇) by the state and the angles."""
-        places, k = [], 0
-        for n in range(len(self.system.q)):
-            is_angle = n in self._angles
-            places.append(f"angles[{self._angles.index(n)}]" if is_angle else f"y[{k}]")
-            k += 1 + is_angle
-        return [*places, *(f"y[{k + n}]" for n in range(len(self.system.q)))]
+def _flat(statements: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
+    """Statements, and those inside of loops and conditions, in order."""
+    for one in statements:
+        yield one
+        for part in ("body", "orelse"):
+            yield from _flat(getattr(one, part, ()))
 
-    def _sines(self) -> list[int]:
-        """Places of the sines of angles in the state, before those of their cosines."""
-        return [n + k for k, n in enumerate(self._angles)]
 
-    def _project(self) -> str:
-        lines = ["def project(t: float, y: Vector, params: Vector) -> None:"]
-        lines.append('    "Restore constraints, and sin^2 + cos^2 = 1 of angles, by Newton steps."')
-        if self.system.conditions:
-            lines += [f"    change = [0.0]*{2 * len(self.system.q)}"]
-            lines += [
-                f"    for k in range({CORRECTIONS}):",
-                "        correction(t, y, params, change)",
-            ]
-            lines += [f"        {line}" for line in self._corrected()]
-        lines += [f"    {line}" for line in self._normalised()]
-        return "\n".join(lines if lines[2:] else [])
+def _own_nodes(statement: ast.stmt) -> Iterator[ast.AST]:
+    """The nodes of a statement without those of the statements inside."""
+    for child in ast.iter_child_nodes(statement):
+        if not isinstance(child, ast.stmt):
+            yield from ast.walk(child)
 
-    def _corrected(self) -> Iterator[str]:
-        """Statements that add a change of coordinates and velocities to the state."""
-        place = 0
-        for n in range(2 * len(self.system.q)):
-            if n in self._angles:
-                sine, cosine = f"y[{place}]", f"y[{place + 1}]"
-                yield f"before = {sine}"
-                yield f"{sine} = {sine} + {cosine}*change[{n}]"
-                yield f"{cosine} = {cosine} - before*change[{n}]"
-                place += 2
-            else:
-                yield f"y[{place}] = y[{place}] + change[{n}]"
-                place += 1
-        yield from self._normalised()
 
-    def _normalised(self) -> Iterator[str]:
-        for k in self._sines():
-            yield f"scale = 1.5 - 0.5*(y[{k}]*y[{k}] + y[{k + 1}]*y[{k + 1}])"
-            yield f"y[{k}] = y[{k}]*scale"
-            yield f"y[{k + 1}] = y[{k + 1}]*scale"
+class Without(ast.NodeTransformer):
+    """Removes everything that depends on absent functions, constants and vectors.
 
-    def _row(self, of: Simulation) -> str:
-        head = (
-            "def row(t: float, y: Vector, angles: Vector, params: Vector, values: Vector) -> None:"
-        )
-        places = [*self._places, "energy(t, y, params)"]
-        about = '    "Values of a row of output: coordinates, velocities, energy."'
-        return "\n".join([head, about, *stores("values", range(len(places)), places)])
+    Parameters and arguments of these names go, statements that call these functions or assign
+    these variables, and loops over these constants.
+    """
 
-    def _follow(self) -> str:
-        lines = ["def follow(y: Vector, angles: Vector) -> None:"]
-        lines.append('    "Let the angles follow the state, over whole turns."')
-        for n, k in enumerate(self._sines()):
-            lines.append(f"    angles[{n}] = angle(y[{k}], y[{k + 1}], angles[{n}])")
-        return "\n".join(lines if self._angles else [])
-
-    def _event(self, of: Simulation) -> list[str]:
-        if of.event is None:
-            return []
-        name, value = of.event
-        names = [s.name for s in (*self.system.q, *self.system.qdot)]
-        k = names.index(name)
-        formula, condition = f"{self._places[k]} - {_float(value)}", "True"
-        about = f"{name} - {value:g}"
-        if k in self._angles:
-            sine = self._sines()[self._angles.index(k)]
-            formula = f"{_float(cos(value))}*y[{sine}] - {_float(sin(value))}*y[{sine + 1}]"
-            condition = f"abs({self._places[k]} - {_float(value)}) < 1.0"
-            about = f"sine of {about}"
-        return [
-            "def event(t: float, y: Vector, params: Vector) -> float:\n"
-            f'    "The {about}, which is 0 at events."\n    return {formula}',
-            "def is_event(y: Vector, angles: Vector) -> bool:\n"
-            f'    "Whether a zero of `event` is an event: an angle may differ by whole turns."\n'
-            f"    return {condition}",
-        ]
-
-    def _absent(self, of: Simulation) -> set[str]:
-        absent = {*(CONTROL if of.steps else FIXED)}
-        absent |= set() if of.event else {*EVENT}
-        absent |= set() if self._angles else {*ANGLES}
-        if not (self._angles or self.system.conditions):
-            absent.add("project")
-        if not of.steps and len(of.method.error_weights) < 2:
-            absent.add("E_LOW")
-        return absent
-
-    def _constants(self, of: Simulation) -> list[ast.stmt]:
-        q, method = len(self.system.q), of.method
-        state = [float(x) for x in of.y0]
-        start = list[float]()
-        for k, x in enumerate(state):
-            start += [sin(x), cos(x)] if k in self._angles else [x]
-        first = of.duration / of.samples / 100
-        power = method.error_order + 1
-        weights = [[*map(float, row)] for row in method.error_weights]
-        values: dict[str, object] = {
-            "SIZE": len(start),
-            "PARAMETERS": len(of.params),
-            "COLUMNS": 2 * q + 1 + (of.event is not None),
-            "STAGES": len(method.b),
-            "A": [float(a) for line in method.A for a in line],
-            "B": [*map(float, method.b)],
-            "C": [*map(float, method.c)],
-            "E": weights[0] if weights else [],
-            "E_LOW": weights[-1] if weights else [],
-            "ERROR_ORDER": method.error_order,
-            "DEFAULTS": [*map(float, of.params)],
-            "START_STATE": start,
-            "START_ANGLES": [state[k] for k in self._angles],
-            "ANGLE_COUNT": len(self._angles),
-            "DURATION": float(of.duration),
-            "SAMPLES": of.samples,
-            "STEPS": of.steps,
-            "RTOL": float(of.rtol),
-            "ATOL": float(of.atol),
-            "FIRST_STEP": first,
-            "LEAST_STEP": 1e-14 * of.duration,
-            "SAFETY_POWER": 0.9**power,
+    def __init__(self, tree: ast.Module, absent: Collection[str]) -> None:
+        self._absent = {*absent}
+        functions = (one for one in tree.body if isinstance(one, ast.FunctionDef))
+        self._gone = {
+            one.name: {k for k, arg in enumerate(one.args.args) if arg.arg in self._absent}
+            for one in functions
         }
-        return [*ast.parse("\n".join(f"{name} = {value!r}" for name, value in values.items())).body]
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST | None:
+        """A function without absent parameters, unless it is absent itself."""
+        if node.name in self._absent:
+            return None
+        node.args.args = [arg for arg in node.args.args if arg.arg not in self._absent]
+        return self.generic_visit(node)
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:
+        """A call without absent arguments."""
+        gone = self._gone.get(called(node), set())
+        node.args = [arg for k, arg in enumerate(node.args) if k not in gone]
+        return self.generic_visit(node)
+
+    def visit_Expr(self, node: ast.Expr) -> ast.AST | None:
+        """A call of a function that is there."""
+        return None if called(node.value) in self._absent else self.generic_visit(node)
+
+    def visit_Assign(self, node: ast.Assign) -> ast.AST | None:
+        """An assignment that needs nothing absent."""
+        self.generic_visit(node)
+        return None if names_in([node]) & self._absent else node
+
+    def visit_For(self, node: ast.For) -> ast.AST | None:
+        """A loop over a range that is there."""
+        return None if names_in([node.iter]) & self._absent else self.generic_visit(node)
 
 
-def _float(value: float) -> str:
-    return f"({value!r})"
+def operations(program: ExportedProgram, name: str) -> int:
+    """The most arithmetic operations, comparisons and library calls in a call of a function.
+
+    Of conditions the longer branch counts; loops must be over ranges.
+    """
+    known = {key: value for key, value in program.constants.items() if isinstance(value, int)}
+    return _operations(program.routines[name].body, program, known)
 
 
-def _template() -> str:
-    path = resources.files(__package__ or "") / "integration_program.py"
-    return path.read_text(encoding="utf-8")
+def _operations(
+    statements: Iterable[ast.stmt], program: ExportedProgram, known: Mapping[str, int]
+) -> int:
+    total = 0
+    for one in statements:
+        indices = {n for node in _own_nodes(one) for n in _index_nodes(node)}
+        for node in _own_nodes(one):
+            total += isinstance(node, ast.BinOp | ast.Compare) and node not in indices
+            inner = called(node)
+            if inner in program.routines:
+                total += operations(program, inner)
+            elif inner and inner not in ("float", "range"):
+                total += 1
+        total += isinstance(one, ast.AugAssign)
+        match one:
+            case ast.For(target=ast.Name(id=counter), iter=ast.Call(args=arguments), body=body):
+                limits = [_whole(argument, known) for argument in arguments]
+                for value in range(*limits):
+                    total += _operations(body, program, {**known, counter: value})
+            case ast.If(body=body, orelse=orelse):
+                total += max(_operations(part, program, known) for part in (body, orelse))
+    return total
+
+
+def _index_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of whole numbers: of indices, and of lengths of vectors."""
+    match node:
+        case ast.Subscript(slice=part) | ast.BinOp(left=ast.List(), right=part):
+            yield from (node, *ast.walk(part)) if isinstance(node, ast.BinOp) else ast.walk(part)
+
+
+def _whole(node: ast.expr, known: Mapping[str, int]) -> int:
+    """The value of an expression of whole numbers."""
+    match node:
+        case ast.Constant(value=int(value)):
+            return value
+        case ast.Name(id=name):
+            return known[name]
+        case ast.BinOp(left=left, op=op, right=right):
+            a, b = _whole(left, known), _whole(right, known)
+            return (
+                a + b if isinstance(op, ast.Add) else a * b if isinstance(op, ast.Mult) else a - b
+            )
+    raise NotImplementedError(f"no number of {ast.unparse(node)}")

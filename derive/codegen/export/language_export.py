@@ -6,8 +6,8 @@ from functools import lru_cache
 from os import PathLike
 from pathlib import Path
 
-from derive.codegen.export.exported_program import ExportedSystem, Simulation
-from derive.codegen.export.target import Exported, Target, find_targets
+from derive.codegen.export.exported_system import ExportedSystem, Simulation
+from derive.codegen.export.target import ExportedFile, Target, find_targets
 from derive.codegen.function_specs import Form
 from derive.codegen.module_summary import summary
 from derive.mechanics.derivation import Derivation
@@ -77,7 +77,7 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
     if simulation is None:
         names = of.usual
         program = of.library(names)
-        exported = Exported(system.name, stem, _about(of, sorted({*of.forms(names)})), program)
+        exported = ExportedFile(system.name, stem, _about(of, sorted({*of.forms(names)})), program)
         return f"{stem}{target.library_suffix or target.suffix}", target(exported).file()
     if not target.has_simulations:
         others = ", ".join(key for key, one in find_targets().items() if one.has_simulations)
@@ -90,7 +90,7 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
     about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
     return f"{stem}{target.suffix}", target(
-        Exported(system.name, stem, about, program, columns)
+        ExportedFile(system.name, stem, about, program, columns)
     ).file()
 
 

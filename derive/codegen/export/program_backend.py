@@ -12,7 +12,7 @@ from derive.codegen.operations.assignments import (
 )
 
 
-class ProgramBackend(Backend):
+class SubsetBackend(Backend):
     """Functions in the subset of Python that targets translate."""
 
     suffix = ".py"

@@ -12,7 +12,7 @@ from textwrap import wrap
 from typing import ClassVar
 
 from derive.codegen.export import targets
-from derive.codegen.export.program_tree import Program, called
+from derive.codegen.export.exported_program import ExportedProgram, called
 from derive.codegen.module_summary import broken_sum
 
 WIDTH = 96
@@ -28,13 +28,13 @@ COMPARED_BY: dict[type[ast.AST], str] = {
 
 
 @dataclass(frozen=True)
-class Exported:
+class ExportedFile:
     """A program of a system, and the texts of its file."""
 
     name: str  # of the system
     stem: str  # of the file
     about: str  # the header's text
-    program: Program
+    program: ExportedProgram
     columns: tuple[str, ...] = ()  # names of the columns of rows of output; none: only functions
 
 
@@ -103,7 +103,7 @@ class Target(ABC):
     real: ClassVar[str] = "static const double {name} = {value};"
     table: ClassVar[tuple[str, str]] = ("static const double {name}[{size}] = {{", "}};")
 
-    def __init__(self, exported: Exported) -> None:
+    def __init__(self, exported: ExportedFile) -> None:
         self.exported, self.program = exported, exported.program
         self.routine = next(iter(self.program.routines.values()))  # the one that is written
 
@@ -170,8 +170,9 @@ class Target(ABC):
     # expressions
 
     def name(self, name: str) -> str:
-        """A name, changed where the language reserves it."""
-        return f"{name}_" if name in self._words() else name
+        """A name, changed where the language reserves it or a constant has it."""
+        is_hiding = name in self.routine.variables and name in self.program.constants
+        return f"{name}_" if is_hiding or name in self._words() else name
 
     @classmethod
     @cache
@@ -252,7 +253,7 @@ class Target(ABC):
             name = self.functions.get(name, name)
             if "{" in name:
                 return name.format(*texts)
-        return f"{self.name(name)}({', '.join(texts)})"
+        return f"{name}({', '.join(texts)})"
 
     # statements
 

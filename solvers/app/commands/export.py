@@ -29,7 +29,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     options.add_examples(
         parser,
         "holonomic export double_pendulum --to javascript",
-        "holonomic export report --to rust --event 'theta2 = pi' && rustc -O report.rs && ./report",
+        "holonomic export report --to rust --output build",
     )
 
 

@@ -1,6 +1,6 @@
 """CasADi: functions of symbols, for optimal control."""
 
-from derive.codegen.export.python_functions import PythonFunctions, functions_of
+from derive.codegen.export.python_syntax import PythonFunctions, functions_of
 
 
 class CasADi(PythonFunctions):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from derive.codegen.export.program_tree import operations
+from derive.codegen.export.exported_program import operations
 from derive.codegen.export.targets.c99 import C99
 
 

@@ -1,6 +1,6 @@
 """heyoka.py: expressions for integration by Taylor series."""
 
-from derive.codegen.export.python_functions import PythonFunctions, functions_of
+from derive.codegen.export.python_syntax import PythonFunctions, functions_of
 
 
 class Heyoka(PythonFunctions):

@@ -25,7 +25,7 @@ if (globalThis.process?.argv[1]?.endsWith("{file}")) {{
 
 
 class JavaScript(Target):
-    """Exported functions with vectors as arrays."""
+    """ExportedFile functions with vectors as arrays."""
 
     title, suffix = "JavaScript", ".mjs"
     row, main = ROW, MAIN

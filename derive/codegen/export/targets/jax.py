@@ -1,6 +1,6 @@
 """JAX: functions that can be compiled, differentiated and vectorised."""
 
-from derive.codegen.export.python_functions import PythonFunctions, functions_of
+from derive.codegen.export.python_syntax import PythonFunctions, functions_of
 
 
 class Jax(PythonFunctions):

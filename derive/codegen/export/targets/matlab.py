@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterator
 
-from derive.codegen.export.program_tree import called
+from derive.codegen.export.exported_program import called
 from derive.codegen.export.target import Target
 
 ROW = """\

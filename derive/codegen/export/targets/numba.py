@@ -1,6 +1,6 @@
 """Numba: functions that are compiled when they are first called."""
 
-from derive.codegen.export.python_functions import PythonFunctions
+from derive.codegen.export.python_syntax import PythonFunctions
 
 
 class Numba(PythonFunctions):
