@@ -13,8 +13,8 @@ Periodic orbits: `periodic_orbit`, `orbit_family`, `normal_mode_orbit`, `backbon
 
 Perturbations: `lyapunov_spectrum`, `sensitivities`, `Sensitivities`, `transition_matrix`.
 
-Scenes and fits: `load_scene`, `run_scene`, `Scene`, `SceneResult`; `read_measurement`, `fit`,
-`compare`, `Measurement`, `Fit`.
+Scenes and fits: `load_scene`, `run_scene`, `Scene`, `SceneResult`, `LivePage`; `read_measurement`,
+`fit`, `compare`, `Measurement`, `Fit`.
 
 Sweeps: `load_sweep`, `sweep`, `partial_results`, `Sweep`, `Results`, `Pool`; axes: `Grid`,
 `Random`, `Table`; maps: `Basins`, `Bifurcation`, `EnergyError`, `Extremes`, `Final`, `First`,

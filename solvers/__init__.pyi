@@ -1,6 +1,7 @@
 from solvers.app.fitting import compare as compare
 from solvers.app.fitting import fit as fit
 from solvers.app.fitting import read_measurement as read_measurement
+from solvers.app.live_page import LivePage as LivePage
 from solvers.app.modules import build as build
 from solvers.app.modules import load as load
 from solvers.app.scenes import load_scene as load_scene

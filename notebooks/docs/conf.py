@@ -147,6 +147,8 @@ def statuses(_: str) -> str:
     return f"| status | meaning |\n|---|---|\n{rows}\n"
 
 
+#: The page that integrates a motion, beside the front page.
+LIVE_PAGE = "live.html"
 MARKERS: dict[str, Callable[[str], str]] = {"api": api, "commands": commands, "statuses": statuses}
 
 
@@ -162,6 +164,22 @@ def add_contents(app: Sphinx, document: str, source: list[str]) -> None:
         source[0] += (Path(__file__).parent / "contents.txt").read_text(encoding="utf-8")
 
 
+def show_live_page(app: Sphinx, document: str, source: list[str]) -> None:
+    """Replace the picture at the top of the front page by a motion that the page integrates."""
+    if document == root_doc:
+        frame = f'<iframe src="{LIVE_PAGE}" title="A double pendulum to drag"></iframe>'
+        picture = re.compile(r"^!\[.*\]\((.*)\)$", re.MULTILINE)
+        source[0] = picture.sub(f"```{{raw}} html\n{frame}\n```\n\n\\g<0>", source[0], count=1)
+
+
+def write_live_page(app: Sphinx, error: Exception | None) -> None:
+    """Write the page that the front page frames."""
+    from solvers import LivePage
+
+    if error is None and app.builder.format == "html":
+        LivePage("report").write(Path(app.outdir) / LIVE_PAGE)
+
+
 def mathml(translator: Any, node: nodes.math) -> None:
     """Set a formula as MathML, which browsers show without a script."""
     tree = tex2mathml(node.astext(), as_block=isinstance(node, nodes.math_block))
@@ -174,3 +192,5 @@ def setup(app: Sphinx) -> None:
     app.add_html_math_renderer("mathml", (mathml, None), (mathml, None))
     app.connect("source-read", replace_markers)
     app.connect("source-read", add_contents)
+    app.connect("source-read", show_live_page)
+    app.connect("build-finished", write_live_page)

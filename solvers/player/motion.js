@@ -1,9 +1,4 @@
-// The motions: their time span, and positions and energy errors at any time.
-
-const tracks = JSON.parse(document.getElementById("motions").textContent);
-
-const startTime = Math.min(...tracks.map((track) => track.t[0]));
-const endTime = Math.max(...tracks.map((track) => track.t.at(-1)));
+// Positions and energy errors of the motions, `tracks`, at any time.
 
 /** Index of the last sample that is not after `time`. */
 function sampleAt(t, time) {

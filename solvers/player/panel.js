@@ -105,6 +105,14 @@ class View {
     ];
   }
 
+  /** Pixels to metres on the plane of view. */
+  toMetres([x, y]) {
+    return [
+      this.centre[0] + (x - this.middle[0]) / this.scale,
+      this.centre[1] - (y - this.middle[1]) / this.scale,
+    ];
+  }
+
   /** The visible ranges in metres, from left to right and from bottom to top. */
   visibleRanges() {
     const sides = [this.right - this.left, this.bottom - this.top];

@@ -12,11 +12,9 @@ from solvers.io.html_page import html_page
 from solvers.player.track import Track
 
 SOURCES = Path(__file__).parent
-#: The parts of the player; each uses those before it.
-SCRIPTS = (
-    *("motion.js", "following.js", "camera.js", "canvas.js", "shapes.js", "panel.js"),
-    *("energy_chart.js", "state_chart.js", "player.js"),
-)
+#: The parts of the player; each uses those before it. A page that integrates has the view, too.
+VIEW = ("motion.js", "following.js", "camera.js", "canvas.js", "shapes.js", "panel.js")
+SCRIPTS = ("recorded.js", *VIEW, "energy_chart.js", "state_chart.js", "player.js")
 
 
 @dataclass(frozen=True)
@@ -70,13 +68,10 @@ class Page:
 def player(tracks: Sequence[Track]) -> str:
     """The part of a page that plays `tracks`, as HTML; it needs `style` and `script`."""
     _check(tracks)
-    motions = json.dumps([track.json_values() for track in tracks], separators=(",", ":"))
-    # no character of a label starts or ends a tag or a comment
-    for character in "&<>":
-        motions = motions.replace(character, rf"\u{ord(character):04x}")
+    motions = as_json([track.json_values() for track in tracks])
     unit = tracks[0].energy_unit
     words = "in J" if unit == "J" else f"relative to the {unit}"
-    return Template(_source("player.html")).substitute(motions=motions, unit=escape(words))
+    return Template(source("player.html")).substitute(motions=motions, unit=escape(words))
 
 
 def _check(tracks: Sequence[Track]) -> None:
@@ -98,13 +93,22 @@ def _check(tracks: Sequence[Track]) -> None:
 
 def style() -> str:
     """The style sheet of a page and the player in it."""
-    return _source("player.css")
+    return source("player.css")
 
 
 def script() -> str:
     """The script of the player."""
-    return "\n".join(map(_source, SCRIPTS))
+    return "\n".join(map(source, SCRIPTS))
 
 
-def _source(name: str) -> str:
+def as_json(value: object) -> str:
+    """JSON in which no character of a text starts or ends a tag or a comment of HTML."""
+    text = json.dumps(value, separators=(",", ":"))
+    for character in "&<>":
+        text = text.replace(character, rf"\u{ord(character):04x}")
+    return text
+
+
+def source(name: str) -> str:
+    """The text of a file of the player."""
     return (SOURCES / name).read_text(encoding="utf-8")

@@ -75,7 +75,7 @@ def test_all_stages_fit_on_one_screen(demo: tuple[str, Path]) -> None:
     lines = text.splitlines()
     assert len(lines) <= 40
     assert max(len(line) for line in lines if str(page) not in line) <= 80
-    assert {path.name for path in page.parent.iterdir()} == {"demo.html", "flips"}
+    assert {path.name for path in page.parent.iterdir()} == {"demo.html", "live.html", "flips"}
 
 
 @pytest.mark.long("the whole demonstration")

@@ -119,21 +119,27 @@ class ExportedSystem:
         texts = [_template(), *map(self._text, names)]
         return ExportedProgram(ast.parse("\n\n".join(texts)), [*names])
 
-    def simulation(self, of: Simulation, *, is_program: bool = True) -> ExportedProgram:
-        """A program that integrates and prints a motion, or a library with its steps."""
+    def simulation(
+        self, of: Simulation, entry: Sequence[str] = ("simulate",), also: Sequence[str] = ()
+    ) -> ExportedProgram:
+        """A program that integrates a motion, as far as functions called `entry` need it.
+
+        Further functions of the library are `also` there.
+        """
         suffix = "_rational" if self.form == "rational" else ""
         names = {f"rhs{suffix}": "rhs", f"energy{suffix}": "energy"}
         if self.system.conditions:
             names[f"correction{suffix}"] = "correction"
         texts = [re.sub(rf"\b{name}\b", new, self._text(name)) for name, new in names.items()]
+        texts += map(self._text, also)
         texts += [self._project(), self._row(of), self._follow(), *self._event(of)]
         tree = ast.parse(_template())
         own = ast.parse("\n\n".join(texts)).body
         replaced = {one.name for one in own if isinstance(one, ast.FunctionDef)}
         others = [one for one in tree.body if getattr(one, "name", "") not in replaced]
         tree.body = [*others, *self._constants(of), *own]
-        entry = [*names.values(), "step", *(["simulate"] if is_program else [])]
-        return ExportedProgram(Without(tree, self._absent(of)).visit(tree), entry)
+        names_of_all = [*names.values(), *also, "step", *entry]
+        return ExportedProgram(Without(tree, self._absent(of)).visit(tree), names_of_all)
 
     @property
     def usual(self) -> list[str]:
@@ -184,7 +190,7 @@ class ExportedSystem:
         return SubsetBackend().function(function)
 
     @property
-    def _angles(self) -> list[int]:
+    def angles(self) -> list[int]:
         """Numbers of the coordinates whose sine and cosine are in the state."""
         if self.form != "rational":
             return []
@@ -196,14 +202,14 @@ class ExportedSystem:
         """The components of (q, q̇) by the state and the angles."""
         places, k = [], 0
         for n in range(len(self.system.q)):
-            is_angle = n in self._angles
-            places.append(f"angles[{self._angles.index(n)}]" if is_angle else f"y[{k}]")
+            is_angle = n in self.angles
+            places.append(f"angles[{self.angles.index(n)}]" if is_angle else f"y[{k}]")
             k += 1 + is_angle
         return [*places, *(f"y[{k + n}]" for n in range(len(self.system.q)))]
 
     def _sines(self) -> list[int]:
         """Places of the sines of angles in the state, before those of their cosines."""
-        return [n + k for k, n in enumerate(self._angles)]
+        return [n + k for k, n in enumerate(self.angles)]
 
     def _project(self) -> str:
         lines = ["def project(t: float, y: Vector, params: Vector) -> None:"]
@@ -222,7 +228,7 @@ class ExportedSystem:
         """Statements that add a change of coordinates and velocities to the state."""
         place = 0
         for n in range(2 * len(self.system.q)):
-            if n in self._angles:
+            if n in self.angles:
                 sine, cosine = f"y[{place}]", f"y[{place + 1}]"
                 yield f"before = {sine}"
                 yield f"{sine} = {sine} + {cosine}*change[{n}]"
@@ -252,7 +258,7 @@ class ExportedSystem:
         lines.append('    "Let the angles follow the state, over whole turns."')
         for n, k in enumerate(self._sines()):
             lines.append(f"    angles[{n}] = angle(y[{k}], y[{k + 1}], angles[{n}])")
-        return "\n".join(lines if self._angles else [])
+        return "\n".join(lines if self.angles else [])
 
     def _event(self, of: Simulation) -> list[str]:
         if of.event is None:
@@ -262,8 +268,8 @@ class ExportedSystem:
         k = names.index(name)
         formula, condition = f"{self._places[k]} - {_float(value)}", "True"
         about = f"{name} - {value:g}"
-        if k in self._angles:
-            sine = self._sines()[self._angles.index(k)]
+        if k in self.angles:
+            sine = self._sines()[self.angles.index(k)]
             formula = f"{_float(cos(value))}*y[{sine}] - {_float(sin(value))}*y[{sine + 1}]"
             condition = f"abs({self._places[k]} - {_float(value)}) < 1.0"
             about = f"sine of {about}"
@@ -278,8 +284,8 @@ class ExportedSystem:
     def _absent(self, of: Simulation) -> set[str]:
         absent = {*(CONTROL if of.steps else FIXED)}
         absent |= set() if of.event else {*EVENT}
-        absent |= set() if self._angles else {*ANGLES}
-        if not (self._angles or self.system.conditions):
+        absent |= set() if self.angles else {*ANGLES}
+        if not (self.angles or self.system.conditions):
             absent.add("project")
         if not of.steps and len(of.method.error_weights) < 2:
             absent.add("E_LOW")
@@ -290,7 +296,7 @@ class ExportedSystem:
         state = [float(x) for x in of.y0]
         start = list[float]()
         for k, x in enumerate(state):
-            start += [sin(x), cos(x)] if k in self._angles else [x]
+            start += [sin(x), cos(x)] if k in self.angles else [x]
         first = of.duration / of.samples / 100
         power = method.error_order + 1
         weights = [[*map(float, row)] for row in method.error_weights]
@@ -307,8 +313,8 @@ class ExportedSystem:
             "ERROR_ORDER": method.error_order,
             "DEFAULTS": [*map(float, of.params)],
             "START_STATE": start,
-            "START_ANGLES": [state[k] for k in self._angles],
-            "ANGLE_COUNT": len(self._angles),
+            "START_ANGLES": [state[k] for k in self.angles],
+            "ANGLE_COUNT": len(self.angles),
             "DURATION": float(of.duration),
             "SAMPLES": of.samples,
             "STEPS": of.steps,

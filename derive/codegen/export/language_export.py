@@ -86,7 +86,7 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
             f"choose one of {others}"
         )
     of.check(simulation)
-    program = of.simulation(simulation, is_program=target.is_program)
+    program = of.simulation(simulation, ["simulate"] if target.is_program else [])
     about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
     return f"{stem}{target.suffix}", target(

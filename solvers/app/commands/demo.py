@@ -25,8 +25,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Run every stage once, print its results and write the page."""
-    from solvers.app.demo.demo_page import write_page
+    from solvers.app.demo.demo_page import LIVE_PAGE, write_page
     from solvers.app.demo.stages import stages, versions
+    from solvers.app.live_page import LivePage
     from solvers.io.progress import Progress
 
     arguments.output.mkdir(parents=True, exist_ok=True)  # before the work, not after it
@@ -42,7 +43,8 @@ def run(arguments: Namespace) -> int:
         print(*lines, sep="\n", flush=True)
     page = arguments.output / "demo.html"
     write_page(page, results, versions())
-    print(f"\npage: {page}")
+    LivePage("report").write(arguments.output / LIVE_PAGE)
+    print(f"\npage: {page}, and {LIVE_PAGE}, which integrates while it is open")
     return 0
 
 

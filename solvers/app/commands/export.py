@@ -43,14 +43,20 @@ def _listing() -> str:
 def run(arguments: Namespace) -> int:
     """Write the file; print its path, and how to run it."""
     from derive.codegen.export.language_export import export, target_of
-    from derive.system.system_catalogue import load
+    from derive.system.system_catalogue import UnknownSystemError, load
     from solvers.app.simulation_export import of_scene
+    from solvers.io.suggestion import did_you_mean
 
     target, name, event = target_of(arguments.to), arguments.name, arguments.event
     if not _is_scene(name):
         if event:
             raise ValueError(f"--event belongs to the simulation of a scene; {name} is a system")
-        print(export(load(name), arguments.to, arguments.output))
+        try:
+            system = load(name)
+        except UnknownSystemError as error:
+            near = did_you_mean(name, (*options.shipped("scenes"), *names()))
+            raise ValueError(f"no scene is called {name!r}{near}, and {error}") from error
+        print(export(system, arguments.to, arguments.output))
         return 0
     system, simulation = of_scene(name, event or "", single=not target.is_program)
     path = export(system, arguments.to, arguments.output, simulation=simulation)

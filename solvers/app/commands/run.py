@@ -29,6 +29,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--export", type=Path, metavar="FILE", help=meaning)
     meaning = "seconds of the motion in a second of FILE.gif or .mp4 (default: 1)"
     parser.add_argument("--speed", type=float, metavar="X", default=1.0, help=meaning)
+    meaning = "also write a page that integrates the scene while it is open: drag masses, change "
+    meaning += "parameters, methods and step sizes"
+    parser.add_argument("--live", action="store_true", help=meaning)
     options.add_json(parser)
     options.add_examples(parser, "holonomic run separatrix --json")
 
@@ -43,7 +46,7 @@ def run(arguments: Namespace) -> int:
     from solvers.scenes.scene_run import run_scene
     from solvers.scenes.scene_summary import figures, summary, together
 
-    names = partial(_files, plot=arguments.plot)
+    names = partial(_files, plot=arguments.plot, live=arguments.live)
     scenes, results = options.selected_scenes(arguments, DEFAULT, names), []
     if export := arguments.export:
         from solvers.player.film import check_export, write_motions
@@ -63,6 +66,11 @@ def run(arguments: Namespace) -> int:
             if export:
                 report("export")
                 paths["export"] = write_motions(together([first, *beside]), export, arguments.speed)
+        if arguments.live:
+            from solvers.app.live_page import LivePage
+
+            paths["live page"] = arguments.output / f"{scene.name}_live.html"
+            LivePage(scene).write(paths["live page"])
         files = {kind: str(path) for kind, path in paths.items()}
         results.append(figures(first) | {"beside": [*map(figures, beside)], "files": files})
         if not arguments.json:
@@ -74,7 +82,8 @@ def run(arguments: Namespace) -> int:
     return 0
 
 
-def _files(scene: "Scene", *, plot: bool) -> Iterable[str]:
+def _files(scene: "Scene", *, plot: bool, live: bool) -> Iterable[str]:
     from solvers.scenes.output import file_names
 
-    return file_names(scene, 1 + len(scene.beside), plot=plot).values()
+    names = file_names(scene, 1 + len(scene.beside), plot=plot).values()
+    return [*names, *([f"{scene.name}_live.html"] if live else [])]

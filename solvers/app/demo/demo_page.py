@@ -54,6 +54,10 @@ SECTIONS = {
 }
 
 
+#: The page beside it that integrates.
+LIVE_PAGE = "live.html"
+
+
 def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, str]) -> None:
     """Write the page atomically; stages without content are left out."""
     shown = {name: stages[name] for name in SECTIONS if name in stages and stages[name].html}
@@ -61,7 +65,8 @@ def write_page(path: Path, stages: Mapping[str, Stage], versions: Mapping[str, s
     header = (
         f"<header><h1>{TITLE}</h1><p>Equations, code, motions and their verification, from the "
         f"positions of two masses. Written by <code>holonomic demo</code>.</p><nav>{links}"
-        '<a href="#numbers">Numbers</a></nav></header>'
+        '<a href="#numbers">Numbers</a> '
+        f'<a href="{LIVE_PAGE}">Live page: drag the masses</a></nav></header>'
     )
     sections = "\n".join(_section(name, stage) for name, stage in shown.items())
     body = f"{header}<main>{sections}{_numbers(shown, versions)}</main>"
