@@ -13,6 +13,7 @@ import os
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.metadata import version as installed_version
 from pathlib import Path
 from typing import Any
@@ -91,6 +92,7 @@ sphinx_gallery_conf = {
 }
 
 html_theme = "pydata_sphinx_theme"
+html_context = {"default_mode": "auto"}
 html_theme_options = {
     "show_prev_next": False,
     "secondary_sidebar_items": ["page-toc"],
@@ -165,19 +167,21 @@ def add_contents(app: Sphinx, document: str, source: list[str]) -> None:
 
 
 def show_live_page(app: Sphinx, document: str, source: list[str]) -> None:
-    """Replace the picture at the top of the front page by a motion that the page integrates."""
+    """Show a motion that the page integrates on the front page, below the first paragraph."""
     if document == root_doc:
         frame = f'<iframe src="{LIVE_PAGE}" title="A double pendulum to drag"></iframe>'
-        picture = re.compile(r"^!\[.*\]\((.*)\)$", re.MULTILINE)
-        source[0] = picture.sub(f"```{{raw}} html\n{frame}\n```\n\n\\g<0>", source[0], count=1)
+        start = re.compile(r"^(!\[.*?\]\(.*?\)\n\n)(.*?\n\n)", re.MULTILINE | re.DOTALL)
+        source[0] = start.sub(f"\\2```{{raw}} html\n{frame}\n```\n\n\\1", source[0], count=1)
 
 
 def write_live_page(app: Sphinx, error: Exception | None) -> None:
     """Write the page that the front page frames."""
-    from solvers import LivePage
+    from solvers import LivePage, load_scene
 
     if error is None and app.builder.format == "html":
-        LivePage("report").write(Path(app.outdir) / LIVE_PAGE)
+        note = "Integrated in this page by generated code: drag a mass, change method and step."
+        scene = replace(load_scene("report"), title="Double pendulum", note=note)
+        LivePage(scene).write(Path(app.outdir) / LIVE_PAGE)
 
 
 def mathml(translator: Any, node: nodes.math) -> None:
