@@ -26,7 +26,9 @@ SHARES = (1e-1, 1e-2, 1e-3, 1e-4)
 STEPS = tuple(2**k for k in range(11))
 
 
-def of_scene(name: str, event: str = "", *, single: bool = False) -> "tuple[System, Simulation]":
+def of_scene(
+    name: str, event: str = "", *, single: bool = False, fixed: bool = False
+) -> "tuple[System, Simulation]":
     """The system and the simulation of a scene.
 
     Tolerances or step sizes are the largest that were tried whose motion, computed by the exported
@@ -38,8 +40,8 @@ def of_scene(name: str, event: str = "", *, single: bool = False) -> "tuple[Syst
         Name or path of a scene.
     event : str, optional
         Such as ``theta2 = pi``.
-    single : bool, optional
-        Whether numbers are of single precision, and steps equal.
+    single, fixed : bool, optional
+        Whether numbers are of single precision, and whether steps are equal.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def of_scene(name: str, event: str = "", *, single: bool = False) -> "tuple[Syst
     rows = len(scene.times) - 1
     scene = replace(scene, samples=rows + 1, beside=())
     system = system_of(scene.module)
-    is_fixed = single or scene.step is not None
+    is_fixed = fixed or scene.step is not None
     method = method_catalogue.load(scene.method or (FIXED if is_fixed else CONTROLLED))
     simulation = Simulation(
         method, scene.params, scene.y0, scene.duration, rows, event=_crossing(scene, event),

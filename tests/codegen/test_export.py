@@ -133,7 +133,7 @@ def test_simulations_have_equal_bits_in_every_language(
 
 def test_every_language_is_run_or_is_a_library() -> None:
     libraries = {name for name, one in find_targets().items() if not one.has_simulations}
-    assert {*COMMANDS, "python", "embedded_c"} | libraries == {*find_targets()}
+    assert {*COMMANDS, "python", "embedded_c", "opencl"} | libraries == {*find_targets()}
 
 
 def exact(duration: float, y0: Sequence[float] = START, **options: Any) -> Solution:
@@ -294,6 +294,44 @@ def test_a_library_for_microcontrollers_needs_nothing_and_rounds_like_single_pre
         module.step(0.0, 0.01, y, params, [np.float32(0.0)] * 24, end)
         y = end
     assert [float.fromhex(x) for x in result.stdout.split()] == [*map(float, y)]
+
+
+def test_a_kernel_of_opencl_has_the_bits_of_other_programs() -> None:
+    cl = pytest.importorskip("pyopencl")
+    _, text = exported_text(load("double_pendulum"), "opencl", FIXED)
+    context = cl.create_some_context(interactive=False)
+    queue, kernel = cl.CommandQueue(context), cl.Program(context, text).build().integrate
+    module, flags = program(load("double_pendulum"), FIXED), cl.mem_flags
+    starts = np.array([module.START_STATE] * 3)
+    starts[1, 4:], starts[2, 4:] = 1.0, -2.0
+    ends = np.empty_like(starts)
+    params = np.array([module.DEFAULTS] * 3)
+    read = flags.READ_ONLY | flags.COPY_HOST_PTR
+    arrays = [cl.Buffer(context, read, hostbuf=one) for one in (starts, params)]
+    result = cl.Buffer(context, flags.WRITE_ONLY, ends.nbytes)
+    kernel(queue, (3,), None, *arrays, result, np.int32(100), np.float64(0.01))
+    cl.enqueue_copy(queue, ends, result)
+    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+        y, following = start, [0.0] * 6
+        for k in range(100):
+            module.step(0.01 * k, 0.01, y, module.DEFAULTS, [0.0] * 24, following)
+            y = [*following]
+        assert y == end
+
+
+def test_headers_are_code_for_a_gpu(folder: Path) -> None:
+    if shutil.which("nvcc") is None:
+        pytest.skip("needs nvcc")
+    export(load("double_pendulum"), "c99", folder)
+    kernel = """
+        #define HOLONOMIC_FUNCTION __device__ static inline
+        #include "double_pendulum.h"
+        __global__ void evaluate(const double *y, const double *params, double *result) {
+            rhs(0.0, y, params, result);
+        }"""
+    (folder / "kernel.cu").write_text(kernel)
+    done = subprocess.run(["nvcc", "-c", "kernel.cu"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_stated_operations_are_those_that_a_step_executes() -> None:

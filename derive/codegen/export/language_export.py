@@ -89,9 +89,8 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
     program = of.simulation(simulation, ["simulate"] if target.is_program else [])
     about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
-    return f"{stem}{target.suffix}", target(
-        ExportedFile(system.name, stem, about, program, columns)
-    ).file()
+    exported = ExportedFile(system.name, stem, about, program, len(of.system.params), columns)
+    return f"{stem}{target.suffix}", target(exported).file()
 
 
 @lru_cache(maxsize=4)  # a search for a tolerance exports several times

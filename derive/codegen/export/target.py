@@ -35,6 +35,7 @@ class ExportedFile:
     stem: str  # of the file
     about: str  # the header's text
     program: ExportedProgram
+    parameters: int = 0  # number of them, with inputs
     columns: tuple[str, ...] = ()  # names of the columns of rows of output; none: only functions
 
 
@@ -56,6 +57,8 @@ class Target(ABC):
     #: Whether files may have simulations, and whether these are programs rather than functions.
     has_simulations: ClassVar[bool] = True
     is_program: ClassVar[bool] = True
+    #: Whether numbers are of single precision.
+    is_single: ClassVar[bool] = False
     #: What the language does with floating-point arithmetic, for the header.
     arithmetic: ClassVar[str] = "Arithmetic is that of IEEE 754; nothing is fused or reordered."
     #: Words that no variable may have as its name, beside those of C and Python.

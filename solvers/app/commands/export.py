@@ -58,7 +58,9 @@ def run(arguments: Namespace) -> int:
             raise ValueError(f"no scene is called {name!r}{near}, and {error}") from error
         print(export(system, arguments.to, arguments.output))
         return 0
-    system, simulation = of_scene(name, event or "", single=not target.is_program)
+    system, simulation = of_scene(
+        name, event or "", single=target.is_single, fixed=not target.is_program
+    )
     path = export(system, arguments.to, arguments.output, simulation=simulation)
     print(path, simulation.note, sep="\n")
     if target.is_program:

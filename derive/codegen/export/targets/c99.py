@@ -16,6 +16,14 @@ static void print_row(double t, const double *values)
 }}
 """
 
+#: Of a header, whose functions may be those of a GPU.
+GUARD = """\
+#pragma once
+#ifndef HOLONOMIC_FUNCTION
+#define HOLONOMIC_FUNCTION static inline
+#endif
+"""
+
 MAIN = """\
 int main(void)
 {{
@@ -35,6 +43,8 @@ class C99(Target):
     comment = "/* {} */"
     unused = "(void){name};"
     reserved = "size_t main printf remainder signbit"
+    #: Qualifiers of the functions of a header, which CUDA defines as __device__ static inline.
+    qualifiers = "HOLONOMIC_FUNCTION"
     integer = "enum {{ {name} = {value} }};"
 
     def remarks(self, lines: Iterable[str]) -> Iterator[str]:
@@ -48,7 +58,7 @@ class C99(Target):
 
     def guard(self) -> str:
         """The line that lets a header be included once."""
-        return "" if self.exported.columns else "#pragma once\n"
+        return "" if self.exported.columns else GUARD
 
     def signature(self) -> str:
         parts = []
@@ -57,8 +67,8 @@ class C99(Target):
             vector = f"{constant}double *{self.name(name)}"
             parts.append(vector if kind == "vector" else f"{self.types[kind]} {self.name(name)}")
         returns = self.types.get(self.routine.returns or "", "void")
-        inline = "" if self.exported.columns else "inline "
-        return f"static {inline}{returns} {self.routine.name}({', '.join(parts) or 'void'}) {{"
+        qualifiers = "static" if self.exported.columns else self.qualifiers
+        return f"{qualifiers} {returns} {self.routine.name}({', '.join(parts) or 'void'}) {{"
 
 
 target = C99

@@ -23,6 +23,7 @@ class Cpp(C99):
         f"{C99.reserved} bool catch class concept constexpr delete explicit export friend mutable "
         "namespace operator protected requires template throw typename using virtual xor std"
     )
+    qualifiers = "inline"
     integer, real = "constexpr int {name} = {value};", "constexpr double {name} = {value};"
     table = "constexpr double {name}[{size}] = {{", "}};"
 
@@ -31,8 +32,8 @@ class Cpp(C99):
         return f"{self.guard()}#include <cmath>\n{output}\nnamespace {self.exported.name} {{"
 
     def signature(self) -> str:
-        text = super().signature().removeprefix("static ").removeprefix("inline ")
-        return f"inline {text}".replace("(void)", "()")
+        text = super().signature().replace("(void)", "()")
+        return text.replace("static ", f"{self.qualifiers} ", 1)
 
     def tail(self) -> str:
         return f"}}  // namespace {self.exported.name}\n\n{super().tail()}"
