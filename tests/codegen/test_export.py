@@ -133,7 +133,7 @@ def test_simulations_have_equal_bits_in_every_language(
 
 def test_every_language_is_run_or_is_a_library() -> None:
     libraries = {name for name, one in find_targets().items() if not one.has_simulations}
-    assert {*COMMANDS, "python", "embedded_c", "opencl"} | libraries == {*find_targets()}
+    assert {*COMMANDS, "python", "embedded_c", "opencl", "fmu"} | libraries == {*find_targets()}
 
 
 def exact(duration: float, y0: Sequence[float] = START, **options: Any) -> Solution:

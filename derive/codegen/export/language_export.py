@@ -75,6 +75,8 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
     target, of = target_of(to), _exported_system(system)
     stem = re.sub(r"\W", "_", (simulation.name if simulation else "") or system.name)
     if simulation is None:
+        if not target.has_libraries:
+            raise ValueError(f"{to} is a simulation: give a scene, or a Simulation")
         names = of.usual
         program = of.library(names)
         exported = ExportedFile(system.name, stem, _about(of, sorted({*of.forms(names)})), program)
@@ -86,10 +88,12 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
             f"choose one of {others}"
         )
     of.check(simulation)
-    program = of.simulation(simulation, ["simulate"] if target.is_program else [])
+    program = of.simulation(simulation, ["simulate"] if target.is_program else target.entry)
     about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
-    exported = ExportedFile(system.name, stem, about, program, len(of.system.params), columns)
+    params, start = (tuple(map(float, one)) for one in (simulation.params, simulation.y0))
+    angles = tuple(of.angles)
+    exported = ExportedFile(system.name, stem, about, program, columns, params, start, angles)
     return f"{stem}{target.suffix}", target(exported).file()
 
 

@@ -35,8 +35,10 @@ class ExportedFile:
     stem: str  # of the file
     about: str  # the header's text
     program: ExportedProgram
-    parameters: int = 0  # number of them, with inputs
     columns: tuple[str, ...] = ()  # names of the columns of rows of output; none: only functions
+    values: tuple[float, ...] = ()  # of the parameters and inputs
+    start: tuple[float, ...] = ()  # coordinates and velocities
+    angles: tuple[int, ...] = ()  # numbers of the coordinates whose sines are in the state
 
 
 class Target(ABC):
@@ -54,9 +56,15 @@ class Target(ABC):
     library_suffix: ClassVar[str] = ""
     #: How to run a file, as a shell command with {file}; empty if it is a library.
     command: ClassVar[str]
-    #: Whether files may have simulations, and whether these are programs rather than functions.
+    #: Whether files may be libraries of functions, whether they may have simulations, and whether
+    #: these are programs rather than functions.
+    has_libraries: ClassVar[bool] = True
     has_simulations: ClassVar[bool] = True
     is_program: ClassVar[bool] = True
+    #: Whether a simulation needs equal steps.
+    has_fixed_steps: ClassVar[bool] = False
+    #: Functions of the simulation that a library has, beside those that they call.
+    entry: ClassVar[tuple[str, ...]] = ()
     #: Whether numbers are of single precision.
     is_single: ClassVar[bool] = False
     #: What the language does with floating-point arithmetic, for the header.

@@ -44,6 +44,7 @@ def run(arguments: Namespace) -> int:
     """Write the file; print its path, and how to run it."""
     from derive.codegen.export.language_export import export, target_of
     from derive.system.system_catalogue import UnknownSystemError, load
+    from solvers.app.mockup_unit import write_unit
     from solvers.app.simulation_export import of_scene
     from solvers.io.suggestion import did_you_mean
 
@@ -59,9 +60,12 @@ def run(arguments: Namespace) -> int:
         print(export(system, arguments.to, arguments.output))
         return 0
     system, simulation = of_scene(
-        name, event or "", single=target.is_single, fixed=not target.is_program
+        name, event or "", single=target.is_single, fixed=target.has_fixed_steps
     )
-    path = export(system, arguments.to, arguments.output, simulation=simulation)
+    if arguments.to == "fmu":  # not a text: a library and its description, too
+        path = write_unit(system, simulation, arguments.output)
+    else:
+        path = export(system, arguments.to, arguments.output, simulation=simulation)
     print(path, simulation.note, sep="\n")
     if target.is_program:
         print(f"run it with: {target.command.format(file=path.name, stem=path.stem)}")

@@ -10,7 +10,7 @@ class EmbeddedC(C99):
     """A header of functions that a control loop calls, each with a bounded number of operations."""
 
     title, suffix, library_suffix = "C99 for microcontrollers", ".h", ".h"
-    command, is_program, is_single = "", False, True
+    command, is_program, is_single, has_fixed_steps = "", False, True, True
     arithmetic = (
         "Numbers are of single precision. There is no heap, recursion or variable of the file;\n"
         "loops are bounded."

@@ -33,7 +33,7 @@ class OpenCL(C99):
     """The functions of C99, whose constants are those of the device."""
 
     title, suffix, library_suffix = "OpenCL C", ".cl", ".cl"
-    command, is_program = "", False
+    command, is_program, has_fixed_steps = "", False, True
     arithmetic = "Arithmetic is that of IEEE 754; products and sums are not fused."
     qualifiers = "inline"
     reserved = f"{C99.reserved} kernel global local constant half vec_step"
@@ -45,7 +45,7 @@ class OpenCL(C99):
 
     def tail(self) -> str:
         has_steps = "step" in self.program.routines
-        return KERNEL.format(parameters=self.exported.parameters) if has_steps else ""
+        return KERNEL.format(parameters=len(self.exported.values)) if has_steps else ""
 
 
 target = OpenCL

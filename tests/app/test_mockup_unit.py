@@ -1,0 +1,157 @@
+"""Functional mock-up units: their description, and their functions by a loader of our own."""
+
+import ctypes
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import generated.double_pendulum as dp
+import generated.two_link_arm as arm
+from derive import Simulation, load
+from derive.codegen.export.targets.fmu import TRIVIAL, UNSUPPORTED
+from solvers import integrate
+from solvers.app.cli import main
+from solvers.app.mockup_unit import write_unit
+from solvers.runge_kutta import method_catalogue
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+METHOD = method_catalogue.load("verner853")
+START = (1.0, 2.0, 0.0, 0.5)
+
+
+class Unit:
+    """A unit whose functions are called as an importer calls them."""
+
+    def __init__(self, path: Path, kind: str = "CoSimulation") -> None:
+        folder = path.with_suffix("")
+        with zipfile.ZipFile(path) as file:
+            file.extractall(folder)
+        root = ElementTree.parse(folder / "modelDescription.xml").getroot()
+        rows = root.find("ModelVariables") or ()
+        self.references = {one.attrib["name"]: int(one.attrib["valueReference"]) for one in rows}
+        self.description = root
+        (library,) = (folder / "binaries").glob("*/*")
+        self.functions = ctypes.CDLL(str(library))
+        instantiate = getattr(self.functions, f"fmi3Instantiate{kind}")
+        instantiate.restype = ctypes.c_void_p
+        self.instance = ctypes.c_void_p(instantiate())
+
+    def values(self, *names: str) -> list[float]:
+        numbers = (ctypes.c_double * len(names))()
+        self.call("GetFloat64", self._references(names), ctypes.c_size_t(len(names)), numbers)
+        return [*numbers]
+
+    def set(self, **values: float) -> None:
+        numbers = (ctypes.c_double * len(values))(*values.values())
+        self.call("SetFloat64", self._references([*values]), ctypes.c_size_t(len(values)), numbers)
+
+    def step(self, t: float, size: float) -> None:
+        flags, last = [ctypes.byref(ctypes.c_bool()) for _ in range(3)], ctypes.c_double()
+        time = ctypes.c_double(t), ctypes.c_double(size)
+        self.call("DoStep", *time, ctypes.c_bool(True), *flags, ctypes.byref(last))
+        assert last.value == t + size
+
+    def call(self, name: str, *arguments: object) -> None:
+        assert getattr(self.functions, f"fmi3{name}")(self.instance, *arguments) == 0
+
+    def _references(self, names: Sequence[str]) -> object:
+        return (ctypes.c_uint32 * len(names))(*(self.references[name] for name in names))
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    simulation = Simulation(METHOD, dp.DEFAULTS, START, 2.0, samples=4, rtol=1e-11, atol=1e-11)
+    return write_unit(load("double_pendulum"), simulation, tmp_path)
+
+
+def test_co_simulation_has_the_motion_of_the_system(path: Path) -> None:
+    unit = Unit(path)
+    unit.set(m2=0.5)
+    unit.call("ExitInitializationMode")
+    for k in range(4):
+        unit.step(0.5 * k, 0.5)
+    params = dp.params(m2=0.5)
+    exact = integrate(dp, (0, 2), START, params, method="gauss8", rtol=1e-13, atol=1e-13)
+    y = unit.values(*dp.STATE)
+    assert y == pytest.approx(exact.y[:, -1].tolist(), abs=1e-8)
+    assert unit.values("energy")[0] == pytest.approx(dp.energy(2.0, y, params), rel=1e-13)
+
+
+def test_model_exchange_has_the_derivatives_of_the_system(path: Path) -> None:
+    unit = Unit(path, "ModelExchange")
+    random = np.random.default_rng(0)
+    for y in random.normal(size=(20, 4)):
+        states, result = (ctypes.c_double * 4)(*y), (ctypes.c_double * 4)()
+        unit.call("SetContinuousStates", states, ctypes.c_size_t(4))
+        unit.call("GetContinuousStateDerivatives", result, ctypes.c_size_t(4))
+        expected = dp.rhs(0.0, y, dp.DEFAULTS)
+        assert [*result] == pytest.approx(expected, rel=1e-12, abs=1e-13)
+        names = [f"der({name})" for name in dp.STATE]
+        assert unit.values(*names) == [*result]
+
+
+def test_states_are_saved_and_restored(path: Path) -> None:
+    unit, state = Unit(path), ctypes.c_void_p()
+    unit.step(0.0, 0.5)
+    before = unit.values(*dp.STATE)
+    unit.call("GetFMUState", ctypes.byref(state))
+    unit.step(0.5, 0.5)
+    after = unit.values(*dp.STATE)
+    unit.call("SetFMUState", state)
+    assert unit.values(*dp.STATE) == before
+    unit.step(0.5, 0.5)
+    assert unit.values(*dp.STATE) == after
+    unit.call("Reset")
+    assert unit.values(*dp.STATE) == pytest.approx(START, abs=1e-15)
+
+
+def test_inputs_act_between_steps(tmp_path: Path) -> None:
+    start = (0.1, 0.2, 0.0, 0.0)
+    of = Simulation(METHOD, arm.DEFAULTS, start, 1.0, samples=2, rtol=1e-11, atol=1e-11)
+    unit = Unit(write_unit(load("two_link_arm"), of, tmp_path))
+    variables = unit.description.find("ModelVariables") or ()
+    inputs = [one.attrib["name"] for one in variables if one.attrib.get("causality") == "input"]
+    assert inputs == [*arm.INPUTS]
+    unit.set(**dict.fromkeys(inputs, 2.0))
+    unit.step(0.0, 1.0)
+    params = arm.params(**dict.fromkeys(inputs, 2.0))
+    exact = integrate(arm, (0, 1), start, params, method="gauss8", rtol=1e-13, atol=1e-13)
+    assert unit.values(*arm.STATE) == pytest.approx(exact.y[:, -1].tolist(), abs=1e-8)
+
+
+def test_all_functions_of_the_standard_are_there_and_references_match(path: Path) -> None:
+    unit = Unit(path)
+    assert all(hasattr(unit.functions, f"fmi3{name}") for name in (*UNSUPPORTED, *TRIVIAL))
+    assert unit.values("time", *dp.PARAMETERS) == [0.0, *dp.DEFAULTS]
+    assert sorted(unit.references.values()) == [*range(len(unit.references))]
+
+
+def test_an_importer_finds_no_problem_and_simulates(tmp_path: Path) -> None:
+    fmpy = pytest.importorskip("fmpy")
+    from fmpy.validation import validate_fmu
+
+    assert main(["export", "report", "--to", "fmu", "--output", str(tmp_path)]) == 0
+    path, python = tmp_path / "report.fmu", tmp_path / "report.py"
+    assert validate_fmu(str(path)) == []
+    assert main(["export", "report", "--to", "python", "--output", str(tmp_path)]) == 0
+    run = subprocess.run([sys.executable, python], capture_output=True, text=True, check=True)
+    rows = [[*map(float, row.split(","))] for row in run.stdout.splitlines()[1:]]
+    for kind, error in (("CoSimulation", 1e-9), ("ModelExchange", 1e-5)):
+        options = {"solver": "CVode", "relative_tolerance": 1e-9, "output_interval": 0.5}
+        result = fmpy.simulate_fmu(str(path), fmi_type=kind, stop_time=5.0, **options)
+        assert result[-1]["theta1"] == pytest.approx(rows[-1][1], abs=error)
+
+
+def test_a_system_without_a_start_is_no_unit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["export", "double_pendulum", "--to", "fmu", "--output", str(tmp_path)]
+    assert main(arguments) == 2
+    assert "fmu is a simulation: give a scene" in capsys.readouterr().err
