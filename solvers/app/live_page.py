@@ -14,6 +14,7 @@ from solvers.io.atomic_write import write_text
 from solvers.io.figure_names import plain_symbol
 from solvers.io.html_page import html_page
 from solvers.player.geometry import links_and_points
+from solvers.player.playable import Playable
 from solvers.player.player_page import VIEW, as_json, source, style
 from solvers.player.sampled_motion import SampledMotion
 from solvers.runge_kutta import method_catalogue
@@ -32,15 +33,17 @@ VIEWED = 20.0
 
 
 class LivePage:
-    """A page that integrates a scene while it is open; notebooks display it.
+    """A page that integrates a motion while it is open; notebooks display it.
 
     Masses are dragged, parameters, methods and step sizes change while the motion runs, and its
-    energy error is shown. The page needs no network: the generated functions are in it.
+    energy error is shown. The page needs no network: the generated functions are in it. Inputs are
+    parameters there; a controller is not part of it.
 
     Parameters
     ----------
-    scene : Scene, str or path
-        A scene, the name of one that ships, or the path of a TOML file.
+    motion : Solution, SceneResult, Scene, str or path
+        A motion, from whose start the page integrates; or a scene, the name of one that ships, or
+        the path of a TOML file.
 
     Raises
     ------
@@ -55,9 +58,11 @@ class LivePage:
     True
     """
 
-    def __init__(self, scene: Scene | str | PathLike[str]) -> None:
-        self.scene = scene if isinstance(scene, Scene) else find(fspath(scene), load)
-        self.html = _html(self.scene)
+    def __init__(self, motion: Playable | Scene | str | PathLike[str]) -> None:
+        if not isinstance(motion, Playable):
+            scene = motion if isinstance(motion, Scene) else find(fspath(motion), load)
+            motion = run_scene(scene, specialiser)
+        self.html = _html(motion.sampled_motions()[0])
 
     def write(self, path: Path) -> None:
         """Write the file atomically; missing folders are created, an existing file is replaced."""
@@ -68,20 +73,20 @@ class LivePage:
         return f'<iframe {attributes} srcdoc="{escape(self.html)}"></iframe>'
 
 
-def _html(scene: Scene) -> str:
+def _html(motion: SampledMotion) -> str:
     from derive import Derivation, reduced
     from derive.codegen.export.exported_system import ExportedSystem
 
-    system = system_of(scene.module)
+    system = system_of(motion.module)
     exported = ExportedSystem(Derivation(reduced(system)))
-    header = f'<h1>{escape(scene.title)}</h1>\n<p id="note">{escape(scene.note)}</p>'
-    main = Template(source("live.html")).substitute(system=_values(scene, exported))
+    header = f'<h1>{escape(motion.title)}</h1>\n<p id="note">{escape(motion.note)}</p>'
+    main = Template(source("live.html")).substitute(system=_values(motion, exported))
     body = f"<header>\n{header}\n</header>\n<main>\n{main}</main>"
-    scripts = [_functions(scene, exported), *map(source, ("live_runs.js", *VIEW, "live.js"))]
-    return html_page(scene.title, body, f"{style()}\n{source('live.css')}", "\n".join(scripts))
+    scripts = [_functions(motion, exported), *map(source, ("live_runs.js", *VIEW, "live.js"))]
+    return html_page(motion.title, body, f"{style()}\n{source('live.css')}", "\n".join(scripts))
 
 
-def _functions(scene: Scene, exported: "ExportedSystem") -> str:
+def _functions(motion: SampledMotion, exported: "ExportedSystem") -> str:
     """The generated functions, as a script whose method can be changed."""
     from derive.codegen.export.exported_system import Simulation
     from derive.codegen.export.target import ExportedFile
@@ -96,27 +101,27 @@ def _functions(scene: Scene, exported: "ExportedSystem") -> str:
         def signature(self) -> str:
             return super().signature().removeprefix("export ")
 
-    steps = Simulation(
-        method_catalogue.load(METHOD), scene.params, scene.y0, scene.duration, steps=1
-    )
-    also = ["positions", *(["points"] if links(scene.module) else [])]
+    method = method_catalogue.load(METHOD)
+    start = motion.y[:, 0].tolist()
+    steps = Simulation(method, motion.params, start, duration=1.0, steps=1)
+    also = ["positions", *(["points"] if links(motion.module) else [])]
     program = exported.simulation(steps, ["row", "follow"], also)
-    text = LiveScript(ExportedFile(scene.module.SYSTEM, "live", scene.title, program)).file()
+    text = LiveScript(ExportedFile(motion.module.SYSTEM, "live", motion.title, program)).file()
     absent = {"points", "project", "follow"} - {*program.routines}
     text += "".join(f"\nfunction {name}() {{}}\n" for name in sorted(absent))
     return f"{text}\nfunction useMethod(method) {{\n  ({{ A, B, C, STAGES }} = method);\n}}\n"
 
 
-def _values(scene: Scene, exported: "ExportedSystem") -> str:
+def _values(motion: SampledMotion, exported: "ExportedSystem") -> str:
     """The start, parameters, methods and links, as JSON."""
-    module = scene.module
-    masses = np.asarray(module.positions(0.0, scene.y0, scene.params))
+    module, start = motion.module, motion.y[:, 0].tolist()
+    masses = np.asarray(module.positions(0.0, start, motion.params))
     if not np.isfinite(masses).all():
-        raise ValueError(f"a mass of the scene {scene.name!r} is absent: give it a mass above 0")
+        raise ValueError(f"a mass of {motion.title!r} is absent: give it a mass above 0")
     joined = [[kind, *(len(masses) + k for k in ends)] for kind, ends in links(module)]
-    joined = joined or [[kind, *ends] for kind, ends in links_and_points(_sampled(scene))[0]]
+    joined = joined or [[kind, *ends] for kind, ends in links_and_points(motion)[0]]
     numbers = exported.angles
-    parameters = zip(exported.system.parameters_and_inputs, scene.params, strict=True)
+    parameters = zip(exported.system.parameters_and_inputs, map(float, motion.params), strict=True)
     methods = {name: method_catalogue.load(name) for name in METHODS}
     values = {
         "coordinates": [
@@ -133,8 +138,8 @@ def _values(scene: Scene, exported: "ExportedSystem") -> str:
             }
             for one, value in parameters
         ],
-        "start": list(scene.y0),
-        "duration": min(scene.duration, VIEWED),
+        "start": start,
+        "duration": min(float(abs(motion.t[-1] - motion.t[0])), VIEWED),
         "dimension": masses.shape[1],
         "masses": len(masses),
         "points": 1 + max((k for _, ends in links(module) for k in ends), default=-1),
@@ -155,8 +160,3 @@ def _values(scene: Scene, exported: "ExportedSystem") -> str:
         },
     }
     return as_json(values)
-
-
-def _sampled(scene: Scene) -> SampledMotion:
-    result = run_scene(scene, specialiser)
-    return SampledMotion(scene.module, scene.params, result.t, result.y, scene.title, scene.label)

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from browser import Player
 
+import generated.double_pendulum as dp
 from derive import Simulation, load
 from derive.codegen.export.language_export import exported_text
-from solvers import LivePage, load_scene
+from solvers import LivePage, integrate, load_scene
 from solvers.app.live_page import METHOD, STEP
 from solvers.runge_kutta import method_catalogue
 
@@ -165,6 +166,17 @@ def test_constraints_and_bodies_in_space_are_integrated(
     assert state(player)[-1] == pytest.approx(start[-1], rel=1e-6)
     assert np.abs(np.subtract(state(player), start)).max() > 0.1
     assert len(np.unique(player.pixels("figure canvas").reshape(-1, 3), axis=0)) > 20
+
+
+def test_a_motion_of_an_own_start_is_continued_from_there(player: Player, tmp_path: Path) -> None:
+    motion = integrate(
+        dp, (0, 2), {"theta1": "60 deg", "theta2": 0, "theta2_dot": 1.5}, {"m2": "300 g"}
+    )
+    LivePage(motion).write(tmp_path / "motion.html")
+    show(player, tmp_path / "motion.html")
+    energy = dp.energy(0.0, motion.y[:, 0], dp.params(m2=0.3))
+    assert state(player) == pytest.approx([*motion.y[:, 0], energy], abs=1e-14)
+    assert player.texts("#parameters output")[1] == "0.3 kg"
 
 
 def test_a_step_that_is_too_large_is_reported_and_pages_are_small(
