@@ -36,6 +36,7 @@ from derive.codegen.module_functions import Functions
 from solvers import Event, Solution, consistent_start, integrate
 from solvers.app.modules import load as load_module
 from solvers.runge_kutta import method_catalogue
+from solvers.runge_kutta.step_control import GROW, SAFETY, SHRINK, Controller
 
 #: How each target's file is run, after it is compiled; {} is its name without ending.
 COMMANDS = {
@@ -150,6 +151,25 @@ def test_errors_of_controlled_steps_follow_the_tolerances() -> None:
         errors.append(abs(np.array(result)[:, 1:5].T - reference).max())
     assert 1e-9 < errors[0] < 1e-5
     assert errors[1] < 2e-9
+
+
+def test_step_control_is_that_of_the_package_without_its_memory() -> None:
+    method, module = CONTROLLED.method, program(load("double_pendulum"), CONTROLLED)
+    controller = Controller(method.error_order, CONTROLLED.rtol, CONTROLLED.atol)
+    random = np.random.default_rng(0)
+    y, end = random.normal(size=(2, 6))
+    weights = np.array(method.error_weights, dtype=float)
+    for size in (1e-12, 1e-9, 1e-6):
+        derivatives = size * random.normal(size=(method.stages, 6))
+        norms = [module.error_norm(0.1, y, end, derivatives.ravel(), one) for one in weights]
+        norm = module.combined(*norms)
+        assert norm == pytest.approx(
+            controller.norm(0.1 * weights @ derivatives, y, end), rel=1e-12
+        )
+        ideal = SAFETY * norm ** (-1 / (method.error_order + 1))
+        assert module.step_factor(norm) == pytest.approx(min(max(ideal, SHRINK), GROW), rel=0.08)
+    assert module.step_factor(float("nan")) == SHRINK
+    assert module.combined(0.0, 0.0) == 0.0
 
 
 def test_halved_steps_of_a_method_of_order_four_have_a_sixteenth_of_the_error() -> None:
