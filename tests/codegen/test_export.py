@@ -281,6 +281,15 @@ def test_names_that_languages_reserve_are_changed(target: str, folder: Path) -> 
     assert rows(output(target, strange, simulation, folder)) == expected
 
 
+def test_a_file_has_no_name_of_a_function_in_it(folder: Path) -> None:
+    simulation = replace(FIXED, name="step")
+    path = export(load("double_pendulum"), "matlab", folder, simulation=simulation)
+    assert path.name == "step_motion.m"
+    assert rows(output("matlab", load("double_pendulum"), simulation, folder)) == motion(
+        "fixed steps"
+    )
+
+
 def test_a_library_for_microcontrollers_needs_nothing_and_rounds_like_single_precision(
     folder: Path,
 ) -> None:

@@ -21,7 +21,7 @@ from solvers.io.suggestion import did_you_mean
 #: Steps of Newton's method onto the constraints, after every step of the motion.
 CORRECTIONS = 2
 #: Parts of the simulation that need an event, angles, or control of the step size.
-EVENT = ("event", "is_event", "report_event", "locate", "kind")
+EVENT = ("event", "is_event", "print_event", "locate", "kind")
 ANGLES = ("angles", "there", "follow", "START_ANGLES", "ANGLE_COUNT")
 CONTROL = ("advance",)
 FIXED = ("advance_steps",)

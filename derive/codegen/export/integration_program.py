@@ -271,7 +271,7 @@ def locate(
     return part
 
 
-def report(t: float, y: Vector, angles: Vector, params: Vector, kind: float) -> None:
+def print_state(t: float, y: Vector, angles: Vector, params: Vector, kind: float) -> None:
     """Print a row of output for a state."""
     values = [0.0] * COLUMNS
     row(t, y, angles, params, values)
@@ -279,7 +279,7 @@ def report(t: float, y: Vector, angles: Vector, params: Vector, kind: float) -> 
     print_row(t, values)
 
 
-def report_event(
+def print_event(
     t: float,
     h: float,
     y: Vector,
@@ -301,7 +301,7 @@ def report_event(
         part = locate(t, h, y, params, derivatives, located)
         follow(located, there)
         if is_event(located, there):
-            report(t + part, located, there, params, 1.0)
+            print_state(t + part, located, there, params, 1.0)
 
 
 def advance(
@@ -325,7 +325,7 @@ def advance(
         norm = combined(norm, error_norm(part, y, result, derivatives, E_LOW))
         factor = step_factor(norm)
         if norm <= 1.0:
-            report_event(t, part, y, result, angles, params, derivatives)
+            print_event(t, part, y, result, angles, params, derivatives)
             for n in range(SIZE):
                 y[n] = result[n]
             follow(y, angles)
@@ -347,7 +347,7 @@ def advance_steps(start: float, stop: float, y: Vector, angles: Vector, params: 
     for k in range(STEPS):
         t = start + h * float(k)
         step(t, h, y, params, derivatives, result)
-        report_event(t, h, y, result, angles, params, derivatives)
+        print_event(t, h, y, result, angles, params, derivatives)
         for n in range(SIZE):
             y[n] = result[n]
         follow(y, angles)
@@ -365,7 +365,7 @@ def simulate() -> bool:
         angles[n] = START_ANGLES[n]
     for n in range(PARAMETERS):
         params[n] = DEFAULTS[n]
-    report(0.0, y, angles, params, 0.0)
+    print_state(0.0, y, angles, params, 0.0)
     for k in range(SAMPLES):
         start = DURATION * float(k) / float(SAMPLES)
         stop = DURATION * float(k + 1) / float(SAMPLES)
@@ -373,5 +373,5 @@ def simulate() -> bool:
         if h == 0.0:
             return False
         advance_steps(start, stop, y, angles, params)
-        report(stop, y, angles, params, 0.0)
+        print_state(stop, y, angles, params, 0.0)
     return True

@@ -89,6 +89,8 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
         )
     of.check(simulation)
     program = of.simulation(simulation, ["simulate"] if target.is_program else target.entry)
+    if stem in program.routines:  # a file of MATLAB has the name of its first function
+        stem += "_motion"
     about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
     params, start = (tuple(map(float, one)) for one in (simulation.params, simulation.y0))
