@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
+from velocity_constraints import CASES, stated
 
 import generated
 import generated.double_pendulum as dp
@@ -33,7 +34,7 @@ from derive.codegen.export.exported_system import ExportedSystem
 from derive.codegen.export.language_export import exported_text
 from derive.codegen.export.target import find_targets
 from derive.codegen.module_functions import Functions
-from solvers import Event, Solution, consistent_start, integrate
+from solvers import Event, Solution, build, consistent_start, integrate
 from solvers.app.modules import load as load_module
 from solvers.runge_kutta import method_catalogue
 from solvers.runge_kutta.step_control import GROW, SAFETY, SHRINK, Controller
@@ -204,6 +205,21 @@ def test_constraints_and_energy_are_kept() -> None:
     assert max(map(abs, np.ravel(four_bar.constraints(1.0, y, params)))) < 1e-14
     assert final[-1] == pytest.approx(motion("a closed loop")[0][-1], rel=1e-9)
     assert final[-1] == pytest.approx(four_bar.energy(1.0, y, params), rel=1e-13)
+
+
+def test_integrals_of_constraints_of_velocities_are_kept() -> None:
+    integral, rate, given = CASES["yoke"]
+    system = stated("yoke", integral, rate)
+    module = build(system)
+    start = consistent_start(module, given, {}).y
+    simulation = replace(CONTROLLED, params=module.DEFAULTS, y0=tuple(start), duration=1.0)
+    _, result = run(program(system, simulation))
+    before = module.integrals(0.0, start, module.DEFAULTS)
+    after = module.integrals(1.0, result[-1][1:-1], module.DEFAULTS)
+    assert len(before) == 1
+    assert after == pytest.approx(before, abs=1e-14)
+    lost = replace(simulation, rtol=1e-4, atol=1e-4)
+    assert run(program(system, lost))[1][-1][1:3] != result[-1][1:3]
 
 
 def test_the_arctangent_and_the_nearest_angle_are_accurate() -> None:
@@ -395,6 +411,11 @@ def test_stated_operations_are_those_that_a_step_executes() -> None:
         ("rustt", {}, "did you mean 'rust'"),
         ("jax", {}, "jax is a library of functions and has no simulations"),
         ("c99", {"method": method_catalogue.load("gauss4")}, "is implicit"),
+        ("c99", {"method": method_catalogue.load("leapfrog")}, "is a splitting"),
+        ("c99", {"duration": -1.0}, "duration is -1.0, but must be finite and above 0"),
+        ("c99", {"samples": 0}, "samples is 0"),
+        ("c99", {"steps": -3}, "steps is -3, but must be 0 or more"),
+        ("c99", {"method": CONTROLLED.method, "steps": 0, "rtol": 0.0}, "rtol is 0.0"),
         ("c99", {"steps": 0}, "estimates no error, which step control needs"),
         ("c99", {"y0": (0.0, 0.0)}, "y0 is .* not finite numbers for theta1, theta2"),
         ("c99", {"params": (1, 1, 2, np.nan, 9.81)}, "params is"),

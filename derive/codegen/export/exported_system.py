@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from math import cos, sin
+from math import cos, inf, sin
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,6 +16,7 @@ from derive.codegen.function_specs import Form
 from derive.codegen.module_functions import Functions, split
 from derive.codegen.module_summary import units
 from derive.mechanics.derivation import Derivation
+from derive.system.symbols import TIME
 from solvers.io.suggestion import did_you_mean
 
 #: Steps of Newton's method onto the constraints, after every step of the motion.
@@ -53,6 +54,10 @@ class ExplicitMethod(Protocol):
     @property
     def error_order(self) -> int:
         """The order of the error estimate."""
+
+    @property
+    def is_splitting(self) -> bool:
+        """Whether positions and velocities have stages of their own."""
 
 
 @dataclass(frozen=True)
@@ -161,16 +166,26 @@ class ExportedSystem:
         """Raise `ValueError` if a simulation is not possible."""
         state = [s.name for s in (*self.system.q, *self.system.qdot)]
         method = of.method
-        if any(a != 0 for i, row in enumerate(method.A) for a in row[i:]):
+        if method.is_splitting or any(a != 0 for i, row in enumerate(method.A) for a in row[i:]):
+            kind = "a splitting" if method.is_splitting else "implicit"
             raise ValueError(
-                f"the method {method.title!r} is implicit: exports have explicit methods, such as "
-                "verner853 or rk4"
+                f"the method {method.title!r} is {kind}: exports have explicit Runge-Kutta "
+                "methods, such as verner853 or rk4"
             )
         if not of.steps and not method.error_weights:
             raise ValueError(
                 f"the method {method.title!r} estimates no error, which step control needs: give "
                 "the number of steps, or choose another method, such as verner853"
             )
+        for name, number, least in (
+            ("duration", of.duration, 0.0),
+            ("samples", of.samples, 0.5),
+            ("steps", of.steps, -0.5),
+            *([] if of.steps else [("rtol", of.rtol, 0.0), ("atol", of.atol, 0.0)]),
+        ):
+            if not least < number < inf:
+                allowed = "0 or more" if least < 0 else "finite and above 0"
+                raise ValueError(f"{name} is {number}, but must be {allowed}")
         for name, values, names in (
             ("y0", of.y0, state),
             ("params", of.params, [s.name for s in self.system.params]),
@@ -291,8 +306,14 @@ class ExportedSystem:
             absent.add("E_LOW")
         return absent
 
+    def values(self, of: Simulation) -> list[float]:
+        """Parameters and inputs, then the values that integrals keep along the motion."""
+        symbols = (*self.system.q, *self.system.qdot, *self.system.params, TIME)
+        known = dict(zip(symbols, [*of.y0, *of.params, 0.0], strict=True))
+        return [*map(float, of.params), *(float(f.subs(known)) for f in self.derivation.integrals)]
+
     def _constants(self, of: Simulation) -> list[ast.stmt]:
-        q, method = len(self.system.q), of.method
+        q, method, params = len(self.system.q), of.method, self.values(of)
         state = [float(x) for x in of.y0]
         start = list[float]()
         for k, x in enumerate(state):
@@ -302,7 +323,7 @@ class ExportedSystem:
         weights = [[*map(float, row)] for row in method.error_weights]
         values: dict[str, object] = {
             "SIZE": len(start),
-            "PARAMETERS": len(of.params),
+            "PARAMETERS": len(params),
             "COLUMNS": 2 * q + 1 + (of.event is not None),
             "STAGES": len(method.b),
             "A": [float(a) for line in method.A for a in line],
@@ -311,7 +332,7 @@ class ExportedSystem:
             "E": weights[0] if weights else [],
             "E_LOW": weights[-1] if weights else [],
             "ERROR_ORDER": method.error_order,
-            "DEFAULTS": [*map(float, of.params)],
+            "DEFAULTS": params,
             "START_STATE": start,
             "START_ANGLES": [state[k] for k in self.angles],
             "ANGLE_COUNT": len(self.angles),

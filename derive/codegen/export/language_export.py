@@ -93,7 +93,7 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
         stem += "_motion"
     about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
-    params, start = (tuple(map(float, one)) for one in (simulation.params, simulation.y0))
+    params, start = tuple(of.values(simulation)), tuple(map(float, simulation.y0))
     angles = tuple(of.angles)
     exported = ExportedFile(system.name, stem, about, program, columns, params, start, angles)
     return f"{stem}{target.suffix}", target(exported).file()
