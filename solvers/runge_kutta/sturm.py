@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from math import inf, lcm
-from typing import Any, TypeAlias
+from math import gcd, inf, lcm
+from typing import TypeAlias
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polydiv, polytrim
+from numpy.polynomial.polynomial import polytrim
 from numpy.typing import NDArray
 
 #: Coefficients of x⁰, x¹, …, all of them Fractions, with which NumPy computes exactly.
@@ -30,9 +30,10 @@ def nonnegative_interval(polynomial: Polynomial) -> float:
         return inf
     if p[0] < 0:
         return 0.0
-    chain = [*map(_whole, _sturm_chain(p))]
-    whole = chain[0]
-    bound = 1 + max(map(abs, p)) / abs(p[-1])  # Cauchy's bound of all roots
+    whole = _whole(p)
+    chain = _sturm_chain(whole)
+    # above Cauchy's bound of all roots; its binary fractions have few digits
+    bound = Fraction(2 ** (1 + max(map(abs, whole)) // abs(whole[-1])).bit_length())
 
     def sign_change(a: Fraction, b: Fraction) -> Fraction | None:
         """The first change to negative values in (a, b], whose ends are no roots."""
@@ -59,15 +60,28 @@ def _root(p: Sequence[int], above: Fraction, below: Fraction) -> Fraction:
     return above
 
 
-def _sturm_chain(p: Polynomial) -> list[Polynomial]:
-    """The polynomial, its derivative, and their negative remainders, scaled to stay small."""
-    chain: list[Any] = [p]
-    following: Any = polyder(p)
-    while any(following):
+def _sturm_chain(p: list[int]) -> list[list[int]]:
+    """The polynomial, its derivative, and their negative remainders, by whole numbers alone."""
+    chain = [p]
+    following = [k * c for k, c in enumerate(p)][1:]
+    while following:
         chain.append(following)
-        remainder = polydiv(chain[-2], chain[-1])[1]
-        following = [-c / (max(map(abs, remainder)) or 1) for c in remainder]
+        following = [-c for c in _remainder(chain[-2], chain[-1])]
     return chain
+
+
+def _remainder(p: Sequence[int], q: Sequence[int]) -> list[int]:
+    """A positive multiple of the remainder of p / q, without a common factor."""
+    rest, size, sign = list(p), abs(q[-1]), 1 if q[-1] > 0 else -1
+    while len(rest) >= len(q):
+        factor, shift = sign * rest[-1], len(rest) - len(q)
+        rest = [size * c for c in rest]
+        for k, c in enumerate(q, shift):
+            rest[k] -= factor * c
+        while rest and rest[-1] == 0:
+            rest.pop()
+    common = gcd(*rest)
+    return [c // common for c in rest]
 
 
 def _whole(p: Polynomial) -> list[int]:
