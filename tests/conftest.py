@@ -21,6 +21,9 @@ from browser import Player
 from sharing import Shared
 
 from derive import Derivation, load
+from derive.formulas.expression import Namespace
+from derive.verification import hand
+from derive.verification.reference_system import ReferenceSystem
 from solvers.app.modules import load as load_module
 from solvers.integration.checks import predictability
 from solvers.scenes.scene_reading import find
@@ -152,6 +155,21 @@ def report_steps(shared: Shared) -> dict[str, CriticalStep]:
     with cheap_compiler.as_users():  # roundings decide
         steps = shared("report_steps", lambda: SceneStability.of(find("report", load_module)).steps)
     return {step.method: step for step in steps}
+
+
+@pytest.fixture(scope="session", autouse=True)
+def shared_references() -> Iterator[None]:
+    """Let hand derivations about equal systems share the derivation and its states."""
+    models: dict[object, ReferenceSystem] = {}
+
+    def model(derivation: Derivation, names: Namespace) -> ReferenceSystem:
+        key = derivation, frozenset(names.items())
+        return models.setdefault(key, ReferenceSystem(derivation, names))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hand, "Derivation", cache(Derivation))
+        patch.setattr(hand, "ReferenceSystem", model)
+        yield
 
 
 @pytest.fixture(scope="session")

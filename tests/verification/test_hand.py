@@ -50,10 +50,9 @@ QUICK = [name for name in names() if name not in SLOW]
 
 @pytest.fixture
 def without_advice(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Verdicts without corrections, which have tests of their own; files share a derivation."""
+    """Verdicts without corrections, which have tests of their own; files share a system."""
     monkeypatch.setattr(quantity_verdicts, "advised", lambda verdict, *_: verdict)
-    for name in ("load", "Derivation"):
-        monkeypatch.setattr(hand, name, cache(getattr(hand, name)))
+    monkeypatch.setattr(hand, "load", cache(hand.load))
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
