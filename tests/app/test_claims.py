@@ -191,7 +191,7 @@ def test_right_hand_sides_are_counted_to_an_error(evidence: Evidence) -> None:
 def test_verdicts_change_with_the_facts() -> None:
     # had all programs been set to what the prose says, these claims would stand
     honest = Evidence(PROSE, PROSE, PROSE, THIRD)
-    verdicts = {claim.id: claim.verdict for claim in claims(honest)}
+    verdicts = {claim.id: claim.verdict for claim in _chapter_3(honest)}
     assert verdicts["3.1a"] == verdicts["3.2a"] == "supported"
     almost = replace(PROSE, y0=(PROSE.y0[0] + 0.01, *PROSE.y0[1:]))
     verdicts = {claim.id: claim.verdict for claim in _chapter_3(replace(honest, first=almost))}
