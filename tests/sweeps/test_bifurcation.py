@@ -4,10 +4,9 @@ from math import pi
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import generated.duffing as duffing
-from solvers import Bifurcation, Final, Grid, Results, Sweep, sweep
+from solvers import Bifurcation, Final, Grid, Results, Sweep, integrate, sweep
 from solvers.sweeps.plots.figure import figure
 
 PERIOD = "2*pi/Omega"
@@ -34,8 +33,8 @@ def test_states_are_those_of_one_motion_whose_parameter_changes(
         omega = OMEGA[k]
         params = duffing.params(**{n: v for n, v in VALUES.items() if n != "x"}, Omega=omega)
         times = 2 * pi / omega * np.arange(64)
-        options = {"rtol": 1e-11, "atol": 1e-11, "t_eval": times, "args": (params,)}
-        run = solve_ivp(duffing.rhs, (0, times[-1]), state, "DOP853", **options)
+        options = {"rtol": 1e-11, "atol": 1e-11, "t_eval": times, "method": "dop853"}
+        run = integrate(duffing, (0, times[-1]), state, params, **options)
         state = run.y[:, -1]
         assert diagram.maps["orbit"][1, k, :, :, direction] == pytest.approx(
             run.y[:, 61:], abs=1e-6
