@@ -52,7 +52,7 @@ def test_the_module_derive_is_a_command_like_the_others(arguments: str) -> None:
     assert message.endswith("No space left on device: 'standard output'\n")
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 @pytest.mark.parametrize("command", ["--help", "--version", "systems chain_2"])
 def test_output_that_cannot_be_written_is_reported(command: str, unbuffered: str) -> None:
@@ -64,7 +64,7 @@ def test_output_that_cannot_be_written_is_reported(command: str, unbuffered: str
     assert code == 4
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("streams", ["2>&-", "2> /dev/full", "<&- 2>&-", "2>&1 | true"])
 @pytest.mark.parametrize(("command", "code"), [
     ("--version", 0), ("sistems", 2), ("systems chain", 2), ("run nothing", 2),
@@ -74,6 +74,7 @@ def test_unread_messages_change_no_exit_code(command: str, code: int, streams: s
     assert printed == (code, "" if code or "true" in streams else "holonomic 0.1.0\n")
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("streams", ["2>&-", "<&-", "2>&- <&-"])
 def test_a_scene_runs_without_standard_error_or_input(streams: str, tmp_path: Path) -> None:
     code, printed = shell(f"holonomic run single --output {tmp_path} {streams}")
@@ -107,6 +108,7 @@ def test_characters_that_an_encoding_lacks_are_escaped(environment: dict[str, st
     assert "parameters: m1 = 1 kg" in printed
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("environment", ENCODINGS[:2])
 def test_json_is_valid_in_every_encoding(environment: dict[str, str], tmp_path: Path) -> None:
     source = "É. Noether, \U0001d4e2"  # beyond Latin-1, and beyond 16 bits

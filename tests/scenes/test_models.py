@@ -147,6 +147,7 @@ def test_in_random_scenes_the_error_stays_below_the_accuracy(part: int, shared: 
     assert all(error <= 1 for _, error in results), results
 
 
+@pytest.mark.long("all parts of the random scenes")
 def test_random_scenes_use_every_model(shared: Shared) -> None:
     parts = [
         shared(f"random_scenes_{part}", partial(accuracies_of_part, part)) for part in range(PARTS)
