@@ -3,8 +3,9 @@
 A mistake is a change of one operator, number or condition in a line of Python or C, chosen at
 random in every room. A first run of the tests on a copy of the project, in which each chosen place
 reports when it is reached, yields the tests that reach it. Each mistake is then planted in another
-copy, where these tests run, and after them those of its room. Reported are the mistakes that no
-test notices. ``make mutants`` runs this.
+copy, where these tests run, and after them those of its room. With ``--long``, mistakes that none
+of them notices are tried with the long tests of the room, and with the long cases of these tests.
+Reported are the mistakes that no test notices. ``make mutants`` runs this.
 """
 
 import argparse
@@ -29,6 +30,8 @@ ROOT = Path(__file__).parents[1]
 TIMEOUT = 100
 #: Most tests of a line, half of them those that reach few other lines, half those that reach many.
 MOST_TESTS = 120
+#: Options for the tests that are in the long part alone.
+LONG = ("--long", "-m", "long and not campaign")
 #: Exit codes of pytest: all tests passed, and there was none.
 PASSED = (0, 5)
 #: Folders of tests that have not the name of the room.
@@ -73,10 +76,11 @@ def lines(path):
     return Path(path).read_text(encoding="utf-8").splitlines() if path else []
 def pytest_collection_modifyitems(config, items):
     order, failed = {name: k for k, name in enumerate(lines(SELECTED))}, set(lines(FAILED))
+    def place(one):  # of the test, or of all its cases
+        return order.get(one.nodeid, order.get(one.nodeid.partition("[")[0]))
     chosen = [one for one in items if one.nodeid not in failed]
     if order:
-        chosen = [one for one in chosen if one.nodeid in order]
-        chosen.sort(key=lambda one: order[one.nodeid])
+        chosen = sorted((one for one in chosen if place(one) is not None), key=place)
     items[:] = chosen
 def pytest_runtest_logreport(report):
     if report.failed and "REACHED" in os.environ:
@@ -239,8 +243,8 @@ def pytest(project: Path, *arguments: str, **environment: str) -> int:
         stdout=quiet, stderr=quiet, stdin=quiet, check=False).returncode  # fmt: skip
 
 
-def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> list[list[str]]:
-    """Tests that reach each mistake in Python, first those that reach few others."""
+def reaching(mutants: Sequence[Mutant], place: Path) -> list[list[str]]:
+    """Short tests that reach each mistake in Python, first those that reach few others."""
     project, reached = copy(place / "probed"), place / "reached"
     reached.mkdir()
     (project / "sitecustomize.py").write_text(PROBE)
@@ -262,7 +266,7 @@ def reaching(mutants: Sequence[Mutant], place: Path, options: Sequence[str]) -> 
         (project / name).write_bytes(b"\n".join(lines) + b"\n")
     workers = ("--numprocesses", "auto", "--dist", "worksteal")
     (reached / "failed").touch()
-    pytest(project, *workers, *options, REACHED=str(reached))
+    pytest(project, *workers, REACHED=str(reached))
     failed = (reached / "failed").read_text().splitlines()
     print(f"{len(set(failed))} tests fail without a mistake and do not count", flush=True)
     tests = [
@@ -298,26 +302,31 @@ def starts_of_functions(mutant: Mutant) -> list[int]:
 
 
 def is_noticed(mutant: Mutant, tests: Sequence[str], project: Path, options: Sequence[str]) -> bool:
-    """Whether a test fails with a mistake in a copy, which is undone."""
-    path, failed = project / mutant.file, str(project.parents[1] / "reached" / "failed")
-    original = path.read_bytes()
+    """Whether a test fails with a mistake in a copy, which is undone, and not without it."""
+    path, place = project / mutant.file, project.parents[1]
+    original, before = path.read_bytes(), place / "reached" / "failed"
     lines = original.splitlines()
     lines[mutant.line - 1] = mutant.applied(lines)
-    path.write_bytes(b"\n".join(lines) + b"\n")
+    changed = b"\n".join(lines) + b"\n"
+    selected, reached = project.parent / "selected", project.parent / "reached"
+    selected.write_text("\n".join(tests), encoding="utf-8")
+    reached.mkdir(exist_ok=True)
     room = project / "tests" / OTHER_FOLDERS.get(mutant.room, mutant.room.rpartition("/")[2])
-    try:
-        if tests:
-            selected = project.parent / f"{project.name}.txt"
-            selected.write_text("\n".join(tests), encoding="utf-8")
-            files = sorted({test.partition("::")[0] for test in tests})
-            arguments = ("-x", *options, *files)
-            if pytest(project, *arguments, SELECTED=str(selected), FAILED=failed) not in PASSED:
-                return True
-        others = [str(room)] if room.is_dir() else []
-        code = pytest(project, "-x", *options, *others, FAILED=failed) if others else 0
-        return code not in PASSED
-    finally:
+    of_line = {"SELECTED": str(selected)}, sorted({test.partition("::")[0] for test in tests})
+    for chosen, files in (of_line, ({}, [str(room)] * room.is_dir())):
+        if not files:
+            continue
+        failed = reached / "failed"
+        failed.unlink(missing_ok=True)
+        path.write_bytes(changed)
+        environment = {**chosen, "FAILED": str(before), "REACHED": str(reached)}
+        code = pytest(project, "-x", *options, *files, **environment)
         path.write_bytes(original)
+        if code not in PASSED:
+            first = failed.read_text(encoding="utf-8").splitlines()[:1] if failed.exists() else []
+            if not first or not options or pytest(project, *options, *first) in PASSED:
+                return True
+    return False
 
 
 def main() -> int:
@@ -325,19 +334,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=200, help="number of mistakes")
     parser.add_argument("--seed", type=int, default=int(time.strftime("%Y%m%d")))
-    parser.add_argument("--long", action="store_true", help="run the long part of the tests, too")
+    parser.add_argument("--long", action="store_true", help="try survivors with the long tests")
     parser.add_argument("--only", type=Path, help="file with lines FILE:LINE of mistakes to plant")
     arguments = parser.parse_args()
     mutants = chosen(arguments.count, arguments.seed)
     if arguments.only:
         places = set(arguments.only.read_text(encoding="utf-8").split())
         mutants = [mutant for mutant in mutants if f"{mutant.file}:{mutant.line}" in places]
-    options = ["--long"] if arguments.long else []
     print(f"{len(mutants)} mistakes of seed {arguments.seed}", flush=True)
-    survivors: list[Mutant] = []
+    survivors: dict[str, list[Mutant]] = {"short": [], "long": []}
     with TemporaryDirectory(prefix="mutants-") as folder:
         place = Path(folder)
-        tests = reaching(mutants, place, options)
+        tests = reaching(mutants, place)
         projects: SimpleQueue[Path] = SimpleQueue()
         workers = os.cpu_count() or 1
         for k in range(workers):
@@ -345,20 +353,27 @@ def main() -> int:
 
         def tried(number: int) -> None:
             project = projects.get()
-            noticed = is_noticed(mutants[number], tests[number], project, options)
+            mutant, own = mutants[number], tests[number]
+            functions = [*dict.fromkeys(test.partition("[")[0] for test in own)]
+            for part, names, options in (("short", own, ()), ("long", functions, LONG)):
+                if part == "long" and not arguments.long:
+                    break
+                if is_noticed(mutant, names, project, options):
+                    break
+                survivors[part].append(mutant)
+                reach = f"reached by {len(own)} short tests"
+                print(f"not noticed by the {part} tests, {reach}: {mutant}", flush=True)
             projects.put(project)
-            if not noticed:
-                survivors.append(mutants[number])
-                reach = f"reached by {len(tests[number])} tests"
-                print(f"not noticed, {reach}: {mutants[number]}", flush=True)
 
         with ThreadPoolExecutor(workers) as pool:
             list(pool.map(tried, range(len(mutants))))
-    rooms, missed = (Counter(one.room for one in each) for each in (mutants, survivors))
+    rooms, missed = (Counter(one.room for one in each) for each in (mutants, survivors["short"]))
     for room in sorted(rooms):
         print(f"{room:<24}{rooms[room] - missed[room]:>4} of {rooms[room]}")
-    found = len(mutants) - len(survivors)
-    print(f"noticed {found} of {len(mutants)}: {100 * found / len(mutants):.0f} %")
+    for part in ("short", "long")[: 1 + arguments.long]:
+        found = len(mutants) - len(survivors[part])
+        share = f"{found} of {len(mutants)}: {100 * found / len(mutants):.0f} %"
+        print(f"noticed up to the {part} tests: {share}")
     return 0
 
 
