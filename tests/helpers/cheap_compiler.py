@@ -66,11 +66,13 @@ def install(flags: str) -> None:
 
 
 @contextmanager
-def as_users() -> Iterator[None]:
-    """Compile with the optimisation of users in this context."""
+def compiling(flags: str = "") -> Iterator[None]:
+    """Compile with these flags in this context, without any with the optimisation of users."""
     loops = kernel, extended.kernel  # those of this process
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", _without(os.environ["PATH"]))
+        if flags:
+            install(flags)
         for loop in loops:
             loop.cache_clear()
         yield

@@ -114,7 +114,7 @@ def test_every_precision_has_its_digits_in_chaos() -> None:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
-@pytest.mark.usefixtures("optimised")  # the smaller error is nearly that of roundings
+@pytest.mark.usefixtures("fused")  # the smaller error is nearly that of roundings
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_errors_are_proportional_to_tolerances(precision: str) -> None:
     coarse = {"double-double": 1e-15, "long double": 1e-12, "quadruple": 1e-16}[precision]

@@ -30,7 +30,7 @@ from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 
 # kinds of arithmetic differ in fused products, which a compiler forms where it optimises
-pytestmark = pytest.mark.usefixtures("optimised")
+pytestmark = pytest.mark.usefixtures("fused")
 
 ANGLES = np.linspace(-3, 3, 5)
 MAPS = {"flip": First({"theta1": (-np.pi, np.pi)}), "end": Final(("theta1",))}
