@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import nbformat
 import pytest
 
@@ -47,6 +48,15 @@ def test_a_notebook_is_thin_and_ends_with_its_proof(path: Path) -> None:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_the_cells_of_a_notebook_prove_its_claim_in_this_process(path: Path) -> None:
+    names: dict[str, Any] = {"display": lambda *_: None}
+    for cell in cells(path, "code"):
+        exec(compile(python(cell), str(path), "exec"), names)
+    plt.close("all")
+
+
+@pytest.mark.long("a kernel of Jupyter")
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_and_proves_its_claim(path: Path) -> None:
     notebook = executed(path)
