@@ -36,6 +36,7 @@ def exact() -> np.ndarray:
     return integrate(hh, (0, DURATION), START, {}, method="gauss8", rtol=1e-14, atol=1e-15).y[:, -1]
 
 
+@pytest.mark.long("more cases of the same kind", keep=6)
 @pytest.mark.parametrize("name", SPLITTINGS)
 @pytest.mark.parametrize("backend", ["python", "compiled", "lanes"])
 def test_every_loop_has_the_order(name: str, backend: str, exact: np.ndarray) -> None:

@@ -305,6 +305,7 @@ def test_hamilton_s_form_is_the_same_motion(module: ModuleType) -> None:
         assert energies[0] == pytest.approx(energies[1], rel=1e-11)
 
 
+@pytest.mark.long("more cases of the same kind", keep=10)
 def test_the_hamiltonian_is_the_maximum_of_p_v_minus_the_lagrangian_over_velocities(
     system: System, module: ModuleType
 ) -> None:
