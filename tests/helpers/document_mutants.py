@@ -35,7 +35,7 @@ def mutants(document: Document) -> Iterator[Mutant]:
     for display in document.displays:
         for statement in formulas(display.latex, {}):
             if isinstance(statement, Statement) and not display.is_inline:
-                for kind, start, end, new in _changes(display.latex, statement):
+                for kind, start, end, new in changes(display.latex, statement):
                     first, last = display.start + start, display.start + end
                     old = document.text[first:last]
                     text = document.text[:first] + new + document.text[last:]
@@ -43,7 +43,8 @@ def mutants(document: Document) -> Iterator[Mutant]:
                     yield Mutant(kind, text, first, formula, f"{old} -> {new}")
 
 
-def _changes(latex: str, statement: Statement) -> Iterator[tuple[str, int, int, str]]:
+def changes(latex: str, statement: Statement) -> Iterator[tuple[str, int, int, str]]:
+    """Yield kinds of mistakes in a statement, their first and last character, and the new text."""
     first, *others = statement.sides
     # another name on the left defines another quantity
     sides = others if isinstance(first, Letter | Matrix) else statement.sides

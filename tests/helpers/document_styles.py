@@ -1,0 +1,150 @@
+"""Styles in which documents are written: letters, notations, steps, conventions, markup."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+#: Greek letters, and indices, as LaTeX has them.
+COMMON = {
+    **{name: rf"\{name}" for name in ("theta", "phi", "alpha", "Omega")},
+    **{f"{letter}{i}": f"{letter}_{i}" for letter in "mlkx" for i in (1, 2, 3)},
+    **{f"theta{i}": rf"\theta_{i}" for i in (1, 2)},
+}
+ANGLES_PHI = {"theta": r"\varphi", "theta1": r"\varphi_1", "theta2": r"\varphi_2", "phi": r"\psi"}
+WORDS = {
+    "en": {
+        "positions": "The positions are", "velocities": "The square of the speed is",
+        "kinetic": "The kinetic energy is", "potential": "The potential energy is",
+        "lagrangian": "Hence the Lagrangian", "partials": "Its derivatives are",
+        "rates": "Their rates are", "equations": "The equations of motion are",
+        "accelerations": "Solved for the accelerations,", "momenta": "The momenta are",
+        "hamiltonian": "The Hamiltonian is", "canonical": "Hamilton's equations read",
+        "energy": "The energy is conserved:", "abbreviations": "We abbreviate",
+    },
+    "de": {
+        "positions": "Die Koordinaten lauten", "velocities": "Die Geschwindigkeiten sind",
+        "kinetic": "Kinetische Energie:", "potential": "Potentielle Energie:",
+        "lagrangian": "Lagrangefunktion:", "partials": "Ableitungen:", "rates": "Zeitlich:",
+        "equations": "Bewegungsgleichungen:", "accelerations": "Aufgelöst:",
+        "momenta": "Impulse:", "hamiltonian": "Hamiltonfunktion:", "canonical": "Kanonisch:",
+        "energy": "Energie:", "abbreviations": "Mit der Abkürzung",
+    },
+}  # fmt: skip
+
+BY_POSITIONS = ("positions", "kinetic", "potential", "lagrangian", "equations")
+BY_ENERGIES = ("kinetic", "potential", "lagrangian", "equations")
+BY_STEPS = ("kinetic", "potential", "lagrangian", "partials", "rates", "equations")
+BY_HAMILTON = ("lagrangian", "momenta", "hamiltonian", "canonical")
+
+
+@dataclass(frozen=True)
+class Style:
+    """How an author writes."""
+
+    steps: tuple[str, ...]
+    markup: str = "md"  # md, tex, html or ipynb
+    letters: Mapping[str, str] = field(default_factory=dict)  # beside those that are common
+    rates: str = "dot"  # dot, time (functions of t), leibniz or prime
+    energies: Sequence[str] = ("T", "V", "L", "H")
+    shift: sp.Expr = sp.S.Zero  # of angles, from hanging
+    is_down: bool = False  # the axis of heights points downwards
+    abbreviated: tuple[str, ...] = ()  # products, sums or differences of parameters and angles
+    brackets: bool = False  # sin(x)
+    halves: bool = False  # a fraction before its product
+    times: str = " "  # between factors
+    is_chained: bool = False  # L = T - V = ...
+    is_aligned: bool = False  # all formulas of a step in one display
+    moves_right: bool = False  # the equations have terms on both sides
+    language: str = "en"
+    is_held_out: bool = False  # not used in development
+
+    def written(self, steps: Sequence[tuple[str, Sequence[str]]]) -> str:
+        """The text of a document from the formulas of its steps."""
+        pieces = []
+        for step, formulas in steps:
+            words = WORDS[self.language][step]
+            if self.is_aligned and len(formulas) > 1:
+                rows = " \\\\\n".join(one.replace(" = ", " &= ", 1) for one in formulas)
+                formulas = [f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"]
+            pieces.append("\n\n".join([words, *map(self._display, formulas)]))
+        text = "\n\n".join(pieces)
+        if self.markup == "tex":
+            return f"\\documentclass{{article}}\n\\begin{{document}}\n{text}\n\\end{{document}}\n"
+        if self.markup == "html":
+            return f"<html><body>\n<p>{text}</p>\n</body></html>\n"
+        if self.markup == "ipynb":
+            cells = [{"cell_type": "markdown", "metadata": {}, "source": one} for one in pieces]
+            return json.dumps({"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
+        return text + "\n"
+
+    def _display(self, formula: str) -> str:
+        if self.markup == "tex":
+            return f"\\begin{{equation}}\n{formula}\n\\end{{equation}}"
+        if self.markup == "html":
+            formula = formula.replace("&", "&amp;").replace("<", "&lt;")
+            return f"\\[ {formula} \\]"
+        return f"$$\n{formula}\n$$"
+
+
+STYLES: dict[str, Style] = {
+    "lecture": Style(BY_POSITIONS, is_chained=True),
+    "notes": Style(BY_STEPS, halves=True, energies=("T", "U", r"\mathcal{L}", "H")),
+    "thesis": Style(
+        (*BY_POSITIONS, "accelerations"), "tex", is_aligned=True, brackets=True, rates="time"
+    ),
+    "german": Style(
+        BY_ENERGIES, "tex", ANGLES_PHI, language="de", energies=("T", "U", "L", "H"), halves=True
+    ),
+    "upright": Style(BY_POSITIONS, shift=sp.pi, is_aligned=True),
+    "downwards": Style((*BY_POSITIONS, "energy"), is_down=True, times=r" \, "),
+    "canonical": Style(BY_HAMILTON, "html", halves=True),
+    "lagrangian_alone": Style(
+        ("lagrangian", "partials", "equations"), "md", {"l": "L", "l1": "L_1", "l2": "L_2"},
+        energies=("T", "V", r"\mathcal{L}", "H"),
+    ),
+    "abbreviating": Style(
+        ("abbreviations", *BY_STEPS), abbreviated=("inertia", "difference", "total"), halves=True
+    ),
+    "notebook": Style(
+        ("kinetic", "potential", "equations", "accelerations"), "ipynb", rates="leibniz",
+        moves_right=True,
+    ),
+    "primes": Style(BY_ENERGIES, rates="prime", brackets=True, is_held_out=True),
+    "blog": Style(
+        BY_STEPS, "html", {"l": r"\ell", "l1": r"\ell_1", "l2": r"\ell_2", **ANGLES_PHI},
+        brackets=True, is_chained=True, times=r" \cdot ", is_held_out=True,
+    ),
+    "mechanics_exam": Style(
+        ("energy", "equations"), "tex", {"J": "I", "k": "c", "m": "M", "a": "d"}, halves=True,
+        moves_right=True, is_held_out=True,
+    ),
+    "horizontal": Style(BY_POSITIONS, shift=sp.pi / 2, is_chained=True, is_held_out=True),
+    "leibniz": Style(
+        (*BY_ENERGIES, "energy"), "tex", rates="leibniz", energies=("K", "U", "L", "H"),
+        is_held_out=True,
+    ),
+    "long_hamilton": Style(
+        ("kinetic", "potential", "momenta", "hamiltonian", "canonical"), "ipynb", ANGLES_PHI,
+        rates="time", brackets=True, is_held_out=True,
+    ),
+    "speeds": Style(
+        ("positions", "velocities", "kinetic", "potential", "equations"), is_down=True,
+        letters={"theta": r"\alpha", "theta1": r"\alpha", "theta2": r"\beta", "alpha": "b",
+                 "l": "R", "R": "D", "phi": r"\gamma"},
+        energies=("T", "U", "L", "H"), is_held_out=True,
+    ),
+    "abbreviated_late": Style(
+        ("kinetic", "potential", "abbreviations", "lagrangian", "partials", "equations"), "tex",
+        abbreviated=("inertia", "total", "difference"), is_aligned=True, is_held_out=True,
+    ),
+    "accelerations_first": Style(
+        ("equations", "accelerations", "energy"), letters=ANGLES_PHI, halves=True,
+        is_held_out=True,
+    ),
+    "german_hamilton": Style(
+        ("positions", "lagrangian", "momenta", "hamiltonian", "canonical"), "html", language="de",
+        is_chained=True, is_held_out=True,
+    ),
+}  # fmt: skip
