@@ -270,6 +270,11 @@ class PointMass:
         return ()
 
     @property
+    def inertia_matrix(self) -> sp.ImmutableDenseMatrix | None:
+        """Its part of the mass matrix, if this is given in place of positions."""
+        return None
+
+    @property
     def placement(self) -> tuple[sp.Expr, ...]:
         """The functions of coordinates and time that place the mass."""
         return tuple(r for _, position in self.motions for r in position)

@@ -70,11 +70,19 @@ class Kinetics:
         positions = sp.Tuple(*(r for mass in self.system.masses for r in mass.placement))
         if self.bodies or self.variables != self.system.q or positions.has(*CHOICES):
             return None
+        if self._given_matrices:
+            return None
         return kinematic_tree(self.system.q, self._motions)
 
     @property
     def _motions(self) -> list[tuple[sp.Expr, tuple[sp.Expr, ...]]]:
         return [motion for mass in self.system.masses for motion in mass.motions]
+
+    @property
+    def _given_matrices(self) -> list[Matrix]:
+        """Parts of the mass matrix that follow from no positions."""
+        matrices = (mass.inertia_matrix for mass in self.system.masses)
+        return [one for one in matrices if one is not None]
 
     @cached_property
     def inertia(self) -> Matrix:
@@ -106,6 +114,9 @@ class Kinetics:
 
         n = len(self.variables)
         upper = {(i, j): entry(i, j) for i in range(n) for j in range(i, n)}
+        for matrix in self._given_matrices:
+            for i, j in upper:
+                upper[i, j] += matrix[i, j]
         return Matrix(n, n, lambda i, j: upper[min(i, j), max(i, j)])
 
     @property

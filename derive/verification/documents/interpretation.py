@@ -158,10 +158,9 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[S
             continue
         yield [*stated_candidates(system, letters)]
     yield from _of_templates(letters, statements)
-    if letters.constraints:
-        for system, numbers in systems_of_energies(letters, statements.formulas):
-            stated = stated_candidates(system, letters)
-            yield [replace(one, stating=numbers) for one in stated if one.constraints]
+    for system, numbers in systems_of_energies(letters, statements.formulas):
+        tried = (replace(one, stating=numbers) for one in stated_candidates(system, letters))
+        yield [one for one in tried if one.constraints or not letters.constraints]
 
 
 def _of_templates(

@@ -1,57 +1,101 @@
-"""The system of energies that a document states, if it has constraints of its own.
+"""The system of energies that a document states: T and V, its Lagrangian, or its energy.
 
-Kinetic energies are sums of squares of velocities with constant factors, such as those of particles
-in Cartesian coordinates, of bodies in a plane and of wheels.
+Kinetic energies are quadratic forms of velocities, whose coefficients may depend on coordinates.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import product
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.expression import FUNCTIONS, Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import DocumentFormula, definitions
 
-#: Energies and the numbers of their formulas.
-Stated = Mapping[str, tuple[sp.Expr, int]]
+#: Energies by their kinds, and the numbers of their formulas: different values, the first first.
+Stated = Mapping[str, Sequence[tuple[sp.Expr, int]]]
+#: Kinetic and potential energy, and the numbers of the formulas that state them.
+Energies = tuple[sp.Expr, sp.Expr, frozenset[int]]
+#: Most values of an energy that are tried, and rounds in which definitions are sought.
+MOST, ROUNDS = 3, 3
+
+
+@dataclass(frozen=True)
+class StatedInertia(PointMass):
+    """Masses whose positions are not known, but whose mass matrix is."""
+
+    matrix: sp.ImmutableDenseMatrix
+
+    @property
+    def motions(self) -> tuple[()]:
+        """None: no position is known."""
+        return ()
+
+    @property
+    def inertia_matrix(self) -> sp.ImmutableDenseMatrix:
+        """The mass matrix."""
+        return self.matrix
 
 
 def systems_of_energies(
     letters: Letters, formulas: Sequence[DocumentFormula]
 ) -> Iterator[tuple[System, frozenset[int]]]:
-    """Yield the system of the stated Lagrangian, or energies, and the numbers of these formulas."""
+    """Yield the systems of stated energies, and the numbers of the formulas that state them."""
     symbols = _symbols(letters)
-    energies = _energies(letters, formulas, symbols)
-    if energies is None:
-        return
-    T, V, numbers = energies
     q = [symbols[name] for name in letters.coordinates]
-    rates = [velocity(one) for one in q]
-    masses = _masses(sp.expand(T), q, rates)
-    moving = [one for one, v in zip(q, rates, strict=True) if T.has(v)]
-    if masses is None or V.free_symbols & {*rates} or not {*moving} >= {*q} & V.free_symbols:
-        return
-    used = T.free_symbols | V.free_symbols
-    parameters = [
-        Parameter(one, "m" if is_length(name) else "1", 1.0, "a parameter")
-        for name, one in symbols.items()
-        if one in used and name in letters.parameters
-    ]
-    try:
-        system = System(
-            "stated", "The system of the stated energies",
-            [Coordinate(one, "m", "a coordinate") for one in moving], parameters, masses,
-            potential=V, gravity=(sp.S.Zero, sp.S.Zero),
-        )  # fmt: skip
-        derivation(system)
-    except SystemDefinitionError:
-        return
-    yield system, numbers
+    known: set[tuple[sp.Expr, sp.Expr]] = set()
+    for T, V, numbers in _energies(letters, formulas, symbols):
+        moving = [one for one in q if T.has(velocity(one))]
+        form = _quadratic_form(T, moving)
+        accelerated = {symbols[name] for name in letters.accelerated}
+        if (
+            form is None
+            or not {*moving} >= ({*q} & (V.free_symbols | T.free_symbols)) | accelerated
+        ):
+            continue
+        matrix, rest = form
+        pair = (sp.expand(T), sp.expand(V))
+        if pair in known:
+            continue
+        known.add(pair)
+        used = T.free_symbols | V.free_symbols
+        parameters = [
+            Parameter(one, "m" if is_length(name) else "1", 1.0, "a parameter")
+            for name, one in symbols.items()
+            if one in used and name in letters.parameters
+        ]
+        with suppress(SystemDefinitionError, ValueError):
+            system = System(
+                "stated", "The system of the stated energies",
+                [Coordinate(one, "m", "a coordinate") for one in moving], parameters,
+                [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
+                potential=V - rest, gravity=(sp.S.Zero, sp.S.Zero),
+            )  # fmt: skip
+            derivation(system)
+            yield system, numbers
+
+
+def _quadratic_form(
+    kinetic: sp.Expr, moving: Sequence[sp.Symbol]
+) -> tuple[sp.ImmutableDenseMatrix, sp.Expr] | None:
+    """The mass matrix of a kinetic energy, and its part without velocities; None without any."""
+    rates = [velocity(one) for one in moving]
+    matrix = sp.ImmutableDenseMatrix(sp.hessian(kinetic, rates)) if rates else None
+    if matrix is None or matrix.free_symbols & {*rates} or not all(matrix.diagonal()):
+        return None
+    at_rest = dict.fromkeys(rates, sp.S.Zero)
+    if any(kinetic.diff(rate).xreplace(at_rest) != 0 for rate in rates):
+        return None
+    if any(matrix[i, i].could_extract_minus_sign() for i in range(len(rates))):
+        return None
+    return matrix.applyfunc(sp.factor_terms), kinetic.xreplace(at_rest)
 
 
 def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentFormula]) -> bool:
@@ -62,7 +106,7 @@ def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentF
     """
     own = {one.name: one for one in (*system.q, *system.params)}
     symbols = {name: own.get(one.name, one) for name, one in _symbols(letters).items()}
-    energies = _energies(letters, formulas, symbols)
+    energies = next(_energies(letters, formulas, symbols), None)
     if energies is None:
         return False
     masses = {symbols[name] for name in letters.of_kind("mass")}
@@ -92,53 +136,44 @@ def _symbols(letters: Letters) -> dict[str, sp.Symbol]:
 
 def _energies(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
-) -> tuple[sp.Expr, sp.Expr, frozenset[int]] | None:
-    """The stated kinetic and potential energy, and the numbers of their formulas."""
+) -> Iterator[Energies]:
+    """Yield kinetic and potential energies that the document states, or that follow from others."""
     stated = _stated(letters, formulas, symbols)
-    if "kinetic_energy" in stated and "potential_energy" in stated:
-        (T, first), (V, second) = stated["kinetic_energy"], stated["potential_energy"]
-        return T, V, frozenset({first, second})
-    if "lagrangian" in stated:
-        L, number = stated["lagrangian"]
-        V = -L.xreplace({velocity(symbols[q]): sp.S.Zero for q in letters.coordinates})
-        return sp.expand(L + V), V, frozenset({number})
-    if "kinetic_energy" in stated:
-        T, number = stated["kinetic_energy"]
-        return T, sp.S.Zero, frozenset({number})
-    return None
+    kinetic, potential = (stated.get(f"{kind}_energy", ()) for kind in ("kinetic", "potential"))
+    for (T, first), (V, second) in product(kinetic, potential):
+        yield T, V, frozenset({first, second})
+    at_rest = {velocity(symbols[q]): sp.S.Zero for q in letters.coordinates}
+    for kind, sign in (("lagrangian", -1), ("energy", 1), ("hamiltonian", 1)):
+        for value, number in stated.get(kind, ()):
+            V = sign * value.xreplace(at_rest)
+            yield sp.expand(value - sign * V), V, frozenset({number})
+    if not potential:
+        yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
 
 
 def _stated(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> Stated:
-    """The energies that formulas state in letters, without those of reactions."""
-    namespace = {**FUNCTIONS, **symbols, "t": TIME}
+    """The energies that formulas state in letters and names with definitions."""
+    namespace: dict[str, Value] = {**FUNCTIONS, **symbols, "t": TIME}
     namespace |= {f"{q}_dot": velocity(symbols[q]) for q in letters.coordinates}
-    result: dict[str, tuple[sp.Expr, int]] = {}
-    for number, formula in enumerate(formulas):
-        kind = letters.quantities.get(formula.subject, "")
-        for side in formula.sides[1:]:
-            try:
-                value = parse(side.text, namespace)
-            except (ExpressionError, NotImplementedError):
-                continue
-            if not isinstance(value, sp.MatrixBase):
-                result.setdefault(kind, (value, number))
+    for name, (function, angles) in letters.abbreviations.items():
+        with suppress(ExpressionError):
+            namespace[name] = parse(f"{function}({' + '.join(angles)})", namespace)
+    result: dict[str, list[tuple[sp.Expr, int]]] = {}
+    for _ in range(ROUNDS):
+        for number, formula in enumerate(formulas):
+            for name, text in definitions(formula):
+                kind = letters.quantities.get(name, "")
+                if name in symbols or (name in namespace and not kind):
+                    continue
+                try:
+                    value = parse(text, namespace)
+                except (ExpressionError, NotImplementedError):
+                    continue
+                namespace.setdefault(name, value)
+                values = result.setdefault(kind, [])
+                is_new = not any(value == one for one, _ in values)
+                if kind and is_new and len(values) < MOST and isinstance(value, sp.Expr):
+                    values.append((value, number))
     return result
-
-
-def _masses(
-    kinetic: sp.Expr, q: Sequence[sp.Symbol], rates: Sequence[sp.Symbol]
-) -> list[PointMass] | None:
-    """Masses that move along lines with a kinetic energy; None if there are none."""
-    masses: list[PointMass] = []
-    rest = kinetic
-    for one, rate in zip(q, rates, strict=True):
-        factor = kinetic.coeff(rate, 2) * 2
-        if not factor:
-            continue
-        if factor.free_symbols & {*q, *rates, TIME} or factor.could_extract_minus_sign():
-            return None
-        rest -= factor * rate**2 / 2
-        masses.append(PointMass(factor, (one, sp.S.Zero)))
-    return masses if masses and sp.expand(rest) == 0 else None
