@@ -1,6 +1,6 @@
 """Parts of syntax trees, and trees with other indices."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -10,10 +10,20 @@ from derive.reading.latex.tree import Letter, Node, Summation
 def indexed(node: Node, index: str, value: int) -> Node:
     """The tree with a number in place of a letter that is an index."""
 
+    def changed(letter: Letter) -> Letter:
+        words = letter.index.split("_") if letter.index else []
+        return replace(letter, index="_".join(str(value) if w == index else w for w in words))
+
+    result: Node = with_letters(node, changed)
+    return result
+
+
+def with_letters(node: Any, change: Callable[[Letter], Letter]) -> Any:
+    """A tree, or a tuple of trees, with other letters."""
+
     def changed(part: Any) -> Any:
         if isinstance(part, Letter):
-            words = part.index.split("_") if part.index else []
-            return replace(part, index="_".join(str(value) if w == index else w for w in words))
+            return change(part)
         if isinstance(part, tuple):
             return tuple(map(changed, part))
         if isinstance(part, Node):
@@ -21,8 +31,7 @@ def indexed(node: Node, index: str, value: int) -> Node:
             return replace(part, **{name: changed(getattr(part, name)) for name in names})
         return part
 
-    result: Node = changed(node)
-    return result
+    return changed(node)
 
 
 def nodes(node: object) -> Iterator[Node]:

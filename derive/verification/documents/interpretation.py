@@ -16,6 +16,7 @@ from derive.verification.documents.letters.templates import templates
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
+from derive.verification.documents.rules.consequences import FOLLOWS
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -102,9 +103,42 @@ def _best(
         result = best_matches(tried, letters, formulas, derivatives, trivial)
         matches += [match for match in result if match.holding or not least]
     best = max(matches, key=lambda match: match.score, default=None)  # the first of several
+    if best is not None:
+        best = _with_fewest_slips(best, matches, statements, letters)
     if best is None or (least and not _is_supported(best, least)):
         return Interpretation(letters, None)
     return Interpretation(letters, best, tuple(_rivals(best, matches)))
+
+
+def _with_fewest_slips(
+    best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
+) -> Match:
+    """The match of stated energies, or one of positions or a known system with fewer slips.
+
+    What follows from a slip is none. Positions that do not lead to the stated energies are one.
+    """
+    if best.candidate.basis != "energies":
+        return best
+    written = {p for one in statements.formulas for p in one.words} & {*letters.parameters}
+    others = dict[str, Match]()
+    for match in sorted(matches, key=lambda one: -one.score):
+        one = match.candidate
+        if one.basis != "energies" and not one.lacking and written <= one.letters:
+            others.setdefault(one.basis, match)
+    is_contradicted = "positions" in others and bool(others["positions"].failed)
+    if not others or len(best.failed) + is_contradicted < 2:
+        return best
+
+    def slips(match: Match) -> float:
+        verdicts = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
+        wrong = [one for _, one in verdicts if one.verdict.verdict == "wrong"]
+        own = sum(FOLLOWS not in one.verdict.note for one in wrong)
+        return own + (is_contradicted and match.candidate.basis == "energies")
+
+    # positions come first, then energies
+    ordered = [others[basis] for basis in ("positions",) if basis in others] + [best]
+    ordered += [others[basis] for basis in ("catalogue",) if basis in others]
+    return min(ordered, key=lambda match: (slips(match), -match.support))
 
 
 def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidate]]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from derive.reading.document import Display, Document
 from derive.reading.latex.display_reader import formulas, macros_of
 from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
-from derive.reading.latex.walking import nodes
+from derive.reading.latex.walking import nodes, with_letters
 from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.interpretation import (
     Work,
@@ -116,7 +116,38 @@ def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
                     unreadable.append(_plain(place, "unreadable", one.reason))
             elif one.relations or not display.is_inline:
                 occurrences.append(place)
-    return occurrences, unreadable
+    return _with_lengths(occurrences), unreadable
+
+
+#: The name of a plain letter L beside the Lagrangian in script.
+LENGTH = "length"
+
+
+def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
+    r"""The statements, with lengths for plain letters L where the Lagrangian is ``\mathcal L``."""
+
+    def is_plain(place: Occurrence, letter: Letter) -> bool:
+        return place.latex[slice(*letter.span)].startswith("L")
+
+    found = {
+        is_plain(one, letter)
+        for one in occurrences
+        for letter in nodes(one.sides)
+        if isinstance(letter, Letter) and letter.name == "L"
+    }
+    if len(found) < 2:
+        return [*occurrences]
+
+    def renamed(place: Occurrence) -> Occurrence:
+        def change(letter: Letter) -> Letter:
+            is_length = letter.name == "L" and is_plain(place, letter)
+            return replace(letter, name=LENGTH) if is_length else letter
+
+        sides = with_letters(place.sides, change)
+        tree = replace(place.tree, sides=sides) if sides else place.tree
+        return replace(place, tree=tree)
+
+    return [*map(renamed, occurrences)]
 
 
 def _occurrence(document: Document, display: Display, tree: Statement | Unreadable) -> Occurrence:

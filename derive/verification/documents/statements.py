@@ -27,6 +27,8 @@ from derive.verification.documents.text import FormulaText, stem
 WORD = re.compile(r"[A-Za-z_]\w*")
 #: Words for quantities that do not change.
 CONSTANT = ("const", "constant", "konst")
+#: Relations of statements that can hold or not.
+EQUALITIES = ("=", ":=", "~")
 #: Letters that stand for numbers as an index.
 INDICES = ("i", "j")
 

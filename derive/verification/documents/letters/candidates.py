@@ -12,8 +12,11 @@ from derive.system.parts import Parameter
 from derive.system.system import System
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
+from derive.verification.documents.statements import WORD
 from derive.verification.system_names import FACTORS
 
+#: The name of systems that documents state.
+STATED = "stated"
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
 #: The same of one with constraints, before those of the signs of multipliers.
@@ -84,6 +87,21 @@ class SystemCandidate:
     def lacking(self) -> int:
         """How many parameters of the system have neither a letter nor a number."""
         return len(self.system.parameters) - len({*self.parameters, *self.numbers})
+
+    @property
+    def basis(self) -> Literal["energies", "positions", "catalogue"]:
+        """What it rests on: energies or positions that the document states, or a known system."""
+        if self.stating:
+            return "energies"
+        return "positions" if self.system.name == STATED else "catalogue"
+
+    @property
+    def letters(self) -> frozenset[str]:
+        """The parameters of the document that have a meaning, or can have one in constraints."""
+        own: set[str] = {*self.parameters.values()}
+        own |= {one for one in self.offsets if isinstance(one, str)}
+        own |= {name for name, *_ in (*self.forces, *self.friction, *self.multipliers)}
+        return frozenset(own.union(*(WORD.findall(one.text) for one in self.constraints)))
 
     @property
     def given(self) -> frozenset[int]:

@@ -15,6 +15,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
+from derive.verification.documents.letters.candidates import STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
@@ -51,7 +52,7 @@ def systems_of_energies(
     symbols = _symbols(letters)
     q = [symbols[name] for name in letters.coordinates]
     known: set[tuple[sp.Expr, sp.Expr]] = set()
-    for T, V, numbers in _energies(letters, formulas, symbols):
+    for T, V, numbers in stated_energies(letters, formulas, symbols):
         moving = [one for one in q if T.has(velocity(one))]
         form = _quadratic_form(T, moving)
         accelerated = {symbols[name] for name in letters.accelerated}
@@ -73,7 +74,7 @@ def systems_of_energies(
         ]
         with suppress(SystemDefinitionError, ValueError):
             system = System(
-                "stated", "The system of the stated energies",
+                STATED, "The system of the stated energies",
                 [Coordinate(one, "m", "a coordinate") for one in moving], parameters,
                 [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
                 potential=V - rest, gravity=(sp.S.Zero, sp.S.Zero),
@@ -106,7 +107,7 @@ def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentF
     """
     own = {one.name: one for one in (*system.q, *system.params)}
     symbols = {name: own.get(one.name, one) for name, one in _symbols(letters).items()}
-    energies = next(_energies(letters, formulas, symbols), None)
+    energies = next(stated_energies(letters, formulas, symbols), None)
     if energies is None:
         return False
     masses = {symbols[name] for name in letters.of_kind("mass")}
@@ -134,7 +135,7 @@ def _symbols(letters: Letters) -> dict[str, sp.Symbol]:
     return symbols
 
 
-def _energies(
+def stated_energies(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> Iterator[Energies]:
     """Yield kinetic and potential energies that the document states, or that follow from others."""

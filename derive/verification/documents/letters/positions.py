@@ -11,6 +11,7 @@ from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefiniti
 from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import (
+    STATED,
     UNITS,
     SystemCandidate,
     constrained,
@@ -18,6 +19,7 @@ from derive.verification.documents.letters.candidates import (
     loads,
 )
 from derive.verification.documents.letters.document_system import derivation, valid_name
+from derive.verification.documents.letters.energies import stated_energies
 from derive.verification.documents.letters.letters import KINDS, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
 
@@ -55,7 +57,7 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
             ]
             try:
                 system = System(
-                    "stated", "The system that the document states", coordinates, parameters,
+                    STATED, "The system that the document states", coordinates, parameters,
                     masses, potential=potential, gravity=(sp.S.Zero,) * len(masses[0].position),
                 )  # fmt: skip
                 derivation(system)
@@ -147,21 +149,13 @@ def _potentials(
 ) -> Iterator[sp.Expr]:
     """The weight, and the stated potential energies that contain it and springs."""
     yield weight
-    namespace = {**FUNCTIONS, **symbols, "t": TIME}
-    for formula in formulas:
-        if letters.quantities.get(formula.subject) != "potential_energy":
-            continue
-        for side in formula.sides[1:]:
-            try:
-                value = parse(side.text, namespace)
-            except ExpressionError:
-                continue
-            if isinstance(value, sp.MatrixBase):
-                continue
-            rest = sp.expand(value - weight)
-            if gravity is None or gravity not in rest.free_symbols:
-                yield value
-                return
+    known = [weight]
+    for _, value, _ in stated_energies(letters, formulas, symbols):
+        rest = sp.expand(value - weight)
+        is_new = all(sp.expand(value - one) != 0 for one in known)
+        if is_new and (gravity is None or gravity not in rest.free_symbols):
+            known.append(value)
+            yield value
 
 
 def _unit(name: str, letters: Letters) -> str:

@@ -315,7 +315,7 @@ class CandidateMotions:
         q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
         qdot = np.einsum("bij,bjk->bik", self._signs, speed)
         time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates
-        names: dict[str, Value] = {"t": Jet.of(time, 1.0)}
+        names: dict[str, Value] = {"t": Jet.of(time, 1.0), "pi": Jet.of(np.array([[np.pi]]))}
         for i, (symbol, rate) in enumerate(zip(self._system.q, self._system.qdot, strict=True)):
             names[symbol.name], names[rate.name] = Jet.of(q[:, i]), Jet.of(qdot[:, i])
         for p in own:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import Letters
@@ -22,8 +23,9 @@ from derive.verification.documents.statements import DocumentFormula
 NEARLY = 0.5
 #: How much it speaks against a meaning that angles are not those from hanging.
 UNUSUAL = 0.25
-#: How much a formula that does not hold speaks against a meaning.
-FAILING = 0.5
+#: How much a formula that does not hold speaks against a meaning, and a parameter of a system
+#: that has no letter.
+FAILING, LACKING = 0.5, 0.25
 #: Comparisons of a document in which such formulas are considered.
 FEW = 12
 #: Most candidates of a system that are considered beside the best.
@@ -48,8 +50,9 @@ class Match:
 
     @property
     def support(self) -> float:
-        """Formulas that hold, less some of those that do not."""
-        return self.holding - FAILING * (self.compared - self.holding)
+        """Formulas that hold or state the system, less some of those that do not."""
+        holding = self.holding + len(self.candidate.stating) - LACKING * self.candidate.lacking
+        return holding - FAILING * (self.compared - self.holding)
 
     @property
     def score(self) -> float:
@@ -101,7 +104,7 @@ def best_matches(
         for row, (index, side, vote) in enumerate(votes):
             hits = numbers.is_near(formulas[index].sides[0].text, side)
             if hits is not None:
-                near[row] = hits & ~vote
+                near[row] = hits & ~vote & _uses_letters(tried, letters, formulas[index])
     holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
     usual = np.array([one.is_usual for one in tried])
     score = holding - UNUSUAL * ~usual
@@ -118,3 +121,11 @@ def best_matches(
               bool(is_nearly[k]), signature)
         for signature, k in [*chosen.items()][:MAX_RIVALS]
     ]  # fmt: skip
+
+
+def _uses_letters(
+    tried: Sequence[SystemCandidate], letters: Letters, formula: DocumentFormula
+) -> NDArray[np.bool_]:
+    """For each candidate, whether the parameters of a formula have a meaning with it."""
+    written = {*formula.words} & {*letters.parameters}
+    return np.array([written <= one.letters for one in tried])

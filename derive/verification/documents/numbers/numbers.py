@@ -12,7 +12,7 @@ from derive.verification.documents.numbers.candidate_motions import (
     CandidateMotions,
 )
 from derive.verification.documents.numbers.single_mistakes import is_near
-from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.statements import EQUALITIES, WORD, DocumentFormula, definitions
 from derive.verification.documents.text import RATES, order, stem
 
 #: The largest difference of values of order 1 that counts as none, and digits that show one.
@@ -86,7 +86,7 @@ class Numbers:
 
     def comparisons(self, formula: DocumentFormula) -> Iterator[tuple[str, Votes]]:
         """Yield the sides of a formula, and whether each agrees with the first with a value."""
-        if formula.is_update:
+        if formula.is_update or {*formula.relations} - {*EQUALITIES} or self._is_value(formula):
             return
         kind = self._letters.quantities.get(formula.subject)
         exact = formula.relations.index("~") + 1 if "~" in formula.relations else None
@@ -144,6 +144,12 @@ class Numbers:
             hits = [np.all(np.abs(r - value) <= CLOSE, axis=1) for r in moving]
             if value.std() > CLOSE and np.any(hits):
                 yield np.any(hits, axis=0)
+
+    def _is_value(self, formula: DocumentFormula) -> bool:
+        """Whether it states a number for coordinates, velocities or parameters, as theta = 0."""
+        *names, last = (side.text for side in formula.sides)
+        moving = {q + ending for q in self._letters.coordinates for ending in RATES[:2]}
+        return {*names} <= {*moving, *self._letters.parameters} and not WORD.search(last)
 
     def _is_definition(self, formula: DocumentFormula, text: str) -> bool:
         return any(

@@ -29,14 +29,8 @@ def resolved(
     """
     numbers = Numbers(CandidateMotions([candidate], letters), letters, derivatives)
     meanings: dict[str, str] = {}
-    used = {
-        *candidate.parameters.values(),
-        *(name for name, _ in (*candidate.forces, *candidate.friction)),
-        *(name for name, *_ in candidate.multipliers),
-        *(word for one in candidate.constraints for word in WORD.findall(one.text)),
-    }
     for name in letters.parameters:
-        if name not in used:  # a random number until now
+        if name not in candidate.letters:  # a random number until now
             numbers.values.pop(name, None)
     others = [q for q in letters.coordinates if q not in candidate.coordinates]
     for name in (q + ending for q in others for ending in RATES[:3]):

@@ -13,6 +13,8 @@ from derive.verification.documents.statements import DocumentFormula
 from derive.verification.engine import joined
 from derive.verification.reference_system import time_derivative
 
+#: The note on a formula that follows correctly from a wrong one.
+FOLLOWS = "it follows from line"
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
 
@@ -40,7 +42,7 @@ class Consequences:
         result: list[WithVerdict] = []
         for formula, verdict in verdicts:
             if verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
-                note = joined(verdict.verdict.note, f"it follows from line {source.line}")
+                note = joined(verdict.verdict.note, f"{FOLLOWS} {source.line}")
                 verdict = replace(verdict, verdict=replace(verdict.verdict, note=note))
             elif verdict.verdict.verdict == "wrong" and verdict.kind in ENERGIES:
                 value = self._written(formula)

@@ -26,7 +26,13 @@ from derive.verification.documents.rules.side_verdict import (
     plain,
 )
 from derive.verification.documents.rules.small_motions import SmallMotions
-from derive.verification.documents.statements import INDICES, WORD, DocumentFormula, Occurrence
+from derive.verification.documents.statements import (
+    EQUALITIES,
+    INDICES,
+    WORD,
+    DocumentFormula,
+    Occurrence,
+)
 from derive.verification.documents.text import FormulaText
 from derive.verification.engine import joined
 from derive.verification.reference_system import depends_on
@@ -60,7 +66,7 @@ class Judge:
         """The verdict on a formula: that on its first side that is not correct."""
         if not formula.relations:
             return plain("context", formula, "it is no statement")
-        if any(one not in ("=", ":=", "~") for one in formula.relations):
+        if {*formula.relations} - {*EQUALITIES}:
             return plain("context", formula, "it is no equation")
         if formula.is_update:
             return plain("context", formula, "it is a step in time")

@@ -13,7 +13,7 @@ from derive.verification.documents.rules.matrix_terms import MatrixTerms
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.rules.small_motions import SmallMotions
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import FormulaText
 from derive.verification.engine import UNDECIDED
 from derive.verification.reference_system import depends_on
@@ -86,7 +86,7 @@ class SideComparison:
                 return plain("verified", formula, "it holds for one sign of the root")
             is_relation = result.kind == "euler_lagrange"
             result = inside if inside.verdict.corrections and not is_relation else result
-        if values := self._special_values(left, right):
+        if values := self._special_values(first, left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
         return result
@@ -123,10 +123,13 @@ class SideComparison:
             return SideVerdict(verdict, ((0, side),), "value")
         return result
 
-    def _special_values(self, left: Value, right: Value) -> dict[sp.Symbol, sp.Expr]:
+    def _special_values(
+        self, first: FormulaText, left: Value, right: Value
+    ) -> dict[sp.Symbol, sp.Expr]:
         """Values of parameters for which two sides are equal; empty if there are none.
 
-        They are those that the document states, or units, if the right side has no parameters.
+        They are those that the document states, or units, if neither side is written with
+        parameters.
         """
         difference = (left - right).xreplace(self._model.momenta)
         if stated := self._namespace.special_values:
@@ -137,8 +140,13 @@ class SideComparison:
                 return stated
         parameters = left.free_symbols & {*self._namespace.derivation.system.params}
         units = dict.fromkeys(sorted(parameters, key=str), sp.S.One)
+        written = right.free_symbols | {
+            symbol
+            for word in WORD.findall(first.text)
+            if isinstance(symbol := self._namespace.all_names[word], sp.Symbol)
+        }
         # one parameter that is lacking is a mistake
-        if len(parameters) > 1 and not right.free_symbols & parameters:
+        if len(parameters) > 1 and not written & parameters:
             return units if self._agree(difference.xreplace(units)) else {}
         return {}
 
