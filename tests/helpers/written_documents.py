@@ -28,6 +28,8 @@ ACCENT = re.compile(r"\\(d?dot)\{([^{}]+)\}(\^\{\d\})?")
 INDEXED = re.compile(r"\\(d?dot)\{([^{}]+)_(\d)\}")
 
 
+#: A Lagrangian in script, and another letter for it, which differs from a length L.
+SCRIPT = (r"\mathcal{L}", r"\Lambda")
 #: Letters of abbreviations, and what they stand for.
 ABBREVIATIONS = {
     "inertia": ("K", "l**2*m"),
@@ -58,7 +60,7 @@ class WrittenDocument:
 
     def is_right(self, latex: str) -> bool | None:
         """Whether all sides of a statement are equal; None if it cannot be read."""
-        statement = next(iter(formulas(latex)), None)
+        statement = next(iter(formulas(latex.replace(*SCRIPT))), None)
         if not isinstance(statement, Statement) or len(statement.sides) < 2:
             return None
         translator = FormulaTranslator(self._notation)
@@ -294,6 +296,6 @@ def _prime(found: re.Match[str]) -> str:
 
 
 def _letter(latex: str) -> Any:
-    statement = next(iter(formulas(f"{latex} = 0")))
+    statement = next(iter(formulas(f"{latex} = 0".replace(*SCRIPT))))
     assert isinstance(statement, Statement)
     return statement.sides[0]

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
@@ -30,6 +30,8 @@ LEAST, ENOUGH = 0.3, 3
 THIRD = re.compile(r"\b(?:3|6|12|24)\b")
 #: The least part if the meaning of letters is not the usual one.
 UNUSUAL = 0.4
+#: The largest difference of scores that decides nothing.
+TIE = 0.25
 #: Most work of a search: characters of formulas, times candidates, times coordinates. Documents
 #: of several pages take up to two fifths.
 MAX_WORK = 1_000_000_000
@@ -63,6 +65,8 @@ class Interpretation:
     match: Match | None
     #: Other candidates that can be meant as well, the likeliest first.
     rivals: tuple[Match, ...] = ()
+    #: Numbers of formulas that do not hold, and of those that state a system with which they do.
+    doubts: Mapping[int, frozenset[int]] = field(default_factory=dict)
 
 
 def interpretation(
@@ -102,23 +106,35 @@ def _best(
             return Interpretation(letters, None)
         result = best_matches(tried, letters, formulas, derivatives, trivial)
         matches += [match for match in result if match.holding or not least]
-    best = max(matches, key=lambda match: match.score, default=None)  # the first of several
-    if best is not None:
-        best = _with_fewest_slips(best, matches, statements, letters)
-    if best is None or (least and not _is_supported(best, least)):
+    supported = [match for match in matches if not least or _is_supported(match, least)]
+    best = max(supported, key=lambda match: match.score, default=None)  # the first of several
+    if best is None:
         return Interpretation(letters, None)
-    return Interpretation(letters, best, tuple(_rivals(best, matches)))
+    best, is_decided = _with_fewest_slips(best, supported, statements, letters)
+    doubts = {} if is_decided else _doubts(best, matches)
+    return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
+
+
+def _doubts(best: Match, matches: Sequence[Match]) -> dict[int, frozenset[int]]:
+    """Formulas that do not hold, but do by other stated energies with as much support."""
+    result: dict[int, frozenset[int]] = {}
+    for match in matches if best.failed else ():
+        if match.candidate.basis == "energies" and match.score >= best.score - TIE:
+            for number in best.failed - match.failed:
+                result.setdefault(number, match.candidate.stating)
+    return result
 
 
 def _with_fewest_slips(
     best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
-) -> Match:
+) -> tuple[Match, bool]:
     """The match of stated energies, or one of positions or a known system with fewer slips.
 
     What follows from a slip is none. Positions that do not lead to the stated energies are one.
+    The second value is whether there are fewer.
     """
     if best.candidate.basis != "energies":
-        return best
+        return best, False
     written = {p for one in statements.formulas for p in one.words} & {*letters.parameters}
     others = dict[str, Match]()
     for match in sorted(matches, key=lambda one: -one.score):
@@ -127,7 +143,7 @@ def _with_fewest_slips(
             others.setdefault(one.basis, match)
     is_contradicted = "positions" in others and bool(others["positions"].failed)
     if not others or len(best.failed) + is_contradicted < 2:
-        return best
+        return best, False
 
     def slips(match: Match) -> float:
         verdicts = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
@@ -135,10 +151,11 @@ def _with_fewest_slips(
         own = sum(FOLLOWS not in one.verdict.note for one in wrong)
         return own + (is_contradicted and match.candidate.basis == "energies")
 
-    # positions come first, then energies
-    ordered = [others[basis] for basis in ("positions",) if basis in others] + [best]
-    ordered += [others[basis] for basis in ("catalogue",) if basis in others]
-    return min(ordered, key=lambda match: (slips(match), -match.support))
+    matched = {**others, "energies": best}
+    fewest = {basis: slips(match) for basis, match in matched.items()}
+    order = [basis for basis in ("positions", "energies", "catalogue") if basis in fewest]
+    first = min(order, key=lambda basis: (fewest[basis], -matched[basis].support))
+    return matched[first], fewest[first] < fewest["energies"]
 
 
 def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidate]]:
@@ -153,9 +170,11 @@ def _is_supported(best: Match, least: float) -> bool:
     """Whether enough comparisons hold: more of them if most do not, or letters are unusual."""
     if best.support < 0 and best.compared - len(best.failed) < ENOUGH:
         return False
+    stated = len(best.candidate.stating)  # of which the system follows
+    holding, compared = best.holding - stated, best.compared - stated
     if best.candidate.is_usual:
-        return best.holding >= max(1, min(ENOUGH, least * best.compared))
-    return best.holding >= max(1, UNUSUAL * best.compared)
+        return holding >= max(1, min(ENOUGH, least * compared))
+    return holding >= max(1, UNUSUAL * compared)
 
 
 def _rivals(best: Match, matches: Iterable[Match]) -> Iterator[Match]:
@@ -218,10 +237,12 @@ def judge_of(statements: Translated, letters: Letters, candidate: SystemCandidat
     letters = _with_order(statements, letters, candidate)
     meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
     system, formulas = system_letters(candidate), statements.formulas
-    given = [formulas[number].occurrence for number in candidate.given]
-    return Judge(
-        DocumentNamespace(system, letters, formulas, statements.derivatives, meanings), given
+    given, stating = (
+        [formulas[number].occurrence for number in numbers]
+        for numbers in (candidate.given, candidate.stating)
     )
+    namespace = DocumentNamespace(system, letters, formulas, statements.derivatives, meanings)
+    return Judge(namespace, given, stating)
 
 
 def _with_order(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Letters:

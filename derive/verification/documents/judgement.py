@@ -24,6 +24,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
+from derive.verification.documents.rules.burden_of_proof import weighed
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
 from derive.verification.documents.rules.side_verdict import SideVerdict
@@ -70,16 +71,17 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
         found = interpretation(part, hints, work)
         if found.match is None:
             break
-        judge = judge_of(part, found.letters, found.match.candidate)
-        titles.append(found.match.candidate.title)
-        verdicts = judge.verdicts(remaining)
-        conventions.append(convention(found.match.candidate))
+        candidate = found.match.candidate
+        judge = judge_of(part, found.letters, candidate)
+        titles.append(candidate.title)
+        verdicts = [*weighed(judge.verdicts(remaining), candidate, found.doubts, hints is not None)]
+        conventions.append(convention(candidate))
         others += alternatives(part, found, verdicts, written)
         for formula, result in verdicts:
             before = results.get(formula.occurrence)
             if before is None or _is_graver(result, before[1]):
                 results[formula.occurrence] = formula, result
-        bound = {q for one in found.match.candidate.constraints for q in one.coordinates}
+        bound = {q for one in candidate.constraints for q in one.coordinates}
         remaining = tuple(
             one for one, result in verdicts
             if not result.is_understood and bound.isdisjoint(map(stem, one.words))

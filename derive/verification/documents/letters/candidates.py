@@ -100,13 +100,14 @@ class SystemCandidate:
         """The parameters of the document that have a meaning, or can have one in constraints."""
         own: set[str] = {*self.parameters.values()}
         own |= {one for one in self.offsets if isinstance(one, str)}
-        own |= {name for name, *_ in (*self.forces, *self.friction, *self.multipliers)}
+        loads: list[tuple[Any, ...]] = [*self.forces, *self.friction, *self.multipliers]
+        own |= {str(name) for name, *_ in loads}
         return frozenset(own.union(*(WORD.findall(one.text) for one in self.constraints)))
 
     @property
     def given(self) -> frozenset[int]:
-        """Numbers of formulas that state the system, and hold for it whatever they are."""
-        return self.stating | {one.number for one in self.constraints}
+        """Numbers of constraints, which hold for the system whatever they are."""
+        return frozenset(one.number for one in self.constraints)
 
     @property
     def title(self) -> str:

@@ -17,13 +17,16 @@ from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
+from derive.verification.documents.letters.implied_energies import (
+    Energies,
+    energies_of_equations,
+    energies_of_hamiltonians,
+)
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
 
 #: Energies by their kinds, and the numbers of their formulas: different values, the first first.
 Stated = Mapping[str, Sequence[tuple[sp.Expr, int]]]
-#: Kinetic and potential energy, and the numbers of the formulas that state them.
-Energies = tuple[sp.Expr, sp.Expr, frozenset[int]]
 #: Most values of an energy that are tried, and rounds in which definitions are sought.
 MOST, ROUNDS = 3, 3
 
@@ -139,7 +142,7 @@ def stated_energies(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> Iterator[Energies]:
     """Yield kinetic and potential energies that the document states, or that follow from others."""
-    stated = _stated(letters, formulas, symbols)
+    stated, names = _stated(letters, formulas, symbols)
     kinetic, potential = (stated.get(f"{kind}_energy", ()) for kind in ("kinetic", "potential"))
     for (T, first), (V, second) in product(kinetic, potential):
         yield T, V, frozenset({first, second})
@@ -148,14 +151,16 @@ def stated_energies(
         for value, number in stated.get(kind, ()):
             V = sign * value.xreplace(at_rest)
             yield sp.expand(value - sign * V), V, frozenset({number})
+    yield from energies_of_hamiltonians(letters, formulas, names)
+    yield from energies_of_equations(letters, formulas, names)
     if not potential:
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
 
 
 def _stated(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
-) -> Stated:
-    """The energies that formulas state in letters and names with definitions."""
+) -> tuple[Stated, Mapping[str, Value]]:
+    """The energies that formulas state, and the values of letters and names with definitions."""
     namespace: dict[str, Value] = {**FUNCTIONS, **symbols, "t": TIME}
     namespace |= {f"{q}_dot": velocity(symbols[q]) for q in letters.coordinates}
     for name, (function, angles) in letters.abbreviations.items():
@@ -175,6 +180,6 @@ def _stated(
                 namespace.setdefault(name, value)
                 values = result.setdefault(kind, [])
                 is_new = not any(value == one for one, _ in values)
-                if kind and is_new and len(values) < MOST and isinstance(value, sp.Expr):
+                if kind and is_new and len(values) < MOST and not isinstance(value, sp.MatrixBase):
                     values.append((value, number))
-    return result
+    return result, namespace

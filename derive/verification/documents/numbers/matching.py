@@ -50,8 +50,8 @@ class Match:
 
     @property
     def support(self) -> float:
-        """Formulas that hold or state the system, less some of those that do not."""
-        holding = self.holding + len(self.candidate.stating) - LACKING * self.candidate.lacking
+        """Formulas that hold, less some of those that do not."""
+        holding = self.holding - LACKING * self.candidate.lacking
         return holding - FAILING * (self.compared - self.holding)
 
     @property

@@ -37,12 +37,20 @@ from derive.verification.documents.text import FormulaText
 from derive.verification.engine import joined
 from derive.verification.reference_system import depends_on
 
+#: The note on formulas of which the system follows.
+STATES = "it states the system"
+
 
 class Judge:
     """Verdicts on formulas in the scope of a document."""
 
-    def __init__(self, namespace: DocumentNamespace, given: Collection[Occurrence] = ()) -> None:
-        self._given = given
+    def __init__(
+        self,
+        namespace: DocumentNamespace,
+        given: Collection[Occurrence] = (),
+        stating: Collection[Occurrence] = (),
+    ) -> None:
+        self._given, self._stating = given, stating
         linear = SmallMotions(namespace.derivation)
         # these give names their correct values, and the scope another model
         self._positions = MassPositions(namespace)
@@ -64,6 +72,12 @@ class Judge:
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
+        result = self._verdict(formula)
+        if formula.occurrence in self._stating and result.verdict.verdict in CORRECT:
+            return plain("definition", formula, STATES)
+        return result
+
+    def _verdict(self, formula: DocumentFormula) -> SideVerdict:
         if not formula.relations:
             return plain("context", formula, "it is no statement")
         if {*formula.relations} - {*EQUALITIES}:
@@ -73,7 +87,7 @@ class Judge:
         if formula.subject in INDICES or self._is_special(formula):
             return plain("context", formula, "it states a value")
         if formula.occurrence in self._given:
-            return plain("definition", formula, "it states the system")
+            return plain("definition", formula, STATES)
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
