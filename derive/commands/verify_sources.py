@@ -41,7 +41,8 @@ def verify(
 
     ``order_of(A, b)`` is the order of a Runge–Kutta method, for documents that contain the report.
 
-    Return 1 if an equation is wrong, otherwise 2 if an equation or a file is unreadable, else 0.
+    Return 1 if an equation is wrong, otherwise 2 if an equation or a file is unreadable, otherwise
+    3 if there are documents and no formula of theirs is judged, else 0.
     """
     files = [name for name in names if Path(name).suffix not in NOT_DOCUMENTS]
     if annotation:
@@ -74,7 +75,9 @@ def verify(
     verdicts = {verdict for one in results.values() if one for verdict in _verdicts(one)}
     if "wrong" in verdicts:
         return 1
-    return 2 if "unreadable" in verdicts or None in results.values() else 0
+    if "unreadable" in verdicts or None in results.values():
+        return 2
+    return 3 if documents and not any(one.is_judged for one, _ in documents) else 0
 
 
 def _records(results: Mapping[str, SourceVerdicts | None]) -> Any:

@@ -198,6 +198,9 @@ def test_a_search_of_too_many_meanings_ends_with_its_reason(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(judgement, "Work", lambda: Work(1000))
+    stated = judged(tmp_path, ELONGATION).formulas  # its own statements come first
+    assert "verified" in {one.verdict for one in stated}
+    monkeypatch.setattr(judgement, "Work", lambda: Work(10))
     formulas = judged(tmp_path, ELONGATION).formulas
     assert {one.verdict for one in formulas} == {"context"}
     assert {one.note for one in formulas} == {

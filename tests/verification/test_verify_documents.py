@@ -42,8 +42,9 @@ def test_the_table_abbreviates_only_correct_formulas() -> None:
     assert lines[2].endswith(" ...")
     assert lines[3].startswith("line 12  wrong        y = a + a")
     assert " ".join(" ".join(lines[3:]).split()).count("a +") == 39
-    assert [line.strip() for line in lines[-4:]] == [
+    assert [line.strip() for line in lines[-5:]] == [
         "wrong term: a", "correct formula: y = b", "value: 1 instead of 2", "note: so",
+        "2 formulas: 1 verified, 1 wrong",
     ]  # fmt: skip
 
 
@@ -65,8 +66,10 @@ def test_the_table_of_a_document_without_formulas_is_not_empty(
 ) -> None:
     path, page = tmp_path / "empty.md", tmp_path / "page.html"
     path.write_text("A text.")
-    assert main(["verify", str(path), "--annotate", str(page)]) == 0
-    assert capsys.readouterr().out.splitlines() == [str(path), "no formulas"]
+    assert main(["verify", str(path), "--annotate", str(page)]) == 3
+    first, second, *_ = capsys.readouterr().out.splitlines()
+    assert first == str(path)
+    assert second.startswith("Nothing was judged. 0 formulas.")
     assert "It has no formulas." in page.read_text()
 
 
@@ -125,7 +128,7 @@ def test_a_document_without_formulas_is_counted_beside_others(
     assert main(["verify", pendulum, str(path)]) == 1
     output = capsys.readouterr().out
     assert "line 9  wrong" in output
-    assert "no formulas" in output
+    assert "0 formulas" in output
     *_, document, _total = output.splitlines()
     assert document.split()[1:] == ["0"] * 5
 
@@ -163,3 +166,14 @@ def test_files_of_unknown_kinds_are_refused(
 ) -> None:
     assert main(["verify", *arguments]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_a_run_without_a_verdict_names_what_was_missing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "letters.md"
+    path.write_text(r"$$a^2 + b^2 = c^2$$")
+    assert main(["verify", str(path)]) == 3
+    output = " ".join(capsys.readouterr().out.split())
+    assert "Nothing was judged. 1 formula: 1 not judged because: no system was found" in output
+    assert "--system and --names" in output

@@ -1,6 +1,7 @@
 """The meaning of the letters of a document: the system for which most of its formulas hold."""
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -30,6 +31,10 @@ LEAST, ENOUGH = 0.3, 3
 THIRD = re.compile(r"\b(?:3|6|12|24)\b")
 #: The least part if the meaning of letters is not the usual one.
 UNUSUAL = 0.4
+#: What a system can rest on, of two with the same score the last.
+BASES = ("energies", "catalogue", "positions")
+#: Formulas that contain an abbreviation.
+SEVERAL = 2
 #: The largest difference of scores that decides nothing.
 TIE = 0.25
 #: Most work of a search: characters of formulas, times candidates, times coordinates. Documents
@@ -103,14 +108,19 @@ def _best(
     matches: list[Match] = []
     for tried in (tried for group in groups for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
-            return Interpretation(letters, None)
+            break
         result = best_matches(tried, letters, formulas, derivatives, trivial)
         matches += [match for match in result if match.holding or not least]
+        if any(match.is_stated_by_positions for match in result):
+            break
     supported = [match for match in matches if not least or _is_supported(match, least)]
-    best = max(supported, key=lambda match: match.score, default=None)  # the first of several
+    # the first of several with the same score and basis
+    best = max(
+        supported, key=lambda one: (one.score, BASES.index(one.candidate.basis)), default=None
+    )
     if best is None:
         return Interpretation(letters, None)
-    best, is_decided = _with_fewest_slips(best, supported, statements, letters)
+    best, is_decided = _with_fewest_slips(best, matches, statements, letters)
     doubts = {} if is_decided else _doubts(best, matches)
     return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
 
@@ -142,20 +152,31 @@ def _with_fewest_slips(
         if one.basis != "energies" and not one.lacking and written <= one.letters:
             others.setdefault(one.basis, match)
     is_contradicted = "positions" in others and bool(others["positions"].failed)
-    if not others or len(best.failed) + is_contradicted < 2:
+    has_abbreviations = len(_abbreviations(statements, letters)) > 0
+    if not others or (len(best.failed) + is_contradicted < 2 and not has_abbreviations):
         return best, False
 
     def slips(match: Match) -> float:
         verdicts = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
-        wrong = [one for _, one in verdicts if one.verdict.verdict == "wrong"]
-        own = sum(FOLLOWS not in one.verdict.note for one in wrong)
-        return own + (is_contradicted and match.candidate.basis == "energies")
+        wrong = [(formula, one) for formula, one in verdicts if one.verdict.verdict == "wrong"]
+        own = [formula for formula, one in wrong if FOLLOWS not in one.verdict.note]
+        if len(own) == 1 and own[0].subject in _abbreviations(statements, letters):
+            return -1  # all that contains it is right
+        return len(own) + (is_contradicted and match.candidate.basis == "energies")
 
     matched = {**others, "energies": best}
     fewest = {basis: slips(match) for basis, match in matched.items()}
     order = [basis for basis in ("positions", "energies", "catalogue") if basis in fewest]
     first = min(order, key=lambda basis: (fewest[basis], -matched[basis].support))
     return matched[first], fewest[first] < fewest["energies"]
+
+
+def _abbreviations(statements: Translated, letters: Letters) -> set[str]:
+    """Names that a document defines by others, and uses several times."""
+    used = Counter(word for one in statements.formulas for word in one.words if word != one.subject)
+    known = {*letters.quantities, *letters.coordinates, *letters.momenta, *letters.parameters}
+    subjects = {one.subject for one in statements.formulas} - known - {""}
+    return {name for name in subjects if used[name] >= SEVERAL and name.isidentifier()}
 
 
 def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidate]]:
@@ -210,10 +231,10 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[S
         if letters.constraints and has_rotations(system, letters, statements.formulas):
             continue
         yield [*stated_candidates(system, letters)]
-    yield from _of_templates(letters, statements)
     for system, numbers in systems_of_energies(letters, statements.formulas):
         tried = (replace(one, stating=numbers) for one in stated_candidates(system, letters))
         yield [one for one in tried if one.constraints or not letters.constraints]
+    yield from _of_templates(letters, statements)
 
 
 def _of_templates(

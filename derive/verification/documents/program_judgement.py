@@ -8,10 +8,12 @@ from derive.verification.documents.interpretation import alternatives, interpret
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.verdicts_in_place import (
+    METHOD,
     Alternative,
     DocumentVerdicts,
     FormulaVerdict,
 )
+from derive.verification.documents.rules.burden_of_proof import weighed
 from derive.verification.documents.rules.corrections import inserted, places
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
@@ -36,7 +38,9 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         titles.append(found.match.candidate.system.title)
         conventions.append(convention(found.match.candidate))
         judge = judge_of(statements, found.letters, found.match.candidate)
-        results = [(formula, judge.verdict(formula)) for formula in formulas]
+        candidate = found.match.candidate
+        plain = [(formula, judge.verdict(formula)) for formula in formulas]
+        results = [*weighed(plain, candidate, found.doubts, hints is not None)]
         for equation, (_, result) in zip(function.equations, results, strict=True):
             judged.append(_judged(equation, result))
         others += alternatives(statements, found, results, {})
@@ -90,7 +94,7 @@ def _plain(equation: ProgramEquation, note: str) -> FormulaVerdict:
 
 def _finding(finding: Finding) -> FormulaVerdict:
     verdict: VerdictName = "wrong" if finding.is_fault else "context"
-    return FormulaVerdict(finding.line, 1, 0, "method of integration", verdict, note=finding.text)
+    return FormulaVerdict(finding.line, 1, 0, METHOD, verdict, note=finding.text)
 
 
 def _notes(program: Program) -> Iterator[str]:

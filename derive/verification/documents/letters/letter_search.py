@@ -50,6 +50,7 @@ def letters_of(
         for one in stems
         if (kind := combined.get(one) or _quantity(one))
         and (one in subjects or one in operands or one in combined)
+        and not (kind == "kinetic_energy" and _is_constant(one, formulas))
     }
     written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
     quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
@@ -150,6 +151,21 @@ def _quantity(name: str) -> str | None:
     if letter == "E" and index in ENERGIES:
         return ENERGIES[index]
     return QUANTITIES.get(letter) if index in TOTAL else None
+
+
+def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
+    """Whether all definitions of a name contain parameters alone, as that of K = m l**2."""
+    own = [one for one in formulas if one.subject == name]
+    words = {word for one in own for side in one.sides[1:] for word in _words(side.text)}
+    moving = {stem(word) for one in formulas for word in one.words if order(word)}
+    is_used = any(name in one.words and one.subject != name for one in formulas)
+    return (
+        bool(words)
+        and is_used
+        and not any(
+            order(word) or word in moving or _quantity(word) or word[0] in "pv" for word in words
+        )
+    )
 
 
 def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:

@@ -26,6 +26,8 @@ UNUSUAL = 0.25
 #: How much a formula that does not hold speaks against a meaning, and a parameter of a system
 #: that has no letter.
 FAILING, LACKING = 0.5, 0.25
+#: Comparisons that suffice for a system of which all hold.
+ENOUGH = 4
 #: Comparisons of a document in which such formulas are considered.
 FEW = 12
 #: Most candidates of a system that are considered beside the best.
@@ -53,6 +55,12 @@ class Match:
         """Formulas that hold, less some of those that do not."""
         holding = self.holding - LACKING * self.candidate.lacking
         return holding - FAILING * (self.compared - self.holding)
+
+    @property
+    def is_stated_by_positions(self) -> bool:
+        """Whether positions of the document state the system, and all its formulas hold."""
+        is_full = self.compared >= ENOUGH and not self.failed
+        return self.candidate.basis == "positions" and is_full
 
     @property
     def score(self) -> float:
@@ -101,10 +109,11 @@ def best_matches(
     agreeing = np.array([vote for *_, vote in votes])
     near = np.zeros_like(agreeing)
     if len(votes) <= FEW:
+        own = [one.letters for one in tried]
         for row, (index, side, vote) in enumerate(votes):
             hits = numbers.is_near(formulas[index].sides[0].text, side)
             if hits is not None:
-                near[row] = hits & ~vote & _uses_letters(tried, letters, formulas[index])
+                near[row] = hits & ~vote & _uses_letters(own, letters, formulas[index])
     holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
     usual = np.array([one.is_usual for one in tried])
     score = holding - UNUSUAL * ~usual
@@ -124,8 +133,8 @@ def best_matches(
 
 
 def _uses_letters(
-    tried: Sequence[SystemCandidate], letters: Letters, formula: DocumentFormula
+    own: Sequence[frozenset[str]], letters: Letters, formula: DocumentFormula
 ) -> NDArray[np.bool_]:
     """For each candidate, whether the parameters of a formula have a meaning with it."""
     written = {*formula.words} & {*letters.parameters}
-    return np.array([written <= one.letters for one in tried])
+    return np.array([written <= one for one in own])

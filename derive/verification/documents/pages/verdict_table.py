@@ -17,14 +17,13 @@ def document_lines(verdicts: DocumentVerdicts, width: int) -> Iterator[str]:
     """Yield the lines of a table: each formula with its line; only correct ones are abbreviated."""
     yield wrapped(": ".join(filter(None, (verdicts.file, verdicts.system))), width, 0)
     yield from (wrapped(note, width, 0) for note in verdicts.remarks)
-    if not verdicts.formulas:
-        yield "no formulas"
     labels = [_label(one) for one in verdicts.formulas]
     label_width = max(map(len, labels), default=0) + 2
     for label, one in zip(labels, verdicts.formulas, strict=True):
         whole = one.verdict in ("misprint", "wrong", "unreadable")
         cells = (label, one.verdict, _line(one.latex), *_details(one))
         yield from table_row(cells, width, label_width, whole)
+    yield wrapped(verdicts.summary, width, 0)
 
 
 def _label(one: FormulaVerdict) -> str:
@@ -53,6 +52,7 @@ def document_record(verdicts: DocumentVerdicts) -> dict[str, Any]:
         "file": verdicts.file,
         "system": verdicts.system,
         "notes": verdicts.notes,
+        "summary": verdicts.summary,
         "convention": verdicts.convention,
         "alternatives": [asdict(one) for one in verdicts.alternatives],
         "formulas": [_record(one) for one in verdicts.formulas],

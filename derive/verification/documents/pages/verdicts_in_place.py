@@ -1,5 +1,6 @@
 """Verdicts on the formulas of a document, with the places where they stand."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,6 +10,18 @@ from derive.verification.verdict import VerdictName
 
 #: Characters of the longest formula that is shown whole.
 MAX_LATEX = 2000
+#: What stands in the place of a formula for a remark on a method of integration.
+METHOD = "method of integration"
+#: Verdicts on formulas that are judged, and all that are counted.
+JUDGED: tuple[VerdictName, ...] = ("verified", "equivalent", "misprint", "wrong")
+COUNTED: tuple[VerdictName, ...] = (*JUDGED, "definition")
+#: Most reasons of a summary.
+MAX_REASONS = 2
+#: What helps if nothing is judged.
+HELP = (
+    "Formulas are judged by positions of masses, by T and V, L or H, or by equations of motion in "
+    "the document; the options --system and --names state the system and the meanings of letters."
+)
 #: The remark below meanings of letters that are possible as well.
 WAY_OUT = "The options --system and --names state the system and the meanings of letters."
 
@@ -124,6 +137,30 @@ class DocumentVerdicts:
     #: Unusual meanings of letters, in words, and other meanings that are possible.
     convention: str = ""
     alternatives: tuple[Alternative, ...] = ()
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether a formula holds or is wrong: none is only context, a definition or unreadable."""
+        return any(one.verdict in JUDGED for one in self._equations)
+
+    @property
+    def summary(self) -> str:
+        """How many formulas have each verdict, why others have none, and what would help."""
+        counts = Counter(one.verdict for one in self._equations)
+        numbers = [f"{counts[name]} {name}" for name in COUNTED if counts[name]]
+        left = [one for one in self._equations if one.verdict in ("context", "unreadable")]
+        reasons = Counter(one.note or "no statement about the system" for one in left)
+        if left:
+            words = "; ".join(reason for reason, _ in reasons.most_common(MAX_REASONS))
+            numbers.append(f"{len(left)} not judged because: {words}")
+        total = f"{len(self._equations)} formula{'s' * (len(self._equations) != 1)}"
+        text = ": ".join(filter(None, (total, ", ".join(numbers))))
+        return text if self.is_judged else f"Nothing was judged. {text}. {HELP}"
+
+    @property
+    def _equations(self) -> list[FormulaVerdict]:
+        """The formulas without the remarks on methods of integration."""
+        return [one for one in self.formulas if one.latex != METHOD]
 
     @property
     def remarks(self) -> tuple[str, ...]:

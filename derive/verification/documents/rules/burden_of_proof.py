@@ -8,6 +8,8 @@ from derive.verification.documents.rules.consequences import FOLLOWS, WithVerdic
 from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.engine import joined
 
+#: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
+UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
 UNDECIDED = "nothing else in the document decides which of them is wrong"
 #: The reason of a verdict that a system without enough support gives.
 UNSUPPORTED = (
@@ -35,10 +37,17 @@ def weighed(
     holding = sum(one.verdict.verdict in ("verified", "equivalent") for _, one in results)
     is_known = candidate.basis == "catalogue" and not is_stated
     is_weak = is_known and (candidate.lacking > 0 or independent > max(1, holding))
+    is_guess = (
+        is_known
+        and holding < 2
+        and any(isinstance(one, int) and one % 2 for one in candidate.offsets)
+    )
     given = _lines(lines[k] for k in candidate.stating)
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
-        if verdict.verdict == "wrong" and number in doubts:
+        if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
+            result = plain("context", formula, UNSTATED)
+        elif verdict.verdict == "wrong" and number in doubts:
             other = _lines(lines[k] for k in doubts[number])
             note = f"it contradicts {given or 'the system'} and agrees with {other}: {UNDECIDED}"
             result = plain("context", formula, note)

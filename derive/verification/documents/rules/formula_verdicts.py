@@ -10,6 +10,7 @@ from derive.formulas.expression import parse
 from derive.formulas.proofs.zero import vanishes
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
+from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import Consequences
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
@@ -51,6 +52,7 @@ class Judge:
         stating: Collection[Occurrence] = (),
     ) -> None:
         self._given, self._stating = given, stating
+        self._abbreviations = Abbreviations(namespace, namespace.formulas)
         linear = SmallMotions(namespace.derivation)
         # these give names their correct values, and the scope another model
         self._positions = MassPositions(namespace)
@@ -209,6 +211,8 @@ class Judge:
     def _definition(self, formula: DocumentFormula, side: FormulaText) -> SideVerdict:
         """The verdict on a definition, which can be that of a matrix of the system."""
         name, entries = formula.subject, side.entries
+        if (value := self._abbreviations.required(name)) is not None:
+            return self._roles.value(side, name, value)
         required = self._manipulator.required(name) or self._matrices.required(name)
         if required is None:
             required, entries = self._matrices.entry(name), (side,)

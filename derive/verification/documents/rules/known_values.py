@@ -45,7 +45,7 @@ class DocumentNamespace:
         meanings: Mapping[str, str],
     ) -> None:
         self.derivation = Derivation(system_letters.system)
-        self.letters, self.derivatives = letters, derivatives
+        self.letters, self.derivatives, self.formulas = letters, derivatives, formulas
         self._system = system_letters.system
         #: Names with their values.
         self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -18,8 +18,15 @@ from derive.verification.documents.statements import WORD
 from derive.verification.documents.text import FormulaText, order, stem
 from derive.verification.engine import joined
 from derive.verification.quantity_verdicts import judge_formula
-from derive.verification.reference_system import ReferenceSystem, depends_on
+from derive.verification.reference_system import (
+    LARGEST_INVERSE,
+    ReferenceSystem,
+    depends_on,
+)
 from derive.verification.verdict import Correction, Verdict
+
+#: The index of a name with one, and the ending of its rate behind it.
+INDEX = re.compile(r"_\d+(?=_d+ot\Z|\Z)")
 
 
 class Roles:
@@ -63,6 +70,8 @@ class Roles:
             return inside
         if system.conditions and self._is_relation(first):
             return self.equation(first, side)
+        if left in system.qdot and depends_on(right, system.p) and not system.conditions:
+            left = self._by_momenta(left)
         if not depends_on((left - right).xreplace(self._model.momenta), system.qddot):
             return self.value(side, subject, left)
         if subject.isidentifier():
@@ -135,11 +144,28 @@ class Roles:
     def value(self, side: FormulaText, name: str, value: sp.Expr) -> SideVerdict:
         """The verdict on a side that must have a value, to which a name is given."""
         name = name if name.isidentifier() else "left_side"
-        model = self._model_of(side)
-        model = replace(model, names={**model.names, name: value})
-        return SideVerdict(
-            judge_formula(model, "", side.text, "value", name), ((0, side),), "value"
-        )
+        texts: tuple[Sequence[str], ...] = ((), [*self._partners(side)])  # a slip of an index
+        for others in texts:
+            model = self._model_of(side, *others)
+            model = replace(model, names={**model.names, name: value})
+            verdict = judge_formula(model, "", side.text, "value", name)
+            if verdict.verdict != "wrong" or verdict.corrections:
+                break
+        return SideVerdict(verdict, ((0, side),), "value")
+
+    def _by_momenta(self, rate: sp.Expr) -> sp.Expr:
+        """A velocity as a function of momenta, where the mass matrix is not too large."""
+        system, d = self._namespace.derivation.system, self._namespace.derivation
+        if len(system.q) > LARGEST_INVERSE:
+            return rate
+        return d.hamilton_equations[0][system.qdot.index(rate)]
+
+    def _partners(self, side: FormulaText) -> Iterator[str]:
+        """Names that differ from those of a side by their index alone."""
+        letters = {
+            letter for word in WORD.findall(side.text) if (letter := INDEX.sub("", word)) != word
+        }
+        return (name for name in self._namespace.names if INDEX.sub("", name) in letters)
 
     def _model_of(self, *sides: FormulaText | str) -> ReferenceSystem:
         """The model with the names of these sides alone, in which corrections are written."""

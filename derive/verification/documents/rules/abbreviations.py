@@ -1,0 +1,63 @@
+"""Names that a document defines wrongly, as the formulas that contain them show."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+
+import sympy as sp
+
+from derive.formulas.expression import parse
+from derive.formulas.syntax import ExpressionError
+from derive.verification.documents.rules.known_values import DocumentNamespace
+from derive.verification.documents.statements import DocumentFormula
+
+#: Formulas that must agree on the value of a name.
+AGREEING = 2
+
+
+class Abbreviations:
+    """Values that names must have for several known quantities to be right."""
+
+    def __init__(self, namespace: DocumentNamespace, formulas: Sequence[DocumentFormula]) -> None:
+        self._namespace = namespace
+        #: Correct values of wrongly defined names.
+        self._required: dict[str, sp.Expr] = {}
+        for name in [*namespace.defining]:
+            own = namespace.names[name]
+            if not isinstance(own, sp.MatrixBase):
+                values = [*self._values(name, formulas)]
+                if len(values) >= AGREEING and self._are_equal(values):
+                    shortest = min(values, key=sp.count_ops)
+                    if not self._are_equal([own, shortest]):
+                        self._required[name] = shortest
+        if self._required:
+            namespace.correct(self._required)
+
+    def required(self, name: str) -> sp.Expr | None:
+        """The value of a name with a wrong definition; None for others."""
+        return self._required.get(name)
+
+    def _values(self, name: str, formulas: Sequence[DocumentFormula]) -> Iterator[sp.Expr]:
+        """The values of a name with which formulas about known quantities that contain it hold."""
+        names, symbol = self._namespace.all_names, sp.Dummy(real=True)
+        scope: Mapping[str, object] = {**names, name: symbol}
+        momenta = self._namespace.model.momenta
+        moving = {*self._namespace.derivation.system.q, *self._namespace.derivation.system.qdot}
+        allowed = names[name].free_symbols | {*self._namespace.derivation.system.params}
+        for formula in formulas:
+            subject = formula.subject
+            known = subject in names and subject not in self._namespace.defining
+            if not known or name not in formula.words:
+                continue
+            with suppress(ExpressionError, NotImplementedError, ValueError, TypeError):
+                side = parse(formula.sides[-1].text, scope)
+                difference = sp.expand((side - names[subject]).xreplace(momenta))
+                slope = difference.diff(symbol)
+                if slope == 0 or slope.has(symbol):
+                    continue
+                value = sp.cancel(-difference.xreplace({symbol: sp.S.Zero}) / slope)
+                if (value.free_symbols & moving) <= allowed:
+                    yield sp.factor_terms(value)
+
+    def _are_equal(self, values: Sequence[sp.Expr]) -> bool:
+        first, *others = values
+        return all(self._namespace.model.context.is_zero(one - first) for one in others)

@@ -1,0 +1,158 @@
+"""The document is its own authority: its statements are judged by each other."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.reading.programs.program_reader import read_program
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.program_judgement import judge_program
+
+
+def judged(folder: Path, text: str) -> tuple[FormulaVerdict, ...]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return judge_document(read_document(folder / "a.md")).formulas
+
+
+def wrong(formulas: tuple[FormulaVerdict, ...]) -> list[FormulaVerdict]:
+    return [one for one in formulas if one.verdict == "wrong"]
+
+
+DISC = r"""
+# A disc that rolls on the table
+
+A thin disc of mass $m$ and radius $R$ stays upright and rolls without slipping. Its centre is at
+$(x, y)$, the plane of the disc makes the angle $\phi$ with the $x$ axis, and $\theta$ is the angle
+by which it has rolled. The moments of inertia are $I = \frac12 m R^2$ about the axle and
+$J = \frac14 m R^2$ about the vertical.
+
+Rolling means the two constraints
+
+$$ \dot x - R\dot\theta\cos\phi = 0, \qquad \dot y - R\dot\theta\sin\phi = 0 . $$
+
+The kinetic energy is
+
+$$ T = \frac12 m (\dot x^2 + \dot y^2) + \frac12 I \dot\theta^2 + \frac12 J \dot\phi^2 . $$
+
+With the constraints we replace $\dot x$ and $\dot y$, so that the Lagrangian is
+
+$$ L = \frac12 (I + m R^2)\dot\theta^2 + \frac12 J\dot\phi^2 . $$
+
+The equations of motion are
+
+$$ (I + m R^2)\ddot\theta = 0, \qquad J\ddot\phi = 0 . $$
+"""
+
+ABBREVIATED = r"""
+# Double pendulum
+
+With the abbreviation
+
+$$ \Delta = \theta_1 - \theta_2, \qquad K = l_1 l_2 $$
+
+the energies of a double pendulum are
+
+$$ T = \frac12 (m_1 + m_2) l_1^2\dot\theta_1^2 + \frac12 m_2 l_2^2\dot\theta_2^2
+     + K\dot\theta_1\dot\theta_2\cos\Delta $$
+$$ V = -(m_1 + m_2) g l_1\cos\theta_1 - m_2 g l_2\cos\theta_2 . $$
+
+The momenta are
+
+$$ p_1 = (m_1 + m_2) l_1^2\dot\theta_1 + K\dot\theta_2\cos\Delta $$
+$$ p_2 = m_2 l_2^2\dot\theta_2 + K\dot\theta_1\cos\Delta $$
+
+and the equations of motion
+
+$$ (m_1 + m_2) l_1^2\ddot\theta_1 + K\ddot\theta_2\cos\Delta + K\dot\theta_2^2\sin\Delta
+     + (m_1 + m_2) g l_1\sin\theta_1 = 0 $$
+$$ m_2 l_2^2\ddot\theta_2 + K\ddot\theta_1\cos\Delta - K\dot\theta_1^2\sin\Delta
+     + m_2 g l_2\sin\theta_2 = 0 . $$
+"""
+
+CANONICAL = r"""
+# Two coupled oscillators
+
+$$ H = \frac{p_1^2}{2 m_1} + \frac{p_2^2}{2 m_2} + \frac12 k_1 x_1^2 + \frac12 k_2 (x_2 - x_1)^2 $$
+
+$$ \dot x_1 = \frac{p_1}{m_1}, \qquad \dot x_2 = \frac{p_1}{m_2} $$
+$$ \dot p_1 = -k_1 x_1 + k_2 (x_2 - x_1), \qquad \dot p_2 = -k_2 (x_2 - x_1) $$
+"""
+
+
+def test_constraints_in_a_lagrangian_are_found_and_the_lines_beside_it_are_right(
+    tmp_path: Path,
+) -> None:
+    formulas = judged(tmp_path, DISC)
+    (one,) = wrong(formulas)
+    assert one.latex.startswith("L = ")
+    assert "constraints that are not integrable" in one.note
+    assert {o.verdict for o in formulas if o is not one} == {"definition", "verified"}
+
+
+def test_an_abbreviation_without_a_factor_is_wrong_and_what_uses_it_is_right(
+    tmp_path: Path,
+) -> None:
+    formulas = judged(tmp_path, ABBREVIATED)
+    (one,) = wrong(formulas)
+    assert (one.latex, one.correction) == ("K = l_1 l_2", "K = l_1 l_2 m_2")
+    assert [o.verdict for o in formulas].count("verified") == 6
+    right = judged(tmp_path, ABBREVIATED.replace("K = l_1 l_2", "K = m_2 l_1 l_2"))
+    assert {o.verdict for o in right} == {"definition", "verified"}
+
+
+def test_the_momentum_of_a_partner_in_a_canonical_equation_is_wrong(tmp_path: Path) -> None:
+    formulas = judged(tmp_path, CANONICAL)
+    (one,) = wrong(formulas)
+    assert one.latex == r"\dot x_2 = \frac{p_1}{m_2}"
+    assert one.correction == r"\dot x_2 = \frac{p_2}{m_2}"
+    assert one.note == "given line 4"
+    assert {o.verdict for o in formulas if o is not one} == {"definition", "verified"}
+
+
+ROLLING = r"""
+$$T = \frac34 m\dot x^2, \quad V = -m g x\sin\alpha$$
+$$L = \frac34 m\dot x^2 + m g x\sin\alpha$$
+$$\frac{\partial L}{\partial x} = m g\sin\alpha$$
+$$\frac32 m\ddot x = m g\sin\alpha$$
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        (r"T = \frac34", r"T = \frac12", 2),
+        (r"V = -m g x", r"V = -m g x^2", 2),
+        (r"L = \frac34 m\dot x^2 + m g x", r"L = \frac34 m\dot x^2 + m g", 3),
+        (r"\partial x} = m g\sin", r"\partial x} = m g\cos", 4),
+        (r"\frac32 m", r"\frac34 m", 5),
+    ],
+)
+def test_energies_and_equations_that_agree_refute_the_one_that_does_not(
+    old: str, new: str, line: int, tmp_path: Path
+) -> None:
+    assert wrong(judged(tmp_path, ROLLING)) == []
+    (one,) = wrong(judged(tmp_path, ROLLING.replace(old, new)))
+    assert one.line == line
+    assert "given line" in one.note
+
+
+def test_of_two_statements_that_contradict_each_other_none_is_accused(tmp_path: Path) -> None:
+    """A curve that no known system has: either the energy or the equation can be wrong."""
+    text = r"$$E = \frac12 m\dot x^2 + \frac15 c x^5$$ $$m\ddot x + 2 c x^4 = 0$$"
+    assert {one.verdict for one in judged(tmp_path, text)} <= {"context", "definition"}
+
+
+def test_a_length_beside_a_lagrangian_in_script_is_no_lagrangian(tmp_path: Path) -> None:
+    text = r"""$$\mathcal{L} = \frac12 m L^2\dot\theta^2 + m g L\cos\theta$$
+    $$\ddot\theta = -\frac gL\sin\theta$$"""
+    assert [one.verdict for one in judged(tmp_path, text)] == ["verified"] * 2
+
+
+def test_a_single_equation_of_an_angle_from_the_horizontal_is_not_verified() -> None:
+    program = "def rates(t, y):\n    theta, omega = y\n    return omega, -g*cos(theta)/l\n"
+    formulas = judge_program(read_program(program, "Python")).formulas
+    assert [one.verdict for one in formulas] == ["context"]
+    right = judge_program(read_program(program.replace("cos", "sin"), "Python")).formulas
+    assert [one.verdict for one in right] == ["verified"]
