@@ -24,7 +24,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.documents.rules.burden_of_proof import weighed
+from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
 from derive.verification.documents.rules.side_verdict import SideVerdict

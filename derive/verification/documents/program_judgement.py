@@ -13,7 +13,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.documents.rules.burden_of_proof import weighed
+from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrections import inserted, places
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated

@@ -13,8 +13,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.description = (
         "Verify hand derivations: the double-pendulum report with its programs and claims, the "
         "formulas of a document, or equations of your own. The exit code is 1 if an equation is "
-        "wrong (in the report, if it has no proved correction), and otherwise 2 if an equation or "
-        "a file is unreadable."
+        "wrong (in the report, if it has no proved correction), otherwise 2 if an equation or a "
+        "file is unreadable, and otherwise 3 if no formula of a document is judged."
     )
     meaning = (
         "documents (.tex, .md, .txt, .rst, .html, .ipynb), programs (.py, .js, .c, .m, .f90, .jl), "
@@ -38,7 +38,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Print the verdicts; return 1 if an equation is wrong, otherwise 2 if one is unreadable."""
+    """Print the verdicts; return 1 if one is wrong, 2 or 3 if some or all are not judged."""
     if arguments.equations or arguments.annotate or arguments.system or arguments.names:
         from derive.commands.verify_sources import verify
         from derive.verification.documents.letters.hints import hints
