@@ -135,14 +135,14 @@ def weighed(
     A formula is wrong by a system that the user states, or that follows from positions or energies
     in the document. It is not if other formulas of the document, which `doubts` has for its number,
     fit the rest as well and agree with it. A system that is known from elsewhere must have a letter
-    for each of its parameters, and more formulas that hold than independent ones that do not.
+    for each of its parameters, and more formulas that hold than such with more than one wrong term.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
-    wrong = [one for _, one in results if one.verdict.verdict == "wrong"]
-    independent = sum(FOLLOWS not in one.verdict.note for one in wrong)
+    wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
+    misfits = sum(FOLLOWS not in one.note and len(one.corrections) != 1 for one in wrong)
     holding = sum(one.verdict.verdict in ("verified", "equivalent") for _, one in results)
     is_known = candidate.basis == "catalogue" and not is_stated
-    is_weak = is_known and (candidate.lacking > 0 or independent > max(1, holding))
+    is_weak = is_known and (candidate.lacking > 0 or misfits > max(1, holding))
     is_guess = (
         is_known
         and holding < 2
