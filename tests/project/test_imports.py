@@ -16,6 +16,8 @@ from structure import Folder, arrows_within, folders
 
 PACKAGES = ("derive", "generated", "solvers")
 STANDARD = set(sys.stdlib_module_names)
+#: Folders whose files are entries of a register.
+UNBOUNDED = ("systems", "methods", "targets", "generated")
 
 #: Packages that the modules of a package may import; solvers/app may import all of them.
 ALLOWED = {
@@ -80,9 +82,9 @@ def test_no_files_or_rooms_import_each_other() -> None:
 
 
 def test_folders_have_few_files_and_floors() -> None:
-    """But for folders whose files are entries of a register, and import none of each other."""
+    """But for folders whose files are entries of a register."""
     rows = [row for package in PACKAGES for row in folders(package)]
-    rows = [row for row in rows if row.path.name not in ("systems", "methods", "generated")]
+    rows = [row for row in rows if row.path.name not in UNBOUNDED]
     assert {row.path: row.files for row in rows if row.files > 15} == {}
     assert {row.path: row.floors for row in rows if row.floors > 10} == {}
     assert np.mean([row.floors for row in rows]) < 5
