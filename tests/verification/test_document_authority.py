@@ -156,3 +156,23 @@ def test_a_single_equation_of_an_angle_from_the_horizontal_is_not_verified() -> 
     assert [one.verdict for one in formulas] == ["context"]
     right = judge_program(read_program(program.replace("cos", "sin"), "Python")).formulas
     assert [one.verdict for one in right] == ["verified"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "lines"),
+    [
+        ("", "", []),
+        ("T = \\frac12 m K", "T = m K", [2]),
+        ("m (1 + 4a^2x^2)\\dot x^2", "m (1 + 4a x^2)\\dot x^2", [3]),
+        ("p = m (1 + 4", "p = m (1 + 2", [4]),
+    ],
+)
+def test_a_factor_of_the_kinetic_energy_may_have_a_letter_of_energies(
+    old: str, new: str, lines: list[int], tmp_path: Path
+) -> None:
+    text = r"""A bead of mass $m$ slides on $y = a x^2$. Let $K = 1 + 4a^2x^2$.
+    $$T = \frac12 m K \dot x^2$$ $$V = m g a x^2$$
+    $$L = \frac12 m (1 + 4a^2x^2)\dot x^2 - m g a x^2$$
+    $$p = m (1 + 4 a^2 x^2)\dot x$$
+    $$m(1+4a^2x^2)\ddot x + 4 m a^2 x \dot x^2 + 2 m g a x = 0$$"""
+    assert [one.line for one in wrong(judged(tmp_path, text.replace(old, new)))] == lines

@@ -154,16 +154,22 @@ def _quantity(name: str) -> str | None:
 
 
 def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
-    """Whether all definitions of a name contain parameters alone, as that of K = m l**2."""
+    """Whether all definitions of a name contain parameters alone, as that of K = m l**2.
+
+    They may contain coordinates if another kinetic energy is stated by it: T = m K x_dot**2/2.
+    """
     own = [one for one in formulas if one.subject == name]
     words = {word for one in own for side in one.sides[1:] for word in _words(side.text)}
     moving = {stem(word) for one in formulas for word in one.words if order(word)}
     is_used = any(name in one.words and one.subject != name for one in formulas)
+    by_it = (one.subject for one in formulas if name in one.words and one.subject != name)
+    is_factor = any(_quantity(subject) == "kinetic_energy" for subject in by_it if subject)
+    excluded = set() if is_factor else moving
     return (
         bool(words)
         and is_used
         and not any(
-            order(word) or word in moving or _quantity(word) or word[0] in "pv" for word in words
+            order(word) or word in excluded or _quantity(word) or word[0] in "pv" for word in words
         )
     )
 
