@@ -182,6 +182,10 @@ def test_verify_prints_a_table_that_fits_the_terminal(
     assert all(len(line) <= 80 for line in lines if " " in line.strip()[:40])
     assert f"equations: {counted(verdicts['equations'])}" in lines
     assert sum(line.startswith("eq") for line in lines) >= 128
+    monkeypatch.setenv("COLUMNS", "100")
+    figures = [one["figure"] for one in verdicts["claims"] if one["figure"]]
+    shown = re.findall(r"see (holonomic \w+)", tables(verdicts))
+    assert 4 <= len(shown) == len(figures)
 
 
 def test_the_readme_of_verification_states_the_numbers_of_verdicts(

@@ -116,6 +116,7 @@ def test_motions_along_a_line_have_room_beside_it(name: str) -> None:
     figure, (panel,) = film._figure(result.sampled_motions(), result.t[:1])
     for low, high in (panel.axes.get_xlim(), panel.axes.get_ylim()):
         assert high - low > 0.5 * panel.size
+    assert high - low == pytest.approx(1.12 * panel.size)  # the height, with margins of 6 %
     figure.draw_without_rendering()
     boxes = [tick.label1.get_window_extent() for tick in panel.axes.xaxis.get_major_ticks()]
     assert all(a.x1 < b.x0 for a, b in pairwise(boxes))

@@ -451,6 +451,14 @@ def test_exponentials_and_modes_are_those_of_scipy(size: float) -> None:
     assert stiffness @ shapes == pytest.approx(mass_matrix @ shapes * squares, abs=1e-11 * size)
 
 
+@pytest.mark.parametrize("index", [0, 1])
+def test_modes_of_matrices_that_are_not_finite_are_refused(index: int) -> None:
+    matrices = np.array([np.eye(2), np.eye(2)])
+    matrices[index, 0, 0] = np.inf
+    with pytest.raises(ValueError, match="matrices are not finite"):
+        _generalized_eigh(*matrices)
+
+
 def test_the_full_equations_are_checked_by_another_method() -> None:
     scene = find("report", load_module)
     motion = Motion(dp, scene.params, scene.y0, scene.duration, scene.requested)
