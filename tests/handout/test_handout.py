@@ -30,6 +30,7 @@ from derive.handout.formats.notebook import notebook
 from derive.handout.formats.page import BLANK, page
 from derive.handout.formats.tex import tex
 from derive.handout.mistakes import planted
+from derive.handout.numbering import Numbering
 from derive.handout.sections import document
 
 #: A system with friction, a driving force, a spring, and letters of derived quantities.
@@ -220,6 +221,16 @@ def test_a_matrix_that_is_too_wide_is_written_by_entries(documents) -> None:
     assert r"M_{15} & =" in text
     assert r"K_{0,15} & =" not in text  # zero
     assert "The solution is too long to read" in text
+
+
+@pytest.mark.parametrize(("width", "last"), [(9, "G_29"), (10, "G_2_10")])
+def test_entries_of_wide_matrices_have_names_that_are_read_in_one_way(
+    width: int, last: str
+) -> None:
+    long = sum(sp.symbols("theta:30"))
+    blocks = [*Numbering(DerivedLetters(load("chain_3"))).rows("G", sp.ones(2, width) * long)]
+    names = [one.before[0] for one in blocks if isinstance(one, NumberedEquation)]
+    assert (len(names), names[-1]) == (2 * width, last)
 
 
 @pytest.mark.parametrize(

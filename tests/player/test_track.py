@@ -38,6 +38,15 @@ def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path:
     assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
 
 
+def test_coordinates_and_rates_have_six_digits(tracks: list[Track], tmp_path: Path) -> None:
+    (x, _), (y, _) = tracks[0].positions.swapaxes(0, 1)
+    track = replace(tracks[0], coordinates=[CoordinateTrack("x", "m", x, y)])
+    Page("", "", [track]).write(tmp_path / "page.html")
+    ((*_, values, rates),) = motions(tmp_path / "page.html")[0]["coordinates"]
+    for found, exact in ((values, x), (rates, y)):
+        assert found == [float(f"{number:.6g}") for number in exact]
+
+
 def test_many_samples_are_reduced_evenly(tmp_path: Path) -> None:
     n = 3 * MOST_SAMPLES
     t = np.linspace(1e4, 1e4 + 6, n)

@@ -177,6 +177,11 @@ def test_powers_of_constants_are_constants() -> None:
         assert (result.constant, result.at(0)) == (True, Decimal("1.5"))
 
 
+def test_choices_by_constants_are_made_once() -> None:
+    select = series_functions([])["select"]
+    assert [select(s, 2.0, 3.0).at(0) for s in (1.0, 0.0, -1.0)] == [2, 3, 3]
+
+
 def test_decimal_sine_and_cosine() -> None:
     import mpmath
 

@@ -237,6 +237,8 @@ def test_outlines_are_lines_in_the_plane_of_view() -> None:
     assert_allclose([spring[0], spring[-1]], [[0, 0], [3, 4]])
     across = spring @ [-0.8, 0.6]
     assert np.abs(across).max() == pytest.approx(0.1)
+    moved = outline("spring", np.array([[1.0, -2], [4, 2]]), 5)
+    assert_allclose(moved, spring + np.array([1, -2]))
     start, end = outline("rail", np.array([[0.0, 1], [2, 1]]), 3)
     assert start[1] == end[1] == 1
     assert end[0] - start[0] > 100
