@@ -282,6 +282,8 @@ LAYOUT = r"""
 {\color{red} x + y} z  ⟶  (x + y) z
 x~y\,\!\;z  ⟶  x y z
 x\phantom{y}z  ⟶  x z
+\rule{0pt}{3ex} x + y  ⟶  (x + y)
+\definecolor{blue}{rgb}{0,0,1} x + y  ⟶  (x + y)
 x \label{a} \tag{1} \nonumber  ⟶  x
 x \hspace{1mm} y  ⟶  x y
 x % y  ⟶  x
