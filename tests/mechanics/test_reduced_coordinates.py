@@ -44,6 +44,7 @@ THETA, PHI = (Coordinate(one, "rad", f"angle {one}") for one in (theta, phi))
 U = Coordinate(u, "m", "length of the rod along the rail")
 #: Functions that differ, or do not exist, where all coordinates are independent from the start.
 OTHER = {
+    "energy_rational",
     "outputs",
     "outputs_jacobian",
     "outputs_parameter_jacobian",

@@ -21,6 +21,8 @@ from derive.verification.reference_system import time_derivative
 FOLLOWS = "it follows from line"
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
+#: Formulas that hold, from which on a complete known system decides which one is wrong.
+SEVERAL = 3
 
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
@@ -136,6 +138,7 @@ def weighed(
     in the document. It is not if other formulas of the document, which `doubts` has for its number,
     fit the rest as well and agree with it. A system that is known from elsewhere must have a letter
     for each of its parameters, and more formulas that hold than such with more than one wrong term.
+    If it is complete, and several formulas hold and one does not, it decides that this is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -143,6 +146,7 @@ def weighed(
     holding = sum(one.verdict.verdict in ("verified", "equivalent") for _, one in results)
     is_known = candidate.basis == "catalogue" and not is_stated
     is_weak = is_known and (candidate.lacking > 0 or misfits > max(1, holding))
+    decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = (
         is_known
         and holding < 2
@@ -153,7 +157,7 @@ def weighed(
         verdict = result.verdict
         if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
             result = plain("context", formula, UNSTATED)
-        elif verdict.verdict == "wrong" and number in doubts:
+        elif verdict.verdict == "wrong" and number in doubts and not decides:
             other = _lines(lines[k] for k in doubts[number])
             note = f"it contradicts {given or 'the system'} and agrees with {other}: {UNDECIDED}"
             result = plain("context", formula, note)
