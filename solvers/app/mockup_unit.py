@@ -49,13 +49,19 @@ def write_unit(system: "System", simulation: "Simulation", folder: Path) -> Path
     ------
     NoCompilerError
         When no C compiler builds the library.
+    OSError
+        When units have no name for libraries of this operating system.
     """
     from derive import reduced
     from derive.codegen.export.language_export import exported_text
 
     name, source = exported_text(system, "fmu", simulation)
     stem = Path(name).stem
-    system_name, ending = SYSTEMS.get(platform.system(), ("linux", ".so"))
+    if platform.system() not in SYSTEMS:
+        raise OSError(
+            f"units have no name for libraries of {platform.system()}: use another target"
+        )
+    system_name, ending = SYSTEMS[platform.system()]
     machine = MACHINES.get(platform.machine(), platform.machine())
     with TemporaryDirectory() as temporary:
         unit = Path(temporary) / f"{stem}.fmu"

@@ -47,7 +47,7 @@ class Outcome:
 
     @property
     def accused(self) -> list[str]:
-        """Right statements that are called wrong, unless they are said to follow from the slip."""
+        """Right statements that are called wrong, unless their notes name the slip."""
         if self.failure:
             return []
         wrong = self.slip.index if self.slip else -1

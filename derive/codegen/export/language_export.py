@@ -87,6 +87,12 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
             f"{to} is a library of functions and has no simulations: leave the simulation out, or "
             f"choose one of {others}"
         )
+    if simulation.event and not target.is_program:
+        raise ValueError(f"{to} has no rows of output for an event: leave the event out")
+    if target.has_fixed_steps and not simulation.steps:
+        raise ValueError(f"{to} has equal steps: give their number, steps, between two rows")
+    if "advance" in target.entry and simulation.steps:
+        raise ValueError(f"{to} has controlled steps: leave the step size out")
     of.check(simulation)
     program = of.simulation(simulation, ["simulate"] if target.is_program else target.entry)
     if stem in program.routines:  # a file of MATLAB has the name of its first function

@@ -113,15 +113,14 @@ class Target(ABC):
     integer: ClassVar[str] = "static const int {name} = {value};"
     real: ClassVar[str] = "static const double {name} = {value};"
     table: ClassVar[tuple[str, str]] = ("static const double {name}[{size}] = {{", "}};")
+    #: What follows the last number of a table.
+    last: ClassVar[str] = ""
 
     def __init__(self, exported: ExportedFile) -> None:
         self.exported, self.program = exported, exported.program
         self.routine = next(iter(self.program.routines.values()))  # the one that is written
 
     # what a language may replace
-
-    #: What follows the last number of a table.
-    last: ClassVar[str] = ""
 
     def head(self) -> str:
         """The text between the header and the constants."""
@@ -284,10 +283,7 @@ class Target(ABC):
         """The comment at the start of the file."""
         about = f"{self.exported.about}\n\n{self.arithmetic}"
         if self.exported.columns:
-            command = self.command.format(
-                file=self.exported.stem + self.suffix, **vars(self.exported)
-            )
-            about += f"\n\nRun it with:\n\n    {command}"
+            about += f"\n\nRun it with:\n\n    {self.command.format(**self._names)}"
         return "\n".join(self.remarks(about.splitlines()))
 
     def remarks(self, lines: Iterable[str]) -> Iterator[str]:

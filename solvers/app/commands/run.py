@@ -70,7 +70,7 @@ def run(arguments: Namespace) -> int:
             from solvers.app.live_page import LivePage
 
             paths["live page"] = arguments.output / f"{scene.name}_live.html"
-            LivePage(scene).write(paths["live page"])
+            LivePage(first).write(paths["live page"])
         files = {kind: str(path) for kind, path in paths.items()}
         results.append(figures(first) | {"beside": [*map(figures, beside)], "files": files})
         if not arguments.json:
