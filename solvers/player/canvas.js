@@ -1,4 +1,16 @@
-// A sharp canvas, colours, round numbers and their text.
+// A sharp canvas and its frames, colours, round numbers and their text.
+
+let frameIsRequested = false;
+
+/** Request one `frame` of the page, however many changes precede it. */
+function redraw() {
+  if (frameIsRequested) return;
+  frameIsRequested = true;
+  requestAnimationFrame((now) => {
+    frameIsRequested = false;
+    frame(now);
+  });
+}
 
 /** An empty canvas with as many pixels as the screen has for it; one unit is one CSS pixel. */
 function clearedCanvas(canvas) {

@@ -8,7 +8,6 @@ const CHART = { left: MARGINS.left, right: MARGINS.right, top: 8, bottom: MARGIN
 let panels = [];
 let box;
 let dragged = null;
-let frameIsRequested = false;
 
 /** A panel that also shows the motions beside the first one. */
 class LivePanel extends Panel {
@@ -185,14 +184,7 @@ function build(methods) {
   restart();
 }
 
-function redraw() {
-  if (frameIsRequested) return;
-  frameIsRequested = true;
-  requestAnimationFrame(frame);
-}
-
 function frame(now) {
-  frameIsRequested = false;
   if (clock.playing) {
     // a page that was hidden, or a slow one, falls behind instead of jumping
     if (clock.lastFrame !== null) clock.time += Number(element("speed").value) * Math.min((now - clock.lastFrame) / 1000, 0.1);

@@ -16,7 +16,6 @@ const phasePlane = new StateChart(element("phase-plane"), (track, number) => tra
 const stateCharts = coordinates.length > 0 ? [overTime, phasePlane] : [];
 const clock = { time: startTime, playing: false, lastFrame: null };
 const decimals = Math.max(3, 3 - Math.floor(Math.log10(endTime - startTime || 1)));
-let frameIsRequested = false;
 
 function legendEntry(label, number) {
   const value = document.createElement("span");
@@ -32,15 +31,7 @@ function boxOf(track, time) {
   return canFollow && follow.checked ? boxAround(track, time, largest, box) : box;
 }
 
-/** Request one frame, however many changes precede it. */
-function redraw() {
-  if (frameIsRequested) return;
-  frameIsRequested = true;
-  requestAnimationFrame(frame);
-}
-
 function frame(now) {
-  frameIsRequested = false;
   if (clock.playing) {
     // real time: the time since the last frame, whatever the frame rate
     if (clock.lastFrame !== null) {
