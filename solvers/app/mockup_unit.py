@@ -29,7 +29,8 @@ def write_unit(system: "System", simulation: "Simulation", folder: Path) -> Path
     """Write a unit for model exchange and co-simulation, with its source and a library.
 
     Its states and outputs are coordinates and velocities, its parameters and inputs those of the
-    system; co-simulation has the method and tolerances of the simulation.
+    system; co-simulation has the method and tolerances of the simulation. An event is an event
+    indicator, and ends steps of co-simulation where the importer permits an early return.
 
     Parameters
     ----------
@@ -106,6 +107,7 @@ def _description(system: "System", simulation: "Simulation", stem: str, source: 
         modelIdentifier=stem,
         canHandleVariableCommunicationStepSize="true",
         canGetAndSetFMUState="true",
+        hasEventMode=str(simulation.event is not None).lower(),
     )
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=repr(simulation.duration))
     variables = SubElement(root, "ModelVariables")
@@ -130,15 +132,22 @@ def _description(system: "System", simulation: "Simulation", stem: str, source: 
     for k, symbol in enumerate(symbols):
         variable(f"der({symbol})", 2 * n + 2 + k, derivative=str(1 + k), initial="calculated")
         SubElement(structure, "ContinuousStateDerivative", valueReference=str(2 * n + 2 + k))
+    events = []
+    if simulation.event:
+        events.append(4 * n + 2)
+        about = f"{simulation.event[0]} - {simulation.event[1]!r}, which is 0 at events"
+        variable("event", events[0], about, causality="local")
     for k, part in enumerate(system.parameters_and_inputs):
         start = repr(float(simulation.params[k]))
         is_input = part.symbol in system.u
         kind = {"causality": "input"} if is_input else {"causality": "parameter"}
         kind |= {"variability": "continuous" if is_input else "tunable"}
         text = f"{part.meaning} [{part.unit}]"
-        variable(part.symbol.name, 4 * n + 2 + k, text, start=start, **kind)
+        variable(part.symbol.name, 4 * n + 2 + len(events) + k, text, start=start, **kind)
     for reference in (2 * n + 1, *range(2 * n + 2, 4 * n + 2)):
         SubElement(structure, "InitialUnknown", valueReference=str(reference))
+    for reference in events:
+        SubElement(structure, "EventIndicator", valueReference=str(reference))
     indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, "unicode")}\n'
 

@@ -7,6 +7,7 @@ import sys
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
+from tempfile import mkdtemp
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,7 +17,7 @@ import generated.double_pendulum as dp
 import generated.two_link_arm as arm
 from derive import Simulation, load
 from derive.codegen.export.targets.fmu import TRIVIAL, UNSUPPORTED
-from solvers import integrate
+from solvers import Event, integrate
 from solvers.app.cli import main
 from solvers.app.mockup_unit import write_unit
 from solvers.runge_kutta import method_catalogue
@@ -29,8 +30,8 @@ START = (1.0, 2.0, 0.0, 0.5)
 class Unit:
     """A unit whose functions are called as an importer calls them."""
 
-    def __init__(self, path: Path, kind: str = "CoSimulation") -> None:
-        folder = path.with_suffix("")
+    def __init__(self, path: Path, kind: str = "CoSimulation", *, has_events: bool = False) -> None:
+        folder = Path(mkdtemp(dir=path.parent))  # a loaded library must not be overwritten
         with zipfile.ZipFile(path) as file:
             file.extractall(folder)
         root = ElementTree.parse(folder / "modelDescription.xml").getroot()
@@ -41,7 +42,8 @@ class Unit:
         self.functions = ctypes.CDLL(str(library))
         instantiate = getattr(self.functions, f"fmi3Instantiate{kind}")
         instantiate.restype = ctypes.c_void_p
-        self.instance = ctypes.c_void_p(instantiate())
+        texts, flags = (b"unit", b"token", b""), (False, False, has_events, has_events)
+        self.instance = ctypes.c_void_p(instantiate(*texts, *map(ctypes.c_bool, flags)))
 
     def values(self, *names: str) -> list[float]:
         numbers = (ctypes.c_double * len(names))()
@@ -52,11 +54,15 @@ class Unit:
         numbers = (ctypes.c_double * len(values))(*values.values())
         self.call("SetFloat64", self._references([*values]), ctypes.c_size_t(len(values)), numbers)
 
-    def step(self, t: float, size: float) -> None:
-        flags, last = [ctypes.byref(ctypes.c_bool()) for _ in range(3)], ctypes.c_double()
-        time = ctypes.c_double(t), ctypes.c_double(size)
-        self.call("DoStep", *time, ctypes.c_bool(True), *flags, ctypes.byref(last))
-        assert last.value == t + size
+    def step(self, t: float, size: float) -> float | None:
+        """Advance to t + size, or to an event before, whose time is returned."""
+        event, ends, is_early = (ctypes.c_bool() for _ in range(3))
+        time, last = (ctypes.c_double(t), ctypes.c_double(size)), ctypes.c_double()
+        outputs = map(ctypes.byref, (event, ends, is_early, last))
+        self.call("DoStep", *time, ctypes.c_bool(True), *outputs)
+        assert is_early.value == (last.value < t + size)
+        assert last.value == t + size or event.value
+        return last.value if event.value else None
 
     def call(self, name: str, *arguments: object) -> None:
         assert getattr(self.functions, f"fmi3{name}")(self.instance, *arguments) == 0
@@ -126,6 +132,58 @@ def test_inputs_act_between_steps(tmp_path: Path) -> None:
     assert unit.values(*arm.STATE) == pytest.approx(exact.y[:, -1].tolist(), abs=1e-8)
 
 
+@pytest.fixture
+def swinging(tmp_path: Path) -> tuple[Path, list[float]]:
+    """A unit with the event theta1 = 0, and times of the event by `integrate`."""
+    of = Simulation(METHOD, dp.DEFAULTS, START, 5.0, rtol=1e-11, atol=1e-11, event=("theta1", 0.0))
+    event = Event(dp, "theta1", 0.0)
+    options = {"method": "gauss8", "rtol": 1e-13, "atol": 1e-13, "events": event}
+    motion = integrate(dp, (0, 5), START, dp.DEFAULTS, **options)
+    return write_unit(load("double_pendulum"), of, tmp_path), motion.t_events[0].tolist()
+
+
+def test_steps_of_co_simulation_end_at_events(swinging: tuple[Path, list[float]]) -> None:
+    unit, t, times = Unit(swinging[0], has_events=True), 0.0, list[float]()
+    while t < 5.0:
+        event = unit.step(t, 5.0 - t)
+        t = 5.0 if event is None else event
+        if event is not None:
+            times.append(event)
+            assert unit.values("time") == [event]
+            assert abs(unit.values("theta1")[0]) < 1e-12
+    assert len(times) == 3
+    assert times == pytest.approx(swinging[1], abs=1e-8)
+
+
+def test_events_do_not_change_the_motion_without_event_mode(
+    swinging: tuple[Path, list[float]],
+) -> None:
+    ends = []
+    for has_events in (False, True):
+        unit = Unit(swinging[0], has_events=has_events)
+        t = 0.0
+        while t < 5.0:
+            event = unit.step(t, 5.0 - t)
+            assert has_events or event is None
+            t = 5.0 if event is None else event
+        ends.append(unit.values(*dp.STATE))
+    assert ends[0] == pytest.approx(ends[1], abs=1e-8)
+
+
+def test_the_indicator_of_an_event_is_the_distance_to_its_value(
+    swinging: tuple[Path, list[float]],
+) -> None:
+    unit, number = Unit(swinging[0], "ModelExchange"), ctypes.c_size_t()
+    unit.call("GetNumberOfEventIndicators", ctypes.byref(number))
+    assert number.value == 1
+    for theta1 in (-7.0, -0.5, 0.0, 0.5, 2 * np.pi):
+        states, indicator = (ctypes.c_double * 4)(theta1, 1.0, 0.0, 0.0), ctypes.c_double()
+        unit.call("SetContinuousStates", states, ctypes.c_size_t(4))
+        unit.call("GetEventIndicators", ctypes.byref(indicator), number)
+        assert indicator.value == pytest.approx(theta1, abs=1e-14)
+        assert unit.values("event") == [indicator.value]
+
+
 def test_all_functions_of_the_standard_are_there_and_references_match(path: Path) -> None:
     unit = Unit(path)
     assert all(hasattr(unit.functions, f"fmi3{name}") for name in (*UNSUPPORTED, *TRIVIAL))
@@ -137,16 +195,22 @@ def test_an_importer_finds_no_problem_and_simulates(tmp_path: Path) -> None:
     fmpy = pytest.importorskip("fmpy")
     from fmpy.validation import validate_fmu
 
-    assert main(["export", "report", "--to", "fmu", "--output", str(tmp_path)]) == 0
     path, python = tmp_path / "report.fmu", tmp_path / "report.py"
+    for target in ("fmu", "python"):
+        arguments = ["--to", target, "--event", "theta1 = 0", "--output", str(tmp_path)]
+        assert main(["export", "report", *arguments]) == 0
     assert validate_fmu(str(path)) == []
-    assert main(["export", "report", "--to", "python", "--output", str(tmp_path)]) == 0
     run = subprocess.run([sys.executable, python], capture_output=True, text=True, check=True)
     rows = [[*map(float, row.split(","))] for row in run.stdout.splitlines()[1:]]
+    events = [row[0] for row in rows if row[-1] == 1]
+    assert len(events) > 3
+    options = {"solver": "CVode", "relative_tolerance": 1e-9, "output_interval": 0.5}
+    options |= {"use_event_mode": True, "early_return_allowed": True, "stop_time": 5.0}
     for kind, error in (("CoSimulation", 1e-9), ("ModelExchange", 1e-5)):
-        options = {"solver": "CVode", "relative_tolerance": 1e-9, "output_interval": 0.5}
-        result = fmpy.simulate_fmu(str(path), fmi_type=kind, stop_time=5.0, **options)
+        result = fmpy.simulate_fmu(str(path), fmi_type=kind, **options)
         assert result[-1]["theta1"] == pytest.approx(rows[-1][1], abs=error)
+        zeros = [row["time"] for row in result if abs(row["theta1"]) < error]
+        assert np.unique(np.round(zeros, 4)) == pytest.approx(np.round(events, 4))
 
 
 def test_a_system_without_a_start_is_no_unit(

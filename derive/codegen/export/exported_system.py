@@ -275,12 +275,16 @@ class ExportedSystem:
             lines.append(f"    angles[{n}] = angle(y[{k}], y[{k + 1}], angles[{n}])")
         return "\n".join(lines if self.angles else [])
 
-    def _event(self, of: Simulation) -> list[str]:
-        if of.event is None:
-            return []
-        name, value = of.event
+    def event(self, of: Simulation) -> tuple[int, float] | None:
+        """The number of the coordinate or velocity that has an event, and its value there."""
         names = [s.name for s in (*self.system.q, *self.system.qdot)]
-        k = names.index(name)
+        return (names.index(of.event[0]), of.event[1]) if of.event else None
+
+    def _event(self, of: Simulation) -> list[str]:
+        event = self.event(of)
+        if event is None:
+            return []
+        (k, value), name = event, of.event[0] if of.event else ""
         formula, condition = f"{self._places[k]} - {_float(value)}", "True"
         about = f"{name} - {value:g}"
         if k in self.angles:

@@ -87,7 +87,7 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
             f"{to} is a library of functions and has no simulations: leave the simulation out, or "
             f"choose one of {others}"
         )
-    if simulation.event and not target.is_program:
+    if simulation.event and not (target.is_program or target.has_events):
         raise ValueError(f"{to} has no rows of output for an event: leave the event out")
     if target.has_fixed_steps and not simulation.steps:
         raise ValueError(f"{to} has equal steps: give their number, steps, between two rows")
@@ -101,7 +101,9 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
     columns = of.columns(simulation) if target.is_program else ()
     params, start = tuple(of.values(simulation)), tuple(map(float, simulation.y0))
     angles = tuple(of.angles)
-    exported = ExportedFile(system.name, stem, about, program, columns, params, start, angles)
+    exported = ExportedFile(
+        system.name, stem, about, program, columns, params, start, angles, of.event(simulation)
+    )
     return f"{stem}{target.suffix}", target(exported).file()
 
 

@@ -39,6 +39,7 @@ class ExportedFile:
     values: tuple[float, ...] = ()  # of the parameters and inputs
     start: tuple[float, ...] = ()  # coordinates and velocities
     angles: tuple[int, ...] = ()  # numbers of the coordinates whose sines are in the state
+    event: tuple[int, float] | None = None  # number of a coordinate or velocity, and its value
 
 
 class Target(ABC):
@@ -61,6 +62,8 @@ class Target(ABC):
     has_libraries: ClassVar[bool] = True
     has_simulations: ClassVar[bool] = True
     is_program: ClassVar[bool] = True
+    #: Whether a simulation that is no program reports events.
+    has_events: ClassVar[bool] = False
     #: Whether a simulation needs equal steps.
     has_fixed_steps: ClassVar[bool] = False
     #: Functions of the simulation that a library has, beside those that they call.

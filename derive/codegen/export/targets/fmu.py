@@ -1,5 +1,6 @@
 """The C source of a functional mock-up unit, FMI 3.0: model exchange and co-simulation."""
 
+from collections.abc import Sequence
 from importlib import resources
 
 from derive.codegen.export.targets.c99 import C99
@@ -16,6 +17,26 @@ UNSUPPORTED = """
     GetOutputDerivatives GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction
     SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
 """.split()
+#: Before the functions of the simulation, which report events by print_row().
+EVENTS = """\
+#if defined _MSC_VER
+#define THREAD __declspec(thread)
+#else
+#define THREAD __thread
+#endif
+
+/* The first event of a step of co-simulation that is later than another time, one a thread. */
+static THREAD double first_event, earliest_event;
+"""
+PRINT_ROW = """
+static void print_row(double t, const double *values)
+{
+    (void)values;
+    if (t > earliest_event && t < first_event) {
+        first_event = t;
+    }
+}
+"""
 #: Functions that have nothing to do.
 TRIVIAL = """
     SetDebugLogging EnterInitializationMode EnterEventMode Terminate EnterContinuousTimeMode
@@ -28,10 +49,13 @@ class Unit(C99):
 
     title, suffix, has_libraries = "FMI 3.0 functional mock-up unit", ".c", False
     command, is_program, entry = "", False, ("advance", "row")
-    qualifiers = "static inline"
+    has_events, qualifiers = True, "static inline"
 
     def guard(self) -> str:
         return ""
+
+    def head(self) -> str:
+        return super().head() + EVENTS + (PRINT_ROW if self.exported.event else "")
 
     def tail(self) -> str:
         of, n = self.exported, len(self.exported.start)
@@ -42,14 +66,17 @@ class Unit(C99):
         lines += [f"    angles[{a}] = v[{k}];" for a, k in enumerate(of.angles)]
         others = [f"FMI int fmi3{name}(void) {{ return 3; }}" for name in UNSUPPORTED]
         others += [f"FMI int fmi3{name}(void) {{ return 0; }}" for name in TRIVIAL]
-        constants = "static const double {}[] = {{{}}};"
+        constant = "static const double {}{} = {};"
+        event, at = of.event or (0, 0.0)
         return "\n".join(
             [
                 f"enum {{ STATES = {n}, PARAMETERS = {len(of.values)} }};",
                 f"enum {{ ANGLES = {max(len(of.angles), 1)} }};",
                 f"#define ANGLES_OF(one) {'one->angles,' if of.angles else ''}",
-                constants.format("START_VALUES", ", ".join(map(self.literal, of.start))),
-                constants.format("DEFAULT_PARAMETERS", ", ".join(map(self.literal, of.values))),
+                f"enum {{ EVENTS = {int(of.event is not None)}, EVENT_VALUE = {event} }};",
+                constant.format("EVENT_AT", "", self.literal(at)),
+                constant.format("START_VALUES", "[]", self._list(of.start)),
+                constant.format("DEFAULT_PARAMETERS", "[]", self._list(of.values)),
                 "",
                 "static void to_state(const double *v, double *y, double *angles) {",
                 *(lines if of.angles else [*lines, "    (void)angles;"]),
@@ -59,6 +86,9 @@ class Unit(C99):
                 *others,
             ]
         )
+
+    def _list(self, values: Sequence[float]) -> str:
+        return f"{{{', '.join(map(self.literal, values))}}}"
 
 
 target = Unit
