@@ -12,6 +12,7 @@ from solvers.io.suggestion import shortened
 from solvers.player.sampled_motion import SampledMotion
 
 if TYPE_CHECKING:
+    from solvers import LivePage
     from solvers.player.player_page import Page
 
 
@@ -31,13 +32,24 @@ class Playable(ABC):
             Results to show side by side with this one.
         """
         page = _page(_together(self, beside))
-        if "ipykernel" not in sys.modules:
-            import webbrowser
-            from tempfile import mkdtemp
+        _open(page)
+        return page
 
-            path = Path(mkdtemp(prefix="holonomic-")) / "motion.html"
-            page.write(path)
-            webbrowser.open(path.as_uri())
+    def live(self) -> "LivePage":
+        """The page that integrates from the start of the first motion while it is open.
+
+        Masses are dragged and parameters changed there, see `solvers.LivePage`. The page is opened
+        in a browser, in notebooks displayed.
+
+        Raises
+        ------
+        ValueError
+            If a mass of the motion is absent.
+        """
+        from solvers import LivePage  # its code is generated, by a package above this one
+
+        page = LivePage(self)
+        _open(page)
         return page
 
     def save(
@@ -98,6 +110,17 @@ class Playable(ABC):
 
     def _repr_html_(self) -> str:
         return _page(self.sampled_motions())._repr_html_()
+
+
+def _open(page: "Page | LivePage") -> None:
+    """Open a page in a browser, unless a notebook displays it."""
+    if "ipykernel" not in sys.modules:
+        import webbrowser
+        from tempfile import mkdtemp
+
+        path = Path(mkdtemp(prefix="holonomic-")) / "motion.html"
+        page.write(path)
+        webbrowser.open(path.as_uri())
 
 
 def _together(first: Playable, beside: Sequence[Playable]) -> list[SampledMotion]:

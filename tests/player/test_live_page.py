@@ -168,12 +168,17 @@ def test_constraints_and_bodies_in_space_are_integrated(
     assert len(np.unique(player.pixels("figure canvas").reshape(-1, 3), axis=0)) > 20
 
 
-def test_a_motion_of_an_own_start_is_continued_from_there(player: Player, tmp_path: Path) -> None:
+def test_a_motion_of_an_own_start_is_continued_from_there(
+    player: Player, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
     motion = integrate(
         dp, (0, 2), {"theta1": "60 deg", "theta2": 0, "theta2_dot": 1.5}, {"m2": "300 g"}
     )
-    LivePage(motion).write(tmp_path / "motion.html")
-    show(player, tmp_path / "motion.html")
+    page, path = motion.live(), Path(opened[0].removeprefix("file://"))
+    assert path.read_text(encoding="utf-8") == page.html
+    show(player, path)
     energy = dp.energy(0.0, motion.y[:, 0], dp.params(m2=0.3))
     assert state(player) == pytest.approx([*motion.y[:, 0], energy], abs=1e-14)
     assert player.texts("#parameters output")[1] == "0.3 kg"
