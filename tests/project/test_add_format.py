@@ -26,6 +26,10 @@ def excerpts(text):
 
 def decoded(text, excerpt):
     return text[excerpt.start : excerpt.end]
+
+
+def prose(text):
+    return f"<pre>{text}</pre>"
 '''
 
 PYTHON_WITH_TABS = '''

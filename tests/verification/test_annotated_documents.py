@@ -1,5 +1,6 @@
 """Verdicts on documents as a page and as LaTeX, from verdicts made by hand."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -16,6 +17,7 @@ from derive.reading.latex.display_reader import macros_of
 from derive.verification.documents.pages.annotation import annotate, check_annotation
 from derive.verification.documents.pages.latex_notes import latex_notes
 from derive.verification.documents.pages.latex_text import escaped, formula
+from derive.verification.documents.pages.markdown_notes import markdown_notes
 from derive.verification.documents.pages.verdict_page import page
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from solvers.io.toml_input import InputError
@@ -89,7 +91,7 @@ class Elements(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.starts.append((tag, dict(attrs)))
-        if tag not in ("meta", "link", "input", "wbr"):
+        if tag not in ("meta", "link", "input", "wbr", "br", "hr"):
             self.open.append(tag)
 
     def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
@@ -186,6 +188,119 @@ def test_several_documents_stand_on_one_page(tmp_path: Path) -> None:
     text = page([(judged(read, ("x = 1", {})), read) for read in reads])
     assert re.findall("<h2>(.*?)</h2>", text) == ["a.md", "b.md"]
     assert "<b>2</b> verified" in text
+
+
+#: A text in each format: a heading, formulas in a line and in a list, a program, and markup that
+#: must not be executed.
+TEXTS = {
+    "a.tex": r"""\documentclass{article} \begin{document}
+\section{Head \label{s}} First \emph{word} of $V = 1$, Schr\"odinger's % secret
+\begin{equation} V = 2 \end{equation} middle 5\,\% ``quoted''
+\begin{itemize} \item entry \[ V = 3 \] end \end{itemize}
+\begin{verbatim} a < b \end{verbatim} \end{document} secret""",
+    "a.md": """# Head\n\nFirst **word** of $V = 1$, <b onclick="secret()">Schrödinger's</b>
+\n$$ V = 2 $$\n\nmiddle 5 % <script>secret</script>“quoted”\n\n- entry
+\n  $$ V = 3 $$\n\n  end\n\n```\na < b\n```\n<!-- secret -->""",
+    "a.rst": """Head\n====\n\nFirst **word** of :math:`V = 1`, Schrödinger's\n\n.. math:: V = 2
+\nmiddle 5 % “quoted”\n\n- entry\n\n  .. math:: V = 3\n\n  end\n\n::\n\n  a < b
+\n.. raw:: html\n\n   <script>secret</script>\n""",
+    "a.html": """<html><head><title>secret</title><style>secret</style></head><body onload="secret">
+<h1>Head</h1><p>First <em>word</em> of \\(V = 1\\), <a href="secret">Schrödinger's</a>
+<p>$$ V = 2 $$ middle 5 % “quoted”<ul><li>entry \\[ V = 3 \\] end</ul><pre>a &lt; b</pre>
+<iframe src="secret">secret</iframe></body></html>""",
+}
+TEXTS["a.ipynb"] = json.dumps(
+    {
+        "nbformat": 4,
+        "nbformat_minor": 5,
+        "metadata": {},
+        "cells": [
+            {"cell_type": "markdown", "id": "a", "metadata": {}, "source": source}
+            for source in TEXTS["a.md"].split("\n\n", 2)
+        ],
+    }
+)
+
+
+VERDICTS = [(1, "wrong"), (2, "verified"), (3, "context")]
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_the_page_has_the_text_of_the_document_around_its_formulas(
+    tmp_path: Path, name: str
+) -> None:
+    read = document(tmp_path, TEXTS[name], name)
+    rows = [(f"V = {k}", {"verdict": verdict}) for k, verdict in VERDICTS]
+    whole = page([(judged(read, *rows), read)])
+    assert not Elements(whole).open
+    text = whole.partition("<main>")[2]
+    assert "secret" not in text
+    plain = re.sub(r"<[^>]*>|\s|\xa0", "", text)
+    pieces = ["Head", "Firstwordof", "V=1", "Schrödinger's", "wrong", "V=2", "middle5%", "“quoted”"]
+    pieces += ["entry", "V=3", "end", "a&lt;b"]
+    assert re.search(".*".join(map(re.escape, pieces)), plain)
+    marks = re.findall(r'<(?:li|span) class="(?:inline )?(verified|wrong|context)"', text)
+    assert marks == ["wrong", "wrong", "verified", "context"]  # in the text, below it, displays
+
+
+def test_a_copy_in_markdown_has_notes_below_its_formulas(tmp_path: Path) -> None:
+    text = "In $x = 1$.\n\n1. item\n   $$y = 2$$\n   goes on\n\n> $$z = 3$$\n"
+    read = document(tmp_path, text, "a.md")
+    wrong = {"verdict": "wrong", "correction": "x = *", "note": "a_b"}
+    rows = [("x = 1", wrong), ("y = 2", {}), ("z = 3", {"verdict": "wrong"})]
+    notes = markdown_notes(judged(read, *rows), read)
+    assert notes.startswith(
+        r"In $x = 1$ (**wrong**, should be $x = *$, a\_b)." "\n\n1. item\n   $$y = 2$$\n\n"
+        "   > - line 4: verified\n\n   goes on\n\n> $$z = 3$$\n>\n> > - line 7: **wrong**\n\n"
+    )  # fmt: skip
+    assert notes.count("line ") == 3  # with the remark of the summary
+
+
+def test_a_copy_of_a_notebook_keeps_its_cells(tmp_path: Path) -> None:
+    nbformat = pytest.importorskip("nbformat")
+    book = nbformat.v4.new_notebook()
+    book.cells = [
+        nbformat.v4.new_markdown_cell("$$x = 1$$"),
+        nbformat.v4.new_code_cell("x = 2", outputs=[]),
+    ]
+    nbformat.write(book, tmp_path / "a.ipynb")
+    read = read_document(tmp_path / "a.ipynb")
+    verdicts = judged(read, ("x = 1", {}))
+    program = FormulaVerdict(1, 1, 0, "x = 2", "wrong", cell=2, correction="x = 3")
+    verdicts = replace(verdicts, formulas=(*verdicts.formulas, program))
+    annotate(tmp_path / "b.ipynb", [(verdicts, read)])
+    copy = nbformat.read(tmp_path / "b.ipynb", 4)
+    nbformat.validate(copy)
+    kinds = [one.cell_type for one in copy.cells]
+    assert kinds == ["markdown", "code", "markdown", "markdown"]
+    assert copy.cells[0].source.startswith("$$x = 1$$\n\n> - line 1: verified")
+    assert copy.cells[1] == book.cells[1]
+    assert copy.cells[2].source == "- line 1: **wrong**, should be `x = 3`"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<p>a</div></p></li><td>$$x = 1$$",
+        "<ul><li>a<li>$x = 1$<ul><li>b</ul></ul><table><tr><td>c<td>d<tr><td>e</table>",
+        "<svg><p>secret</svg><math display='block'><mi>secret</mi></math>a $x = 1$",
+        "\ue0000\ue001 and $x = 1$ and \ue0009\ue001",
+    ],
+)
+def test_pages_are_closed_whatever_the_document_is(tmp_path: Path, text: str) -> None:
+    read = document(tmp_path, f"<body>{text}</body>", "a.html")
+    result = page([(judged(read, ("x = 1", {"verdict": "wrong"})), read)])
+    assert not Elements(result).open
+    assert "secret" not in result
+    assert result.count('<li class="wrong"') == 1
+
+
+def test_marks_state_what_verdicts_rest_on(tmp_path: Path) -> None:
+    read = document(tmp_path, "$$x = 1$$ $$y = 1$$ $$z = 1$$", "a.md")
+    rows = [("x = 1", {"basis": "document"}), ("y = 1", {"basis": "known system"}), ("z = 1", {})]
+    text = page([(judged(read, *rows), read)])
+    assert re.findall(r"<abbr[^>]*>(.)</abbr>", text) == ["●", "○"]
+    assert "Judged ● by the document&#x27;s own" in text
 
 
 def test_the_copy_of_a_document_has_notes_at_its_formulas(tmp_path: Path) -> None:
@@ -293,7 +408,8 @@ def test_the_file_is_chosen_by_its_suffix(tmp_path: Path) -> None:
     ("name", "files", "message"),
     [
         ("a.pdf", ["a.md"], "must end in .html or .tex"),
-        ("a.tex", ["a.md", "b.md"], "LaTeX shows one document"),
+        ("a.ipynb", ["a.md"], "must end in .html or .tex"),
+        ("a.tex", ["a.md", "b.md"], "shows one document"),
         ("a.tex", ["a.tex"], "is the document itself"),
         ("a.html", [], "give a document"),
     ],

@@ -63,6 +63,11 @@ def decoded(text: str, excerpt: Excerpt) -> str:
     return characters(spaced)
 
 
+def prose(text: str) -> str:
+    """The text as HTML."""
+    return text
+
+
 def characters(latex: str) -> str:
     """Characters in place of entities; the length stays the same."""
     return ENTITY.sub(lambda one: unescape(one[0]).rjust(len(one[0])), latex)

@@ -143,6 +143,17 @@ def decoded(text: str, excerpt: Excerpt) -> str:
     return html.characters(escapes.sub(_unescaped, latex))
 
 
+def prose(text: str) -> str:
+    """The text as HTML."""
+    try:
+        from markdown_it import MarkdownIt
+    except ModuleNotFoundError as error:
+        raise OSError(
+            "markdown-it-py is not installed: pip install 'holonomic[documents]'"
+        ) from error
+    return str(MarkdownIt().enable("table").render(text))
+
+
 def _unescaped(escaped: re.Match[str]) -> str:
     kept = next(filter(None, escaped.groups()))
     return kept.rjust(len(escaped[0]))

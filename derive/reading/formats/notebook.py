@@ -6,6 +6,7 @@ from typing import Any
 
 from derive.reading.formats.markdown import decoded as decoded
 from derive.reading.formats.markdown import excerpts as excerpts
+from derive.reading.formats.markdown import prose as prose
 
 KIND, SUFFIXES = "notebook", (".ipynb",)
 

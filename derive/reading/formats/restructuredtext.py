@@ -42,6 +42,23 @@ def decoded(text: str, excerpt: Excerpt) -> str:
     return options_removed(text[excerpt.start : excerpt.end])
 
 
+def prose(text: str) -> str:
+    """The text as HTML, without files that it includes."""
+    try:
+        from docutils.core import publish_parts
+    except ModuleNotFoundError as error:
+        raise OSError("docutils is not installed: pip install 'holonomic[documents]'") from error
+    settings = {
+        "file_insertion_enabled": False,
+        "raw_enabled": False,
+        "report_level": 5,
+        "halt_level": 5,
+        "_disable_config": True,
+        "syntax_highlight": "none",
+    }
+    return str(publish_parts(text, writer="html5", settings_overrides=settings)["html_body"])
+
+
 def options_removed(latex: str) -> str:
     """Spaces in place of lines such as ``:label: energy``."""
     return OPTION.sub(lambda option: " " * len(option[0]), latex)

@@ -5,6 +5,8 @@ Comments and verbatim text are skipped. ``\input`` and ``\include`` are not foll
 
 import re
 from collections.abc import Iterator
+from html import escape
+from unicodedata import normalize
 
 from derive.reading.scanning import (
     BLANK_LINE,
@@ -36,6 +38,37 @@ SHORTHAND = re.compile(rf"({MACRO})[ \t}}]*+\{{\s*+(\\(begin|end)\s*+\{{([a-z]+\
 BODY = re.compile(r"^[^%\n]*?\\begin\{document\}", re.M)
 BODY_END = re.compile(r"^[^%\n]*?(?=\\end\{document\})", re.M)
 INCLUDED = re.compile(r"^[^%\n]*?(\\(?:input|include|subfile)\b[^%\n]{0,80})", re.M)
+
+
+#: Text in LaTeX, after escapes of HTML, and what stands for it in a page, in this order.
+ARGUMENT = rf"\{{({BRACES})\}}"
+PROSE = (
+    (rf"\\(?:title|part|chapter|(?:sub)*section|paragraph)\*?\s*(?:\[[^\]]*\]\s*)?{ARGUMENT}",
+     r"\n\n<h3>\1</h3>\n\n"),
+    (r"\\begin\s*\{(?:itemize|enumerate|description)\}(?:\[[^\]]*\])?", "\n\n<ul>"),
+    (r"\\end\s*\{(?:itemize|enumerate|description)\}", "</ul>\n\n"),
+    (r"\\item(?![A-Za-z])\s*(?:\[([^\]]*)\])?", r"<li>\1 "),
+    (r"\\begin\s*\{abstract\}", r"\n\n"),
+    (rf"\\begin\s*\{{[^{{}}]*\}}(?:\[[^\]]*\])?(?:{ARGUMENT})?", r"\n\n"),
+    (r"\\end\s*\{[^{}]*\}", r"\n\n"),
+    (rf"\\(?:label|index|bibliography|bibliographystyle|[vh]space|includegraphics|input|include|"
+     rf"usepackage|documentclass|pagestyle|thispagestyle|setlength|setcounter|hypersetup|"
+     rf"newtheorem)\*?(?:\[[^\]]*\]|{ARGUMENT})*", ""),
+    (rf"\\(?:eq|auto|c|C)?ref\*?{ARGUMENT}", r"(\1)"),
+    (rf"\\[a-z]*cite[a-z]*\*?(?:\[[^\]]*\])*{ARGUMENT}", r"[\1]"),
+    (rf"\\href\s*\{{[^{{}}]*\}}{ARGUMENT}", r"\1"),
+    (rf"\\footnote{ARGUMENT}", r" (\1)"),
+    *((rf"\\(?:{command}){ARGUMENT}", rf"<{tag}>\1</{tag}>")
+      for command, tag in (("emph|textit|textsl", "em"), ("textbf", "strong"), ("texttt", "code"))
+      for _ in range(2)),  # nested
+    (r"\\\\\*?(?:\[[^\]]*\])?", "<br>"), (r"(?<!\\)&amp;", " "), ("(?<!\\\\)~", "\u00a0"),
+    *((rf"\\{mark}\s*(?:\{{\\?(\w)\}}|\\?(\w))", rf"\1\2{accent}") for mark, accent in (
+        ("`", "\u0300"), ("'", "\u0301"), (r"\^", "\u0302"), ("~", "\u0303"), ('"', "\u0308"))),
+    ("``", "\u201c"), ("''", "\u201d"), ("`", "\u2018"), ("---", "\u2014"), ("--", "\u2013"),
+    (r"\\c\s*\{(\w)\}", "\\1\u0327"), (r"\\ss(?![A-Za-z])\s*", "\u00df"),
+    (r"\\([%$#_{}])", r"\1"), (r"\\&amp;", "&amp;"), (r"\\[,;:! ]", " "),
+    (r"\\[A-Za-z@]+\*?[ \t]*|[{}]", ""),
+)  # fmt: skip
 
 
 def definitions(text: str, comment: str = COMMENT) -> tuple[str, ...]:
@@ -86,6 +119,25 @@ def notes(text: str) -> tuple[str, ...]:
     result = [one[1].strip() for one in INCLUDED.finditer(text)]
     more = f" and {len(result) - 5} more" if len(result) > 5 else ""
     return (f"not followed: {', '.join(result[:5])}{more}",) if result else ()
+
+
+def prose(text: str) -> str:
+    """The text of the document's body as HTML; commands of other packages leave their arguments."""
+    begin, end = BODY.search(text), BODY_END.search(text)
+    text = text[begin.end() if begin else 0 : end.end() if end else None]
+    text = re.sub(rf"(?<!\\){COMMENT}\n?[ \t]*", "", text)
+    pieces = re.split(rf"{VERBATIM}((?:.|\n)*?)\\end\{{\w+\*?\}}", re.sub(DEFINITION, "", text))
+    return "".join(
+        f"<pre>{escape(piece)}</pre>" if k % 2 else _paragraphs(piece)
+        for k, piece in enumerate(pieces)
+    )
+
+
+def _paragraphs(text: str) -> str:
+    text = escape(text, quote=False)
+    for pattern, replacement in PROSE:
+        text = re.sub(pattern, replacement, text)
+    return "".join(f"<p>{one}" for one in re.split(BLANK_LINE, normalize("NFC", text)))
 
 
 def _verb(opening: re.Match[str]) -> str:

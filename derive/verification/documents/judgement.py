@@ -20,6 +20,7 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.pages.verdicts_in_place import (
+    JUDGED,
     Alternative,
     DocumentVerdicts,
     FormulaVerdict,
@@ -65,6 +66,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     written = _written(occurrences)
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
+    known: set[Occurrence] = set()  # formulas that a known system judges
     remaining, work = statements.formulas, Work()
     while remaining and len(titles) < (1 if hints else MAX_SYSTEMS):
         part = replace(statements, formulas=remaining)
@@ -81,6 +83,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             before = results.get(formula.occurrence)
             if before is None or _is_graver(result, before[1]):
                 results[formula.occurrence] = formula, result
+                is_known = candidate.basis == "catalogue" and hints is None
+                (known.add if is_known else known.discard)(formula.occurrence)
         bound = {q for one in candidate.constraints for q in one.coordinates}
         remaining = tuple(
             one for one, result in verdicts
@@ -97,7 +101,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
         note = f"{note}: {WAY_OUT}"
     places = {formula.occurrence for formula in statements.formulas} - results.keys()
     judged += [_plain(place, "context", note) for place in places]
-    judged += [_judged(*pair, written) for pair in results.values()]
+    judged += [_judged(*pair, written, place in known) for place, pair in results.items()]
     notes = (*document.notes, *_unused(hints, statements.formulas))
     system, ordered = "; ".join(dict.fromkeys(titles)), sorted(judged, key=lambda one: one.span)
     meanings = "; ".join(filter(None, dict.fromkeys(conventions)))
@@ -167,7 +171,7 @@ def _plain(place: Occurrence, verdict: str, note: str) -> FormulaVerdict:
 
 
 def _judged(
-    formula: DocumentFormula, result: SideVerdict, written: dict[str, str]
+    formula: DocumentFormula, result: SideVerdict, written: dict[str, str], is_known: bool
 ) -> FormulaVerdict:
     place, verdict = formula.occurrence, result.verdict
     correction = corrected(formula, result, written)
@@ -176,6 +180,7 @@ def _judged(
         place.line, place.column, place.display, place.source, verdict.verdict,
         correction.wrong_term, correction.correction, verdict.witness, verdict.note,
         place.span, place.cell, spans, _state(verdict.state, written),
+        ("known system" if is_known else "document") if verdict.verdict in JUDGED else "",
     )  # fmt: skip
 
 

@@ -22,7 +22,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     parser.add_argument("equations", nargs="*", metavar="EQUATIONS", help=meaning)
     add_json(parser)
-    meaning = "write the formulas of documents with their verdicts: a page (.html), or LaTeX (.tex)"
+    meaning = (
+        "write documents with the verdicts on their formulas: a page (.html), LaTeX (.tex), or a "
+        "copy of a document in Markdown or of a notebook"
+    )
     parser.add_argument("--annotate", type=Path, metavar="OUT", help=meaning)
     meaning = "the system of documents and programs: a name, or a TOML file"
     parser.add_argument("--system", metavar="SYSTEM", help=meaning)

@@ -10,7 +10,11 @@ from derive.reading.document import Display, Document
 from derive.reading.formats.tex import BODY
 from derive.reading.latex.display_reader import Macro, macros_of
 from derive.verification.documents.pages.latex_text import COMMANDS, code, escaped, formula
-from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
+from derive.verification.documents.pages.verdicts_in_place import (
+    REFUTED,
+    DocumentVerdicts,
+    FormulaVerdict,
+)
 from derive.verification.verdict import VerdictName
 
 #: A note in the margin; in the line where there is no margin, as in boxes, floats and slides.
@@ -32,8 +36,6 @@ HEAD = r"""\documentclass{article}
 \setlength{\parindent}{0pt}
 """
 BEGIN, END = r"\begin{document}", r"\end{document}"
-#: Verdicts that stand out.
-REFUTED = ("wrong", "misprint", "unreadable")
 
 
 def latex_notes(verdicts: DocumentVerdicts, document: Document) -> str:

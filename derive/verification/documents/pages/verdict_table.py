@@ -71,5 +71,6 @@ def _record(one: FormulaVerdict) -> dict[str, Any]:
         "correction": one.correction,
         "witness": one.witness,
         "state": one.state,
+        "basis": one.basis,
         "note": one.note,
     }

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from derive.reading.document import Kind
 from derive.reading.latex.tree import Span
@@ -15,6 +16,8 @@ METHOD = "method of integration"
 #: Verdicts on formulas that are judged, and all that are counted.
 JUDGED: tuple[VerdictName, ...] = ("verified", "equivalent", "misprint", "wrong")
 COUNTED: tuple[VerdictName, ...] = (*JUDGED, "definition")
+#: Verdicts on formulas that stand out.
+REFUTED: tuple[VerdictName, ...] = ("wrong", "misprint", "unreadable")
 #: Most reasons of a summary.
 MAX_REASONS = 2
 #: What helps if nothing is judged.
@@ -54,6 +57,9 @@ class FormulaVerdict:
         Number of a notebook's cell, counted from 1; 0 in other documents.
     state
         The numbers of the letters with which the witness can be computed again.
+    basis
+        Of a verdict: the document's own positions, energies or equations, or the options; or a
+        known system that fits its formulas. Empty if the report was the basis, or nothing.
     """
 
     line: int
@@ -69,6 +75,7 @@ class FormulaVerdict:
     cell: int = 0
     wrong_spans: tuple[Span, ...] = ()
     state: str = ""
+    basis: Literal["document", "known system", ""] = ""
 
 
 @dataclass(frozen=True)
