@@ -295,6 +295,11 @@ def test_pages_are_closed_whatever_the_document_is(tmp_path: Path, text: str) ->
     assert result.count('<li class="wrong"') == 1
 
 
+def test_definitions_of_macros_are_not_shown(tmp_path: Path) -> None:
+    read = document(tmp_path, "$$\\newcommand{\\q}{\\theta}$$ text $\\newcommand{\\r}{r}$", "a.md")
+    assert "newcommand" not in page([(judged(read), read)])
+
+
 def test_marks_state_what_verdicts_rest_on(tmp_path: Path) -> None:
     read = document(tmp_path, "$$x = 1$$ $$y = 1$$ $$z = 1$$", "a.md")
     rows = [("x = 1", {"basis": "document"}), ("y = 1", {"basis": "known system"}), ("z = 1", {})]

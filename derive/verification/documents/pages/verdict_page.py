@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TypeAlias, get_args
 
 from derive.reading.document import CodeCell, Display, Document
+from derive.reading.formats.tex import DEFINITION
 from derive.reading.latex.display_reader import Macro, formulas, macros_of
 from derive.reading.latex.tree import Span, Statement
 from derive.reading.prose import FormulaMarkup, prose
@@ -106,6 +107,8 @@ def _text(verdicts: DocumentVerdicts, document: Document, macros: Macros) -> str
     def formula(display: Display) -> FormulaMarkup:
         start, end = display.extent
         own = taken(lambda one: start <= one.span[0] < end)
+        if not own and not re.sub(DEFINITION, "", display.latex).strip():
+            return FormulaMarkup("")
         if not display.is_inline:
             return FormulaMarkup(_items(own, macros) or _math(display.latex, macros))
         whole = ", ".join(_statements(display.latex, macros))
