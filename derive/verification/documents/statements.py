@@ -10,6 +10,7 @@ from derive.reading.latex.tree import (
     Letter,
     Matrix,
     Node,
+    Number,
     Product,
     Span,
     Statement,
@@ -129,6 +130,8 @@ def translated(occurrences: Sequence[Occurrence]) -> Translated:
 
 def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
     sides, relations = occurrence.sides, occurrence.relations
+    if any(map(_is_at_one_time, sides)):
+        raise UntranslatableError("it states a value at one time")
     index = next((one for one in INDICES if has_index(sides, one)), "")
     numbers = range(1, translator.notation.count + 1) if index else (0,)
     for number in numbers:
@@ -175,6 +178,15 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         min(count, 9),
         primed and not dotted,
     )
+
+
+def _is_at_one_time(side: Node) -> bool:
+    r"""Whether a side is the value of a function at a time, such as ``\\theta(0)`` of a start."""
+    if not isinstance(side, Application) or len(side.arguments) != 1:
+        return False
+    (argument,) = side.arguments
+    is_start = isinstance(argument, Letter) and (argument.name, argument.index) == ("t", "0")
+    return isinstance(argument, Number) or is_start
 
 
 def _is_time(arguments: Sequence[Node]) -> bool:

@@ -63,8 +63,11 @@ class DerivedMatrices:
         """The entries in which a value differs from the likeliest matrix of the system."""
         least: Required | None = None
         for derived in self._of_shape(value.shape) if isinstance(value, sp.MatrixBase) else ():
+            if value.rows == len(self._rows) and has_scaled_rows(self._namespace, value, derived):
+                return [None] * len(value)
             entries = [
-                None if self._agree(a, b) else b for a, b in zip(value, derived, strict=True)
+                None if _agree(self._namespace, a, b) else b
+                for a, b in zip(value, derived, strict=True)
             ]
             wrong = _wrong(entries)
             right = sum(
@@ -73,12 +76,6 @@ class DerivedMatrices:
             if right >= max(1, wrong) and (least is None or wrong < _wrong(least)):
                 least = entries
         return least
-
-    def _agree(self, one: sp.Expr, other: sp.Expr) -> bool:
-        try:
-            return self._namespace.model.context.is_zero(one - other)
-        except (ExpressionError, NotImplementedError):
-            return False
 
     def _of_shape(self, shape: tuple[int, int]) -> list[sp.Matrix]:
         if shape not in self._known:
@@ -122,6 +119,33 @@ class DerivedMatrices:
                 yield A.extract(order, order)
             for columns in combinations(range(B.cols), shape[1]):
                 yield B.extract(order, columns)
+
+
+def has_scaled_rows(
+    namespace: DocumentNamespace, value: sp.MatrixBase, derived: sp.MatrixBase
+) -> bool:
+    """Whether rows are those of the derived matrix, in equations that are divided by a factor.
+
+    The factor is a length or a mass, usually. A row with a single entry shows none.
+    """
+    system = namespace.derivation.system
+    for own, other in zip(value.tolist(), derived.tolist(), strict=True):
+        k = next((k for k, one in enumerate(other) if one != 0), None)
+        if k is None or sum(one != 0 for one in other) < 2 or own[k] == 0:
+            return False
+        factor = sp.cancel(own[k] / other[k])
+        if not factor.free_symbols.isdisjoint((*system.q, *system.qdot)):
+            return False
+        if not all(_agree(namespace, a, factor * b) for a, b in zip(own, other, strict=True)):
+            return False
+    return True
+
+
+def _agree(namespace: DocumentNamespace, one: sp.Expr, other: sp.Expr) -> bool:
+    try:
+        return namespace.model.context.is_zero(one - other)
+    except (ExpressionError, NotImplementedError):
+        return False
 
 
 def _orders(rows: Sequence[int]) -> Iterator[list[int]]:

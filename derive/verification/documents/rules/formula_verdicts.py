@@ -90,6 +90,8 @@ class Judge:
             return plain("context", formula, "it states a value")
         if formula.occurrence in self._given:
             return plain("definition", formula, STATES)
+        if constant := self._constant_of_motion(formula):
+            return plain("definition", formula, f"{constant} is its value along the motion")
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
@@ -169,6 +171,23 @@ class Judge:
             and value.is_number
             and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
         )
+
+    def _constant_of_motion(self, formula: DocumentFormula) -> str:
+        """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.
+
+        No term can be wrong there: such a letter stands for the value of the other side.
+        """
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        if len(formula.sides) != 2 or formula.relations != ("=",):
+            return ""
+        for one, other in (formula.sides, formula.sides[::-1]):
+            if names.get(one.text) in system.params and one.text not in other.text:
+                with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                    value = self._namespace.value(other.text)
+                    moving = value.xreplace(dict(self._model.momenta)).free_symbols
+                    if not moving.isdisjoint(system.qdot) and moving.isdisjoint(system.qddot):
+                        return one.text
+        return ""
 
     def _unknown(self, sides: Sequence[FormulaText]) -> list[str]:
         """The names in some sides of a formula that have no meaning."""

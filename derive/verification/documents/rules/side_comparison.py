@@ -8,6 +8,7 @@ import sympy as sp
 from derive.formulas.expression import Value
 from derive.formulas.syntax import syntax_tree
 from derive.verification.corrections.source_names import SourceNames
+from derive.verification.documents.rules.derived_matrices import has_scaled_rows
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.matrix_terms import MatrixTerms
 from derive.verification.documents.rules.roles import Roles
@@ -21,6 +22,9 @@ from derive.verification.verdict import Correction
 
 #: The largest denominator of a factor that is looked for.
 MAX_DENOMINATOR = 100
+
+#: The note on a mass matrix with other factors in its rows.
+SCALED = "its rows are those of equations with another factor"
 
 
 class SideComparison:
@@ -169,6 +173,9 @@ class SideComparison:
         shapes = [getattr(one, "shape", None) for one in (left, right)]
         if shapes[0] != shapes[1]:
             return plain("context", formula, "it compares quantities of different shapes")
+        is_mass_matrix = self._namespace.letters.quantities.get(first.text) == "mass_matrix"
+        if is_mass_matrix and has_scaled_rows(self._namespace, right, left):
+            return plain("verified", formula, SCALED * (left != right))
         is_displaced = any(name in self._namespace.displacements for name in formula.words)
         undecided = ""
         for index, (a, b) in enumerate(zip(left, right, strict=True)):
