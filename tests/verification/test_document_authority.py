@@ -176,3 +176,97 @@ def test_a_factor_of_the_kinetic_energy_may_have_a_letter_of_energies(
     $$p = m (1 + 4 a^2 x^2)\dot x$$
     $$m(1+4a^2x^2)\ddot x + 4 m a^2 x \dot x^2 + 2 m g a x = 0$$"""
     assert [one.line for one in wrong(judged(tmp_path, text.replace(old, new)))] == lines
+
+
+#: Right statements that a known system could seem to contradict, and how many are judged.
+RIGHT = {
+    "the letter of a constant of the motion": (
+        r"""$$ L = \frac12 m (\dot r^2 + r^2\dot\theta^2) - U(r) $$
+        $$ \frac{d}{dt}(m r^2\dot\theta) = 0, \qquad m r^2\dot\theta = J $$
+        $$ m\ddot r - m r\dot\theta^2 + \frac{dU}{dr} = 0 $$""",
+        3,
+    ),
+    "an angular momentum called L": (
+        r"""$$ T = \frac12\mu(\dot r^2 + r^2\dot\theta^2) $$ and $L = \mu r^2\dot\theta$, so that
+        $$ E = T + V(r) = \frac12\mu\dot r^2 + \frac{L^2}{2\mu r^2} + V(r) = \text{constante} $$""",
+        1,
+    ),
+    "equations divided by lengths": (
+        r"""$$ (m_1 + m_2) l_1\ddot\theta_1 + m_2 l_2\ddot\theta_2\cos(\theta_1 - \theta_2)
+        + m_2 l_2\dot\theta_2^2\sin(\theta_1 - \theta_2) + (m_1 + m_2) g\sin\theta_1 = 0 $$
+        $$ l_2\ddot\theta_2 + l_1\ddot\theta_1\cos(\theta_1 - \theta_2)
+        - l_1\dot\theta_1^2\sin(\theta_1 - \theta_2) + g\sin\theta_2 = 0 $$
+        with the mass matrix $$ \mathbf M = \begin{pmatrix} (m_1 + m_2) l_1 &
+        m_2 l_2\cos(\theta_1 - \theta_2) \\ l_1\cos(\theta_1 - \theta_2) & l_2 \end{pmatrix} $$""",
+        3,
+    ),
+    "a spring that is absent": (
+        r"""$$ m_1\ddot x_1 = -k_1 x_1 - k_2 (x_1 - x_2) - b\dot x_1 $$
+        $$ m_2\ddot x_2 = -k_2 (x_2 - x_1) + u $$""",
+        2,
+    ),
+    "numbers of an example": (
+        r"""$$ T = \frac12(m_1 + m_2)\dot x^2, \quad V = -m_2 g x, \quad
+        L = \frac12(m_1 + m_2)\dot x^2 + m_2 g x $$
+        With 2 kg and 1 kg, $$ \ddot x = \frac{m_2 g}{m_1 + m_2} = \frac{g}{3} = 3.27 $$""",
+        2,
+    ),
+    "a prescribed angle": (
+        r"""$$ \rho = R\sin\theta, \quad \phi = \omega t, \quad z = -R\cos\theta $$
+        $$ T = \frac12 m R^2(\dot\theta^2 + \omega^2\sin^2\theta), \quad V = -m g R\cos\theta $$
+        $$ m R^2\ddot\theta = m R^2\omega^2\sin\theta\cos\theta - m g R\sin\theta $$""",
+        1,
+    ),
+    "the state at the start": (
+        r"""$$ m l^2\ddot\theta + c\dot\theta - m g l\sin\theta = 0 $$
+        with $$ \theta(0) = \theta_0, \qquad \dot\theta(0) = \dot\theta_0 . $$""",
+        1,
+    ),
+    "other canonical coordinates": (
+        r"""$$ H = \frac{p^2}{2m} + m g q, \quad \dot q = \frac pm, \quad \dot p = -m g $$
+        $$ \dot Q = \frac{\partial K}{\partial P} = 1, \qquad
+        \dot P = -\frac{\partial K}{\partial Q} = 0 $$""",
+        0,
+    ),
+    "a relation at the end of a row and at the start of the next": (
+        r"""$$ T = \frac12 m \dot x^2, \quad V = \frac12 k x^2 $$
+        $$ \begin{aligned} E &= T + V = \\ &= \frac12 m\dot x^2 + \frac12 k x^2 \end{aligned} $$""",
+        1,
+    ),
+    "a chain that ends with a new letter": (
+        r"""$$ T = \frac12 I_1(\dot\theta^2 + \dot\phi^2\sin^2\theta)
+        + \frac12 I_3(\dot\psi + \dot\phi\cos\theta)^2, \quad V = M g l\cos\theta $$
+        $$ p_\psi = \frac{\partial\mathcal L}{\partial\dot\psi}
+        = I_3(\dot\psi + \dot\phi\cos\theta) = L_3 $$""",
+        1,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_right_statements_of_usual_kinds_are_not_accused(tmp_path: Path, name: str) -> None:
+    text, least = RIGHT[name]
+    formulas = judged(tmp_path, text)
+    assert wrong(formulas) == []
+    assert not any(one.verdict == "unreadable" for one in formulas)
+    assert sum(one.verdict in ("verified", "equivalent") for one in formulas) >= least
+
+
+#: The same with a slip, where another statement decides.
+SLIPS = {
+    "the letter of a constant of the motion": (r"- m r\dot\theta^2", r"- m r^2\dot\theta^2"),
+    "equations divided by lengths": (r"+ g\sin\theta_2", r"- g\sin\theta_2"),
+    "a spring that is absent": (r"- k_2 (x_1 - x_2)", r"+ k_2 (x_1 - x_2)"),
+    "numbers of an example": (r"= \frac{m_2 g}", r"= \frac{m_1 g}"),
+    "a prescribed angle": (r"= m R^2\omega^2", r"= 2 m R^2\omega^2"),
+}
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_slips_beside_them_are_found_or_left_open(tmp_path: Path, name: str) -> None:
+    right, slip = SLIPS[name]
+    formulas = judged(tmp_path, RIGHT[name][0].replace(right, slip))
+    before = judged(tmp_path, RIGHT[name][0])
+    changed = [one for one, own in zip(formulas, before, strict=True) if one.verdict != own.verdict]
+    assert changed
+    assert all(slip.split()[-1] in one.latex for one in wrong(formulas))

@@ -89,7 +89,7 @@ def test_json_has_the_formulas_of_each_document(
     assert "sin" in third["correction"]
     assert set(third) == {
         "line", "display", "latex", "verdict", "wrong_term", "correction", "witness", "state",
-            "note",
+        "basis", "note",
     }  # fmt: skip
 
 

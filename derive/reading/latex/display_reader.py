@@ -114,17 +114,24 @@ def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
 def _sides(tokens: list[Token]) -> tuple[list[list[Token]], list[str]]:
     partner = pairs(tokens)
     sides: list[list[Token]] = [[]]
-    relations = []
+    relations: list[str] = []
     at = 0
     while at < len(tokens):
         end = max(at, partner.get(at, at))
-        if tokens[at].kind == "relation":
+        is_repeated = relations[-1:] == [tokens[at].text] and not _is_visible(sides[-1])
+        if tokens[at].kind == "relation" and is_repeated:
+            pass  # at the end of a row and at the start of the next one
+        elif tokens[at].kind == "relation":
             relations.append(tokens[at].text)
             sides.append([])
         else:
             sides[-1] += tokens[at : end + 1]
         at = end + 1
     return sides, relations
+
+
+def _is_visible(tokens: list[Token]) -> bool:
+    return any(token.kind not in ("space", "gap") for token in tokens)
 
 
 def _span(tokens: list[Token], whole: Span) -> Span:
@@ -135,7 +142,7 @@ def _span(tokens: list[Token], whole: Span) -> Span:
 
 
 def _tree(tokens: list[Token]) -> Node:
-    if all(token.kind in ("space", "gap") for token in tokens):
+    if not _is_visible(tokens):
         raise UnreadError("a side of a relation is missing")
     lark, parser = _parser()
     try:

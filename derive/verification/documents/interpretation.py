@@ -114,10 +114,12 @@ def _best(
         if any(match.is_stated_by_positions for match in result):
             break
     supported = [match for match in matches if not least or _is_supported(match, least)]
-    # the first of several with the same score and basis
-    best = max(
-        supported, key=lambda one: (one.score, BASES.index(one.candidate.basis)), default=None
-    )
+
+    def rank(match: Match) -> tuple[float, int]:
+        has_absent_parts = bool(match.candidate.numbers)
+        return match.score, -1 if has_absent_parts else BASES.index(match.candidate.basis)
+
+    best = max(supported, key=rank, default=None)  # the first of several with the same rank
     if best is None:
         return Interpretation(letters, None)
     best, is_decided = _with_fewest_slips(best, matches, statements, letters)

@@ -76,7 +76,15 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
         candidate = found.match.candidate
         judge = judge_of(part, found.letters, candidate)
         titles.append(candidate.title)
-        verdicts = [*weighed(judge.verdicts(remaining), candidate, found.doubts, hints is not None)]
+        verdicts = [
+            *weighed(
+                judge.verdicts(remaining),
+                candidate,
+                found.doubts,
+                hints is not None,
+                has_rivals=bool(found.rivals),
+            )
+        ]
         conventions.append(convention(candidate))
         others += alternatives(part, found, verdicts, written)
         for formula, result in verdicts:

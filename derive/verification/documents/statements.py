@@ -27,7 +27,7 @@ from derive.verification.documents.text import FormulaText, stem
 
 WORD = re.compile(r"[A-Za-z_]\w*")
 #: Words for quantities that do not change.
-CONSTANT = ("const", "constant", "konst")
+CONSTANT = ("const", "constant", "konst", "konstant", "constante", "costante")
 #: Relations of statements that can hold or not.
 EQUALITIES = ("=", ":=", "~")
 #: Letters that stand for numbers as an index.
@@ -224,5 +224,5 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
             for name, entry in zip(first.entries, side.entries, strict=False):
                 yield name.text, entry.text
     last = formula.sides[-1].text
-    if formula.relations == ("=",) and last.isidentifier():
+    if {*formula.relations} == {"="} and last.isidentifier():
         yield last, formula.sides[0].text

@@ -154,7 +154,7 @@ def candidates(
     for (signs, offsets), order, mapping, forces, friction in islice(choices, most):
         if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
             continue  # the letter of a force of the system
-        stated = _numbers(system, mapping, numbers or {})
+        stated = {**_absent(system, mapping), **_numbers(system, mapping, numbers or {})}
         if numbers is None or stated:
             one = SystemCandidate(system, order, signs, offsets, mapping, forces, friction, stated)
             yield from constrained(one, letters)
@@ -196,6 +196,13 @@ def _numbers(
         for name, kind in kinds.items()
         if numbers and name not in mapping
     }
+
+
+def _absent(system: System, mapping: Mapping[str, str]) -> dict[str, str]:
+    """Zero for springs without a letter, of a document with a letter for another spring."""
+    springs = [p.symbol.name for p in system.parameters if kind_of(p) == "stiffness"]
+    without = [name for name in springs if name not in mapping]
+    return dict.fromkeys(without, "0") if len(without) < len(springs) else {}
 
 
 def _likeliest(*choices: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
@@ -253,7 +260,10 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
 
 
 def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str, str]]:
-    """The letters of parameters of one kind: their own, the same indices, one for all."""
+    """The letters of parameters of one kind: their own, the same indices, one for all.
+
+    Of springs, some can be absent.
+    """
     own = {name: name for name in names if name in letters.parameters}
     usual = letters.of_kind(kind) if kind else list(letters.parameters)
     if len(usual) >= len(names):
@@ -261,6 +271,9 @@ def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str
     else:
         orders = product(usual, repeat=len(names))
     chosen = [dict(zip(names, order, strict=True)) for order in islice(orders, MAX_CHOICES)]
+    if kind == "stiffness" and 0 < len(usual) < len(names):
+        parts = permutations(names, len(usual))
+        chosen += [dict(zip(part, usual, strict=True)) for part in islice(parts, MAX_CHOICES)]
     same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
     chosen.sort(key=lambda one: sum(_index(name) != _index(one[name]) for name in one))
     others = [*chosen, *(one for one in same if one not in chosen)]

@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 
+from derive.formulas.syntax import is_sum, summands, syntax_tree
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -26,6 +27,8 @@ from derive.verification.documents.letters.stated_constraints import (
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import order, stem
 
+#: Letters of momenta.
+MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -44,6 +47,8 @@ def letters_of(
     orders = {one: max(order(name) for name in words if stem(name) == one) for one in stems}
     combined = _combinations(formulas)
     operands = {operand for operand, _ in derivatives.values()}
+    # a function K that is differentiated by a momentum is a Hamiltonian of other coordinates
+    transformed = {one for one, by in derivatives.values() if any(map(MOMENTUM.match, by))}
     subjects = {formula.subject for formula in formulas}
     quantities = {
         one: kind
@@ -51,6 +56,8 @@ def letters_of(
         if (kind := combined.get(one) or _quantity(one))
         and (one in subjects or one in operands or one in combined)
         and not (kind == "kinetic_energy" and _is_constant(one, formulas))
+        and not (kind == "kinetic_energy" and one in transformed)
+        and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }
     written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
     quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
@@ -172,6 +179,18 @@ def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
             order(word) or word in excluded or _quantity(word) or word[0] in "pv" for word in words
         )
     )
+
+
+def _is_momentum(name: str, formulas: Iterable[DocumentFormula]) -> bool:
+    """Whether a name is a product with one velocity, as the momentum L = m r**2 theta_dot."""
+    sides = [side for one in formulas if one.subject == name for side in one.sides[1:]]
+    return bool(sides) and all(_has_one_velocity(side.text) for side in sides)
+
+
+def _has_one_velocity(text: str) -> bool:
+    rates = [word for word in _words(text) if order(word)]
+    is_product = len(summands(tree := syntax_tree(text))) == 1 and not is_sum(tree)
+    return is_product and len(rates) == 1 and f"{rates[0]}**" not in text
 
 
 def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:

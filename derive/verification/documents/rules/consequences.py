@@ -131,6 +131,7 @@ def weighed(
     candidate: SystemCandidate,
     doubts: Mapping[int, frozenset[int]],
     is_stated: bool,
+    has_rivals: bool = False,
 ) -> Iterator[WithVerdict]:
     """Yield the verdicts, with `context` for formulas that are wrong by too weak evidence.
 
@@ -138,7 +139,8 @@ def weighed(
     in the document. It is not if other formulas of the document, which `doubts` has for its number,
     fit the rest as well and agree with it. A system that is known from elsewhere must have a letter
     for each of its parameters, and more formulas that hold than such with more than one wrong term.
-    If it is complete, and several formulas hold and one does not, it decides that this is wrong.
+    If it is complete, and several formulas hold and one does not, it decides that this is wrong,
+    unless it `has_rivals`, with which as many hold.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -146,7 +148,8 @@ def weighed(
     holding = sum(one.verdict.verdict in ("verified", "equivalent") for _, one in results)
     is_known = candidate.basis == "catalogue" and not is_stated
     is_weak = is_known and (candidate.lacking > 0 or misfits > max(1, holding))
-    decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
+    is_complete = is_known and candidate.lacking == 0 and not has_rivals
+    decides = is_complete and len(wrong) == 1 and holding >= SEVERAL
     is_guess = (
         is_known
         and holding < 2

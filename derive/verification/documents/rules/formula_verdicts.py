@@ -1,5 +1,6 @@
 """Verdicts on the formulas of a document whose letters are known."""
 
+import re
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -9,6 +10,7 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.proofs.zero import vanishes
 from derive.formulas.syntax import ExpressionError
+from derive.system.symbols import TIME
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
@@ -38,6 +40,8 @@ from derive.verification.documents.text import FormulaText
 from derive.verification.engine import joined
 from derive.verification.reference_system import depends_on
 
+#: A number with a decimal point.
+DECIMAL = re.compile(r"\d\.\d")
 #: The note on formulas of which the system follows.
 STATES = "it states the system"
 
@@ -88,6 +92,8 @@ class Judge:
             return plain("context", formula, "it is a step in time")
         if formula.subject in INDICES or self._is_special(formula):
             return plain("context", formula, "it states a value")
+        if self._prescribes(formula):
+            return plain("context", formula, "it prescribes a coordinate")
         if formula.occurrence in self._given:
             return plain("definition", formula, STATES)
         if constant := self._constant_of_motion(formula):
@@ -100,6 +106,10 @@ class Judge:
         if self._unknown(formula.sides[:1]):
             return self._not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
+        if len(formula.sides) > 2 and any(DECIMAL.search(side.text) for side in formula.sides):
+            known = [k for k in known if k == 1]  # others have the numbers of an example
+            if not known:
+                return plain("context", formula, "it states a value")
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
@@ -171,6 +181,21 @@ class Judge:
             and value.is_number
             and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
         )
+
+    def _prescribes(self, formula: DocumentFormula) -> bool:
+        """Whether a formula states a coordinate or its rate as a function of time, as φ = ω t."""
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        if len(formula.sides) != 2 or formula.relations != ("=",):
+            return False
+        first, last = formula.sides
+        if names.get(first.text) not in (*system.q, *system.qdot):
+            return False
+        with suppress(ExpressionError):
+            value = self._namespace.value(last.text)
+            moving = (*system.q, *system.qdot, *system.qddot, *system.p)
+            is_given = TIME in value.free_symbols or not depends_on(value, moving)
+            return not isinstance(value, sp.MatrixBase) and is_given
+        return False
 
     def _constant_of_motion(self, formula: DocumentFormula) -> str:
         """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.
