@@ -46,7 +46,7 @@ KINDS: dict[str, tuple[str, ...]] = {
     "stiffness": ("k", "K", "kappa", "c"),
     "inertia": ("I", "J", "Theta"),
     "frequency": ("omega", "Omega", "w", "nu"),
-    "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta"),
+    "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta", "h"),
     "force": ("F", "u", "f", "tau", "Q"),
 }
 
