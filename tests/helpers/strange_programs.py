@@ -431,7 +431,7 @@ UNREADABLE = """
 def chain(t, y, n):
     theta, omega = y[:n], y[n:]
     a = np.zeros(n)
-    for i in range(n):
+    for i in order:
         for j in range(n):
             a[i] -= omega[j]**2*sin(theta[i] - theta[j])
     return np.concatenate([omega, a])

@@ -11,6 +11,8 @@ FindingKind: TypeAlias = Literal[
     "explicit_euler",
     "semi_implicit_euler",
     "mixed_update",
+    "leapfrog",
+    "verlet",
     "runge_kutta",
     "library",
     "frame_step",

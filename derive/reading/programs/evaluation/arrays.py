@@ -1,7 +1,9 @@
 """Operations on arrays, entry by entry, as far as their entries are known."""
 
 from collections.abc import Sequence
+from functools import reduce
 
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.syntax.trees import (
     Array,
@@ -21,6 +23,9 @@ def combined(
     if operator == "transpose" and not is_array(operands[0]):
         return operands[0]  # a number, or an array in one direction
     if not any(map(is_array, operands)):
+        if operator in ("+", "-") and len(operands) == 2 and number(operands[0]) == 0:
+            rest = operands[1]
+            return rest if operator == "+" else OperatorExpression(line, "-", (rest,))
         return OperatorExpression(line, operator, tuple(operands))
     values = [Array(one.line, entries(one) or ()) if is_array(one) else one for one in operands]
     if operator == "transpose":
@@ -28,7 +33,8 @@ def combined(
     if len(values) == 1:
         return _each(line, operator, values, language)
     left, right = values
-    if operator == "@" or (operator == "*" and language.has_matrix_products and is_square(left)):
+    is_matrix = is_square(left) or _is_inverse(left)
+    if operator == "@" or (operator == "*" and language.has_matrix_products and is_matrix):
         return product(line, left, right, language)
     if operator in ("+", "-", "*", "/", "**"):
         return _each(line, operator, values, language)
@@ -45,6 +51,10 @@ def is_square(tree: Expression) -> bool:
     return isinstance(tree, Array) and all(
         isinstance(row, Array) and len(row.items) == len(tree.items) for row in tree.items
     )
+
+
+def _is_inverse(tree: Expression) -> bool:
+    return isinstance(tree, OperatorExpression) and tree.operator == "inverse"
 
 
 def entries(tree: Expression) -> tuple[Expression, ...] | None:
@@ -90,7 +100,7 @@ def transposed(tree: Expression) -> Expression:
 
 def product(line: int, left: Expression, right: Expression, language: Language) -> Expression:
     """The product of a matrix and a column, or of two columns."""
-    if isinstance(left, OperatorExpression) and left.operator == "inverse":
+    if isinstance(left, OperatorExpression) and _is_inverse(left):
         return OperatorExpression(line, "solve", (left.operands[0], flat(right)))
     right = flat(right)
     if is_square(left) and isinstance(left, Array) and isinstance(right, Array):
@@ -106,10 +116,12 @@ def _dot(line: int, left: Expression, right: Array, language: Language) -> Expre
     terms = [
         combined(line, "*", pair, language) for pair in zip(left.items, right.items, strict=True)
     ]
-    total = terms[0]
-    for term in terms[1:]:
-        total = OperatorExpression(line, "+", (total, term))
-    return total
+    return added(line, terms)
+
+
+def added(line: int, terms: Sequence[Expression]) -> Expression:
+    """The sum of several terms."""
+    return reduce(lambda a, b: OperatorExpression(line, "+", (a, b)), terms)
 
 
 def _each(line: int, operator: str, values: Sequence[Expression], language: Language) -> Expression:

@@ -6,6 +6,7 @@ from derive.reading.programs.evaluation.array_functions import of_arrays, of_ent
 from derive.reading.programs.evaluation.context import APPENDING, ProgramContext, assigned
 from derive.reading.programs.evaluation.elementwise import mapped
 from derive.reading.programs.evaluation.mathematics import split
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.values import Values, root
 from derive.reading.programs.syntax.code import Definition, Lambda, Return, Statement
 from derive.reading.programs.syntax.trees import (
@@ -70,7 +71,7 @@ class Calls(Values):
         self.calls.append(made)
         if (function := self._function(call.function, path)) is not None:
             return self._inlined(made, function, call.arguments)
-        if self._is_entry(call, path):
+        if self._is_entry(call, path, arguments):
             return self.value(Item(call.line, call.function, call.arguments))
         if (value := of_entries(call.line, path, arguments)) is not None:
             return value
@@ -93,9 +94,12 @@ class Calls(Values):
         function = call.function
         return self.value(function.base) if isinstance(function, Member) else None
 
-    def _is_entry(self, call: FunctionCall, path: str) -> bool:
+    def _is_entry(self, call: FunctionCall, path: str, arguments: tuple[Expression, ...]) -> bool:
         """Whether round brackets contain an index."""
-        if not self.context.language.has_round_indices or not isinstance(call.function, Name):
+        language = self.context.language
+        has_numbers = len(arguments) > 0 and all(number(one) is not None for one in arguments)
+        is_possible = language.has_round_indices or (language.has_numbered_entries and has_numbers)
+        if not is_possible or not isinstance(call.function, Name):
             return False
         return path in self.context.variables or path in self.parameters
 
@@ -131,6 +135,7 @@ class Calls(Values):
             elif name in named:
                 variables[name] = self.value(named[name])
         callee.fixed = self.context.fixed.get(id(function.body), set())
+        callee.counts = self.context.counts.get(id(function.body), set())
         callee.variables = variables
         callee.run(function.body)
         self.calls += callee.calls

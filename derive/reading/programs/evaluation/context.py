@@ -30,6 +30,10 @@ class ProgramContext:
     functions: dict[str, list[Definition]] = field(default_factory=dict)
     #: The names that have one numeric value in a function, by the identity of its statements.
     fixed: dict[int, set[str]] = field(default_factory=dict)
+    #: The bounds of loops over bodies in a function, by the identity of its statements.
+    counts: dict[int, set[str]] = field(default_factory=dict)
+    #: Lengths of arrays with an entry for each body.
+    lengths: set[int] = field(default_factory=set)
     #: The values of those with one value in the whole program.
     constants: dict[str, Expression] = field(default_factory=dict)
     #: Names that are assigned anywhere.

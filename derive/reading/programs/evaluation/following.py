@@ -7,8 +7,9 @@ from typing import Self
 from derive.reading.programs.evaluation.arrays import entries, flat
 from derive.reading.programs.evaluation.calls import CONDITION, Calls, VariableValue
 from derive.reading.programs.evaluation.context import ProgramContext, assigned, static_path
+from derive.reading.programs.evaluation.counted_loops import BODIES
 from derive.reading.programs.evaluation.elementwise import elementwise
-from derive.reading.programs.evaluation.numeric_values import number
+from derive.reading.programs.evaluation.numeric_values import constant, number
 from derive.reading.programs.evaluation.values import whole
 from derive.reading.programs.syntax.code import (
     Assignment,
@@ -91,7 +92,11 @@ class Follower(Calls):
         elif isinstance(target, Item) and any(isinstance(i, Slice) for i in target.indices):
             self._assign_range(line, target, value)
         elif self._is_constant(target, value):
+            if array := self._letters(line, target, value):
+                self.variables[static_path(target)] = array
             return  # it stays a letter
+        elif static_path(target) in self.counts and isinstance(target, Name | Member):
+            return
         elif path := self.place(target):
             if self._is_input(value):
                 value = Name(line, path)
@@ -106,7 +111,16 @@ class Follower(Calls):
 
     def _is_constant(self, target: Expression, value: Expression) -> bool:
         is_known = static_path(target) in self.fixed
-        return is_known and isinstance(target, Name | Member) and number(value) is not None
+        return is_known and isinstance(target, Name | Member) and constant(value) is not None
+
+    def _letters(self, line: int, target: Expression, value: Expression) -> Array | None:
+        """An array of numbers as entries with names, one for each of the bodies that are read."""
+        items, first = entries(value), self.context.language.first_index
+        if items is None:
+            return None
+        count = BODIES if len(items) in self.context.lengths else len(items)
+        path = static_path(target)
+        return Array(line, tuple(Name(line, f"{path}[{i + first}]") for i in range(count)))
 
     def _open_array(self, target: Item) -> None:
         """Keep the entries of an array one by one, so that one of them can change."""
@@ -134,6 +148,8 @@ class Follower(Calls):
             return items
         if isinstance(value, Name):
             return self.named_entries(value.line, value.path, 0, count)
+        if isinstance(value, FunctionCall) and value.function == Name(0, "deal"):  # of MATLAB
+            return [Name(value.line, static_path(one)) for one in target.items]
         if isinstance(value, FunctionCall):
             numbers = [NumberLiteral(value.line, str(i)) for i in range(count)]
             return [Item(value.line, value, (number,)) for number in numbers]
@@ -177,6 +193,17 @@ class Follower(Calls):
         self.variables = merged
 
     def _loop(self, one: Loop) -> None:
+        indices = self.range(*one.bounds) if one.bounds else None
+        if indices is not None:
+            before = self.variables.get(one.variable)
+            self.indices[one.variable] = indices.stop
+            for index in indices:
+                self.variables[one.variable] = NumberLiteral(one.line, str(index))
+                self.run(one.body)
+            del self.variables[one.variable], self.indices[one.variable]
+            if before is not None:
+                self.variables[one.variable] = before
+            return
         if (body := elementwise(one)) is not None:
             self.run(body)
             return

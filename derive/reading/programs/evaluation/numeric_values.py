@@ -4,6 +4,7 @@ import math
 from contextlib import suppress
 
 from derive.reading.programs.syntax.trees import (
+    Array,
     Expression,
     Name,
     NumberLiteral,
@@ -30,6 +31,15 @@ def number(tree: Expression) -> float | None:
                 with suppress(ArithmeticError, TypeError, ValueError):
                     return combined(operator, a, b)
     return None
+
+
+def constant(tree: Expression) -> float | tuple[float, ...] | None:
+    """The value of a number, or of an array of some; None for others."""
+    value = tree.value if isinstance(tree, Result) else tree
+    if isinstance(value, Array) and value.items:
+        numbers = tuple(n for one in value.items if (n := number(one)) is not None)
+        return numbers if len(numbers) == len(value.items) else None
+    return number(tree)
 
 
 def combined(operator: str, a: float, b: float) -> float:

@@ -1,7 +1,10 @@
 """Values of expressions in the names that a function starts with."""
 
+from collections.abc import Mapping
+
 from derive.reading.programs.evaluation.arrays import combined, entries, flat
 from derive.reading.programs.evaluation.context import ProgramContext
+from derive.reading.programs.evaluation.counted_loops import BODIES, bound, integer, mentions
 from derive.reading.programs.evaluation.mathematics import constant
 from derive.reading.programs.syntax.code import Lambda
 from derive.reading.programs.syntax.formula_text import UnwrittenError, plain
@@ -10,6 +13,7 @@ from derive.reading.programs.syntax.trees import (
     MAX_SIZE,
     Array,
     Choice,
+    Comprehension,
     Expression,
     FunctionCall,
     Item,
@@ -36,6 +40,9 @@ class Values:
         #: Arrays that a caller passes, which the function changes.
         self.references: dict[str, str] = {}
         self._open: set[str] = set()
+        #: Bounds of loops over bodies, and the indices of those that are followed, with their ends.
+        self.counts: set[str] = set()
+        self.indices: dict[str, int] = {}
 
     def value(self, tree: Expression) -> Expression:
         """The value of an expression."""
@@ -64,7 +71,26 @@ class Values:
                 return tree
             case Record() | Choice():
                 return replaced(tree, tuple(map(self.value, tree.parts)))
+            case Comprehension():
+                return self._listed(tree)
         raise AssertionError(tree)
+
+    def _listed(self, tree: Comprehension) -> Expression:
+        values, before = list[Expression](), {**self.variables}
+        if (indices := self.range(tree.lower, tree.upper)) is None:
+            return Opaque(tree.line, "a comprehension is not followed")
+        for index in indices:
+            self.variables[tree.variable] = NumberLiteral(tree.line, str(index))
+            values.append(self.value(tree.element))
+        self.variables = before
+        return Array(tree.line, tuple(values))
+
+    def range(self, lower: Expression, upper: Expression) -> range | None:
+        """The indices of a loop over bodies; None if they are not known, or for another loop."""
+        if bound(upper) not in self.counts and not mentions(lower, self.indices):
+            return None
+        first, end = (integer(self.value(one)) for one in (lower, upper))
+        return None if first is None or end is None else range(first, end)
 
     def called(self, call: FunctionCall) -> Expression:
         """The value of a call."""
@@ -73,9 +99,12 @@ class Values:
     def variable(self, line: int, path: str) -> Expression:
         """The value of a variable, or of an entry or member of one."""
         if path in self.variables:
-            return self.variables[path]
+            known = self.variables[path]
+            return (self._collected(line, path) if is_zeros(known) else None) or known
         if (array := self._collected(line, path)) is not None:
             return array
+        if path in self.counts:
+            return NumberLiteral(line, str(BODIES))
         if (value := constant(line, path)) is not None:
             return value
         shared = self.context.shared.get(path)
@@ -92,14 +121,22 @@ class Values:
 
     def _collected(self, line: int, path: str) -> Expression | None:
         """The array of which the entries were assigned one by one."""
-        result = {}
+        result, rows = dict[int, Expression](), dict[int, dict[int, Expression]]()
         first = self.context.language.first_index
-        for key in self.variables:
-            if key.startswith(f"{path}[") and key[len(path) + 1 : -1].isdigit():
-                result[int(key[len(path) + 1 : -1]) - first] = self.variables[key]
-        if result and sorted(result) == list(range(len(result))):
-            return Array(line, tuple(result[i] for i in range(len(result))))
-        return None
+        for key, value in self.variables.items():
+            if not key.startswith(f"{path}["):
+                continue
+            match [*map(whole, key[len(path) + 1 : -1].replace("][", ",").split(","))]:
+                case [int(index)]:
+                    result[index - first] = value
+                case [int(row), int(column)]:
+                    rows.setdefault(row - first, {})[column - first] = value
+        if rows:
+            for row, value in result.items():  # of the first column
+                rows.setdefault(row, {})[0] = value
+            arrays = {i: _array(line, row) for i, row in rows.items()}
+            result = {i: one for i, one in arrays.items() if one}
+        return _array(line, result)
 
     def place(self, tree: Expression) -> str | None:
         """The name of a variable, an entry or a member; None for values without a name."""
@@ -125,6 +162,11 @@ class Values:
         is_column = len(values) == 2 and not isinstance(values[1], Slice)
         if is_column and NumberLiteral(0, str(self.context.language.first_index)) == values[1]:
             values.pop()  # of a column as a matrix
+        numbers = map(integer, values)
+        values = [
+            one if index is None or index < 0 else NumberLiteral(one.line, str(index))
+            for one, index in zip(values, numbers, strict=True)
+        ]
         try:
             return plain(values[0]) if len(values) == 1 else ",".join(map(plain, values))
         except UnwrittenError:
@@ -176,6 +218,8 @@ class Values:
         if (bounds.lower and lower is None) or (bounds.upper and upper is None):
             return Opaque(tree.line, "a range of indices is not followed")
         end = 2 * start if upper is None else upper - language.first_index
+        if upper is None and bounds.lower and mentions(bounds.lower, self.indices):
+            end = BODIES
         end += upper is not None and not language.is_half_open
         if (items := entries(base)) is not None:
             return Array(tree.line, items[start : None if upper is None else end])
@@ -187,6 +231,13 @@ class Values:
         """The entries of an array that has a name, from one up to another, counted from 0."""
         first = self.context.language.first_index
         return tuple(self.variable(line, f"{path}[{i + first}]") for i in range(start, end))
+
+
+def _array(line: int, found: Mapping[int, Expression]) -> Array | None:
+    """The array of entries by their indices; None if some are missing."""
+    if found and sorted(found) == list(range(len(found))):
+        return Array(line, tuple(found[i] for i in range(len(found))))
+    return None
 
 
 def _field(tree: Expression, name: str) -> Expression | None:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from derive.reading.programs.evaluation.calls import VariableValue
 from derive.reading.programs.syntax.formula_text import cleaned
-from derive.reading.programs.syntax.trees import Name
+from derive.reading.programs.syntax.trees import Expression, Name
 
 #: Objects that stand for the program's own values.
 OWN = ("self.", "this.")
@@ -16,9 +16,11 @@ class Names:
     def __init__(self, steps: Iterable[VariableValue]) -> None:
         #: Other names of entries, such as theta of ``theta = y[0]``.
         self._others: dict[str, str] = {}
+        first: dict[str, Expression] = {}
         for step in steps:
-            if isinstance(step.value, Name) and "[" in step.value.path and "[" not in step.path:
-                self._others.setdefault(step.value.path, step.path)
+            value = first.setdefault(step.path, step.value)
+            if isinstance(value, Name) and "[" in value.path and "[" not in step.path:
+                self._others.setdefault(value.path, step.path)
         self.given: dict[str, str] = {"pi": "pi"}
 
     def define(self, path: str, name: str) -> None:

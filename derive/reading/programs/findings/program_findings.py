@@ -126,9 +126,11 @@ class Findings:
             q = pair.coordinate.variable
             value, used[q] = updates.acceleration(pair)
             result.append((q, pair.velocity.variable, value))
+        result += [(q, "", value) for q, value in updates.recurrences]
         for q, v, _ in result:
             names.define(q, names(without_time(q)))
-            names.define(v, f"{names(q)}_dot")
+            if v:
+                names.define(v, f"{names(q)}_dot")
         for q, v, value in result:
             equations.acceleration(value.line, q, v, value)
         values = [value for *_, value in result]
@@ -136,6 +138,12 @@ class Findings:
         self._findings += euler_findings(
             pairs, used, region, self._context.constants, names.in_program
         )
+        self._findings += [
+            Finding(
+                value.line, "verlet", region.name, f"Verlet's method without the velocity of {q}"
+            )
+            for q, value in updates.recurrences
+        ]
         angular = angles(values) & {q for q, *_ in result}
         for path, start in self._starts:
             if path in angular:

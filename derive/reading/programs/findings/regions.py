@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from derive.reading.programs.evaluation.arrays import entries
 from derive.reading.programs.evaluation.context import (
     ProgramContext,
     assigned,
@@ -11,8 +12,9 @@ from derive.reading.programs.evaluation.context import (
     static_path,
     targets,
 )
+from derive.reading.programs.evaluation.counted_loops import counts, integer
 from derive.reading.programs.evaluation.following import Follower
-from derive.reading.programs.evaluation.numeric_values import number
+from derive.reading.programs.evaluation.numeric_values import constant, number
 from derive.reading.programs.evaluation.values import root
 from derive.reading.programs.findings.runge_kutta import called
 from derive.reading.programs.syntax.code import (
@@ -32,6 +34,9 @@ from derive.reading.programs.syntax.trees import (
     Opaque,
     replaced,
 )
+
+#: Entries of the longest vector that is followed as one in a loop.
+MAX_VECTOR = 3
 
 
 @dataclass(frozen=True)
@@ -54,16 +59,24 @@ def prepare(context: ProgramContext, body: tuple[Statement, ...]) -> None:
             context.functions.setdefault(one.name, []).append(one)
             context.variables.discard(one.name)
     values: dict[str, list[Expression]] = {}
-    counts: Counter[str] = Counter()
+    assignments: Counter[str] = Counter()
     for namespace in (body, *(one.body for one in everything if isinstance(one, Definition))):
         fixed = _fixed(context, namespace)
         context.fixed[id(namespace)] = {*fixed}
-        counts.update({*assigned(namespace)})
+        context.counts[id(namespace)] = counts(namespace)
+        assignments.update({*assigned(namespace)})
         for path, value in fixed.items():
             values.setdefault(path, []).append(value)
+    bounds = {bound for result in context.counts.values() for bound in result}
     for path, result in values.items():
-        if len(result) == counts[path] and len({number(value) for value in result}) == 1:
-            context.constants[path] = result[0]
+        if len(result) == assignments[path] and len({constant(value) for value in result}) == 1:
+            items, first = entries(result[0]), context.language.first_index
+            entry = {f"{path}[{i + first}]": one for i, one in enumerate(items or ())}
+            context.constants |= entry or {path: result[0]}
+            if f"len({path})" in bounds:
+                context.lengths.add(len(entry))
+    sizes = (integer(context.constants.get(path)) for path in bounds)
+    context.lengths |= {size for size in sizes if size}
 
 
 def _fixed(context: ProgramContext, body: tuple[Statement, ...]) -> dict[str, Expression]:
@@ -83,7 +96,7 @@ def _fixed(context: ProgramContext, body: tuple[Statement, ...]) -> dict[str, Ex
                 values.setdefault(static_path(target), []).append(value if is_whole else None)
     fixed = {}
     for path, result in values.items():
-        numbers = {number(value) if value is not None else None for value in result}
+        numbers = {constant(value) if value is not None else None for value in result}
         if path and result[0] is not None and len(numbers) == 1 and None not in numbers:
             fixed[path] = result[0]
     return fixed
@@ -96,6 +109,8 @@ def regions(context: ProgramContext, body: tuple[Statement, ...]) -> list[Region
     for region in result:
         own = {one.name for one in region.definition.parameters}
         for path, value in region.follower.variables.items():
+            if region.is_loop and isinstance(value, Name):
+                continue  # a value before
             if path in once - own and _is_formula(value) and not _contains(value, path):
                 context.shared[path] = _elsewhere(value, own, region.definition.name)
     return [*_regions(context, body)]
@@ -187,6 +202,7 @@ def _followed(
     follower = Follower(context, definition.owner)
     follower.parameters = {one.name for one in definition.parameters}
     follower.fixed = context.fixed.get(id(namespace), set())
+    follower.counts = context.counts.get(id(namespace), set())
     follower.variables = variables
     follower.run(definition.body)
     name = definition.name
@@ -221,8 +237,15 @@ def _kept(
                 path = static_path(part)
                 if is_own or isinstance(before.get(path), Array):
                     whole.add(path)
-    return {
+    kept = {
         path: value
         for path, value in before.items()
         if path not in whole and (root(path) not in changed or "." in path)
     }
+    first = context.language.first_index
+    for path in whole & {*before}:  # vectors that change keep their length
+        items = entries(before[path]) or ()
+        if 1 < len(items) <= MAX_VECTOR and not any(map(entries, items)):
+            names = (Name(loop.line, f"{path}[{i + first}]") for i in range(len(items)))
+            kept[path] = Array(loop.line, tuple(names))
+    return kept

@@ -103,6 +103,10 @@ def euler_findings(
         moved = new & coordinates
         if pair.has_other_terms:
             continue
+        if pair.uses_middle_velocity:
+            text = f"leapfrog: {rate} and {x} are changed in turn, one of them in two halves"
+            yield Finding(q.line, "leapfrog", function, text)
+            continue
         if pair.uses_new_velocity:
             text = f"semi-implicit Euler: {rate} first (line {v.line}), then {x}"
             yield Finding(q.line, "semi_implicit_euler", function, text)

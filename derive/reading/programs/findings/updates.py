@@ -4,14 +4,17 @@ A coordinate grows by the product of a velocity and the step size, a velocity by
 acceleration. Whether old or new values are used follows from the values themselves.
 """
 
+import math
 import re
-from collections.abc import Iterator, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 
 from derive.reading.programs.evaluation.calls import VariableValue
 from derive.reading.programs.evaluation.following import Follower
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.sums import Term, factors, inner, product, terms, total
+from derive.reading.programs.findings.recurrences import recurrence
 from derive.reading.programs.syntax.trees import (
     Array,
     Choice,
@@ -49,6 +52,8 @@ class Pair:
     velocity: Update
     step: Expression | None  # the step size; None if no factor is written
     uses_new_velocity: bool
+    #: Whether the velocity is one after a part of its update, as in the leapfrog method.
+    uses_middle_velocity: bool
     #: Whether the coordinate grows by more than its velocity before or after the step.
     has_other_terms: bool
 
@@ -70,13 +75,35 @@ class Updates:
         used = {path for value in values for path in names(value)}
         self._old = {step.path: previous(step.path, used) for step in self._steps}
         #: Values that variables take, by identity.
-        self._owners = {
-            id(value): self._old[step.path]
-            for step in self._steps
-            if not isinstance(value := self._chosen(step.value, step.path), Name | NumberLiteral)
-        }
+        self._owners: dict[int, str] = {}
+        for step in self._steps:
+            value = self._chosen(step.value, step.path)
+            is_copy = id(value) in self._owners and LAST.fullmatch(step.path)
+            if not isinstance(value, Name | NumberLiteral) and not is_copy:
+                self._owners[id(value)] = self._old[step.path]
         result = (self._update(path, value) for path, value in final.items())
         self.updates: dict[str, Update] = {one.variable: one for one in result if one}
+        self._final = {id(value) for value in final.values()}
+        #: Values that are used in the next step, such as accelerations.
+        self._kept: dict[str, Expression] = {}
+        others = {
+            path: self._restored(value, set())
+            for path, value in final.items()
+            if path not in self.updates and value.parts
+        }
+        self._kept = {path: one for path, one in others.items() if path not in {*names(one)}}
+        #: Coordinates that grow by their last change and an acceleration, by Verlet's method.
+        pairs = ((self._old.get(path, path), value) for path, value in final.items())
+        self.recurrences = tuple(
+            (old, acceleration)
+            for old, value in pairs
+            if (acceleration := recurrence(old, value, self._earlier(old, value, final)))
+        )
+
+    def _earlier(self, path: str, value: Expression, final: Mapping[str, Expression]) -> set[str]:
+        """The names of a variable one step before: of an entry, or of a copy."""
+        copies = {other for other, one in final.items() if one == Name(0, path)}
+        return {previous(path, {*names(value)}), *copies} - {path}
 
     def _is_whole(self, tree: Expression) -> bool:
         return id(tree) in self._owners
@@ -100,7 +127,7 @@ class Updates:
             ) == old or earlier == Name(0, old):
                 damping, damping_line, value = factor, value.line, earlier
         line = value.line
-        first = [*terms(value, lambda tree: tree is not value and self._is_whole(tree))]
+        first = [*terms(value, lambda tree: self._owners.get(id(tree), old) != old)]
         own = [one for one in first if one[1] == Name(0, old)]
         if len(own) != 1 or own[0][0] != 1:
             return self._damped(old, line, first)
@@ -129,6 +156,7 @@ class Updates:
             parts = factors(term, self._is_whole)
             for part in parts:
                 velocity, is_new, is_part = self._velocity(inner(part))
+                is_middle = is_new and id(inner(part)) not in self._final
                 if velocity is None or velocity is coordinate or sign < 0:
                     continue
                 others = [one for one in parts if one is not part]
@@ -136,20 +164,33 @@ class Updates:
                     continue
                 step = product(term.line, others) if others else None
                 rest = [one for one in coordinate.increment if one[1] is not term]
+                if step and (more_steps := self._same(rest, velocity)) is not None:
+                    step, rest, is_middle = _whole([(1, step), *more_steps]), [], True
                 more = is_part or bool(rest)
                 for earlier in (name for _, one in rest for name in self._others(one, step)):
                     change = f"the update of {coordinate.variable} has the acceleration {earlier}"
                     self.unread.append((coordinate.line, f"{change} of another step"))
                     return None
-                return Pair(coordinate, velocity, step, is_new, more)
+                return Pair(coordinate, velocity, step, is_new, is_middle, more)
         return None
+
+    def _same(self, increments: list[Term], velocity: Update) -> list[Term] | None:
+        """The step sizes of other changes by the same velocity; None if there are others."""
+        result = []
+        for sign, term in increments:
+            parts = factors(term, self._is_whole)
+            own = [one for one in parts if self._velocity(inner(one))[0] is velocity]
+            if len(own) != 1:
+                return None
+            result.append((sign, product(term.line, [one for one in parts if one is not own[0]])))
+        return result or None
 
     def _others(self, term: Expression, step: Expression | None) -> list[str]:
         """The variables in a term that are no step size: accelerations from before."""
         steps = {*names(step)} if step else set()
         parts = factors(term, self._is_whole)
         result = [one.path for one in parts if isinstance(one, Name)]
-        return [path for path in result if path not in {*steps, "pi"}]
+        return [path for path in result if path not in {*steps, *self._kept, "pi"}]
 
     def _velocity(self, tree: Expression) -> tuple[Update | None, bool, bool]:
         """The variable that a factor is, whether after its update, and whether in between."""
@@ -199,9 +240,23 @@ class Updates:
         if owner is not None and owner in self.updates:
             used.add(owner)
             return Name(tree.line, owner)
+        if isinstance(tree, Name) and tree.path in self._kept:
+            return self._kept[tree.path]
         parts = tuple(self._restored(part, used) for part in tree.parts)
         is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
         return tree if is_same else replaced(tree, parts)
+
+
+def _whole(steps: Sequence[Term]) -> Expression:
+    """The sum of step sizes such as two halves of one."""
+    size, line, rest = 0.0, steps[0][1].line, list[list[Expression]]()
+    for sign, step in steps:
+        parts = factors(step, lambda _: False)
+        size += sign * math.prod(number(one) or 1 for one in parts)
+        rest.append([one for one in parts if number(one) is None])
+    if size == 1 and rest[0] and all(one == rest[0] for one in rest):
+        return product(line, rest[0])
+    return total(line, steps)
 
 
 def _parts(step: VariableValue, follower: Follower) -> list[VariableValue]:

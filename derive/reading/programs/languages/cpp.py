@@ -9,6 +9,8 @@ language = Language(
     other_names=("C",),
     assigns_locals=False,
     has_bare_members=True,
+    has_numbered_entries=True,
+    has_matrix_products=True,
     has_whole_quotients=True,
     roles={
         "translation_unit": "block",
@@ -18,7 +20,7 @@ language = Language(
         "declaration_list": "block",
         "compound_statement": "block",
         "expression_statement": "block",
-        "comma_expression": "block",
+        "comma_expression": "list",
         "namespace_definition": "block",
         "linkage_specification": "block",
         "template_declaration": "block",

@@ -71,6 +71,7 @@ language = Language(
         "juxtaposition_expression": "product",
         "unary_expression": "unary",
         "adjoint_expression": "transpose",
+        "comprehension_expression": "comprehension",
         "vector_expression": "array",
         "tuple_expression": "array",
         "open_tuple": "array",

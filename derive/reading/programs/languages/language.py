@@ -44,6 +44,8 @@ class Language:
     has_whole_quotients: bool = False
     #: Whether y(1) can be an entry of an array.
     has_round_indices: bool = False
+    #: Whether y(1) with numbers is an entry of an array that is a variable.
+    has_numbered_entries: bool = False
     #: Whether a variable that a function assigns without declaration belongs to the function.
     assigns_locals: bool = True
     #: Whether the value of a function is its last expression.

@@ -67,6 +67,8 @@ language = Language(
         "pattern_list": "array",
         "tuple_pattern": "array",
         "list_pattern": "array",
+        "generator_expression": "comprehension",
+        "list_comprehension": "comprehension",
         "dictionary": "record",
         "pair": "pair",
         "parameters": "parameters",

@@ -54,11 +54,12 @@ class Conditional:
 
 @dataclass(frozen=True)
 class Loop:
-    """A loop; `variable` is empty if it does not count."""
+    """A loop; `variable` is empty if it does not count from `bounds[0]` to before `bounds[1]`."""
 
     line: int
     variable: str
     body: tuple[Statement, ...]
+    bounds: tuple[Expression, Expression] | None = None
 
 
 @dataclass(frozen=True)

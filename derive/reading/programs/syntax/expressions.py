@@ -14,6 +14,7 @@ from derive.reading.programs.syntax.trees import (
     MAX_DEPTH,
     Array,
     Choice,
+    Comprehension,
     Expression,
     FunctionCall,
     Item,
@@ -133,6 +134,9 @@ class ExpressionTranslator:
     def _call_tree(self, node: "Node") -> Expression:
         function, *rest = [one for one in self.children(node) if self.role(one) != "skip"]
         nodes = [one for part in rest for one in self._arguments(part)]
+        if any(one.type == "for_clause" for one in nodes):
+            array = self._comprehension(node, nodes)
+            return FunctionCall(line(node), self.tree(function), (array,))
         keywords = [one for one in nodes if self.role(one) == "keyword"]
         arguments = [one for one in nodes if self.role(one) != "keyword"]
         named = tuple((self.word(k), self.tree(v)) for k, v in map(self._pair, keywords))
@@ -224,6 +228,47 @@ class ExpressionTranslator:
             items = Array(line(node), tuple(one for row in rows for one in row))
             return FunctionCall(line(node), Name(line(node), "vcat"), (items,))
         return Array(line(node), tuple(Array(one.line, row) for row in rows for one in row[:1]))
+
+    def _comprehension_tree(self, node: "Node") -> Expression:
+        return self._comprehension(node, self.children(node))
+
+    def _comprehension(self, node: "Node", children: Sequence["Node"]) -> Expression:
+        """The array of the first child for each value of the index in the others."""
+        element, *clauses = children
+        parts = (self.children(one) if one.type == "for_clause" else [one] for one in clauses)
+        clauses = [one for part in parts for one in part]
+        bounds = self.bounds(clauses[0], clauses[0]) if len(clauses) == 1 else None
+        if bounds is None:
+            return Opaque(line(node), f"{shown(node)!r} is not followed")
+        variable = self.word(self.children(clauses[0])[0])
+        return Comprehension(line(node), self.tree(element), variable, *bounds)
+
+    def bounds(self, node: "Node", header: "Node") -> tuple[Expression, Expression] | None:
+        """The first value of the index of a loop, and the one after the last; None if not known."""
+        condition, given = map(node.child_by_field_name, ("condition", "right"))
+        one = NumberLiteral(line(node), "1")
+        if condition and self.role(condition) == "binary":
+            _, sign, last = [part for part in condition.children if not part.is_extra][:3]
+            first = header
+            while self.children(first) and self.role(first) != "call":
+                first = self.children(first)[-1]
+            end = self.tree(last)
+            if text(sign) == "<=":
+                end = OperatorExpression(line(node), "+", (end, one))
+            return (self.tree(first), end) if text(sign) in ("<", "<=") else None
+        parts = [given] if given else self.children(header)
+        if len(parts) == 1 and not given:  # of Fortran
+            parts = self.children(parts[0])
+        match tuple(map(self.tree, parts[1:] or parts)):
+            case (*_, FunctionCall(function=Name(path="range"), arguments=(end,))):
+                return NumberLiteral(line(node), "0"), end
+            case (*_, FunctionCall(function=Name(path="range"), arguments=(lower, end))):
+                return lower, end
+            case (*_, Slice(lower=Expression() as lower, upper=Expression() as upper)):
+                return lower, OperatorExpression(line(node), "+", (upper, one))
+            case (lower, upper) if len(parts) == 3 and self.role(parts[1]):
+                return lower, OperatorExpression(line(node), "+", (upper, one))
+        return None
 
     def _record_tree(self, node: "Node") -> Expression:
         return Record(line(node), tuple(self._fields(node)))

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from derive.reading.programs.languages.language import Language
 from derive.reading.programs.syntax.code import (
     Assignment,
     Conditional,
@@ -40,12 +41,19 @@ ASSIGNED = re.compile(
     r"([^\W\d][\w.]{0,50})(?:\[[^\]]{0,30}\]|\([^)]{0,30}\))?\s{0,9}[-+*/^]?=(?!=)"
 )
 MAX_FAULT = 5_000
+#: The number of columns in the type of a matrix, such as Matrix2d.
+COLUMNS = re.compile(r"Matrix(\d)[df]?\Z")
 
 
 class StatementTranslator(DefinitionTranslator):
     """Translates statements."""
 
     _blocks = 0
+
+    def __init__(self, language: Language) -> None:
+        super().__init__(language)
+        #: Columns of matrices by their declarations.
+        self._columns: dict[str, int] = {}
 
     def statements(self, nodes: Sequence["Node"]) -> tuple[Statement, ...]:
         """The statements at nodes, with those of blocks among them in one row."""
@@ -71,7 +79,32 @@ class StatementTranslator(DefinitionTranslator):
     def _block_statements(self, node: "Node") -> Iterator[Statement]:
         yield from self.statements(self.children(node))
 
+    def _list_statements(self, node: "Node") -> Iterator[Statement]:
+        """Statements with commas between them, or the entries of a matrix: ``M << a, b, c, d``."""
+        first, *rest = self._listed(node)
+        signs = [text(one) for one in first.children if not one.is_named]
+        if self.role(first) != "binary" or signs != ["<<"]:
+            yield from self.statements([first, *rest])
+            return
+        target, entry = self.children(first)
+        entries = [self.tree(one) for one in (entry, *rest)]
+        n = self._columns.get(text(target), 0)
+        starts = range(0, len(entries), n) if n else ()
+        rows = [Array(line(node), tuple(entries[i : i + n])) for i in starts]
+        array = Array(line(node), tuple(rows or entries))
+        value = array if rows else FunctionCall(array.line, Name(array.line, "vcat"), (array,))
+        yield Assignment(line(node), self.tree(target), "", value)
+
+    def _listed(self, node: "Node") -> list["Node"]:
+        if self.role(node) != "list":
+            return [node]
+        return [one for child in self.children(node) for one in self._listed(child)]
+
     def _declaration_statements(self, node: "Node") -> Iterator[Statement]:
+        kind = node.child_by_field_name("type")
+        if kind and (columns := COLUMNS.search(text(kind))):
+            names = filter(None, map(self._name_in, self.children(node)[1:]))
+            self._columns |= {text(name): int(columns[1]) for name in names}
         for child in self.children(node):
             if self._is_assigned(child):
                 for one in self._statement(child):
@@ -115,6 +148,12 @@ class StatementTranslator(DefinitionTranslator):
             return
         signs = [text(one) for one in node.children if one not in (left, right)]
         operator = next((one[:-1].lstrip(".") for one in signs if one.endswith("=")), "")
+        if self.role(right) == "arguments":  # of a constructor of C++
+            values = self.children(right)
+            array = Array(line(right), self._trees(values))
+            value = self.tree(values[0]) if len(values) == 1 else array
+            yield from self.assigned(line(node), self.tree(left), operator, value)
+            return
         if self.role(right) == "assign":  # a = b = 1
             yield from self._statement(right)
             right = next(one for one in self.children(right) if self.role(one) != "skip")
@@ -148,7 +187,8 @@ class StatementTranslator(DefinitionTranslator):
 
     def _is_function(self, value: Expression) -> bool:
         """Whether ``f(x) = value`` defines a function, not an entry of an array."""
-        return not self.language.has_round_indices
+        language = self.language
+        return not (language.has_round_indices or language.has_numbered_entries)
 
     def _members(
         self, number: int, target: Expression, fields: tuple[tuple[str, Expression], ...]
@@ -207,11 +247,16 @@ class StatementTranslator(DefinitionTranslator):
         body = node.child_by_field_name("body")
         blocks = [one for one in self.children(node) if one.type == "block"]
         nodes = [body] if body else blocks or self._body(node)
-        header = next((one for one in self.children(node) if one not in nodes), None)
-        name = self._first(header, "name") if header else None
-        is_while = "while" in text(node)[:10].lower()
-        variable = "" if is_while or name is None else self.word(name)
-        yield Loop(line(node), variable, self.statements(nodes))
+        headers = [one for one in self.children(node) if self.role(one) == "header"]
+        headers = headers or [one for one in self.children(node) if one not in nodes][:1] or [node]
+        statements = self.statements(nodes)
+        for header in reversed(headers):  # several in one line of Julia
+            name = self._name_in(header) if header != node else None
+            is_while = "while" in text(node)[:10].lower()
+            variable = "" if is_while or name is None else self.word(name)
+            bounds = self.bounds(node, header) if variable else None
+            statements = (Loop(line(node), variable, statements, bounds),)
+        yield from statements
 
 
 def _fault(node: "Node", reason: str) -> Fault:

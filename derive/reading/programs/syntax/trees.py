@@ -138,6 +138,20 @@ class Array(Expression):
 
 
 @dataclass(frozen=True)
+class Comprehension(Expression):
+    """The array of an expression for each value of an index, from `lower` to before `upper`."""
+
+    element: Expression
+    variable: str
+    lower: Expression
+    upper: Expression
+
+    @property
+    def parts(self) -> tuple[Expression, ...]:  # noqa: D102
+        return (self.element, self.lower, self.upper)
+
+
+@dataclass(frozen=True)
 class Record(Expression):
     """Values with names: a dictionary or an object."""
 
@@ -178,6 +192,8 @@ def replaced(tree: Expression, parts: tuple[Expression, ...]) -> Expression:
             return Result(tree.line, tree.call, parts[0])
         case Choice():
             return Choice(tree.line, *parts)
+        case Comprehension():
+            return Comprehension(tree.line, parts[0], tree.variable, *parts[1:])
         case Item():
             return Item(tree.line, parts[0], parts[1:])
         case Member():

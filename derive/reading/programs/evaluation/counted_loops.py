@@ -1,0 +1,116 @@
+"""Loops over bodies: for the equations of any number of bodies, those of two are read.
+
+A name that bounds two nested loops, or a loop and both halves of the state, counts bodies; loops
+over time steps have no such bound.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from derive.reading.programs.evaluation.context import statements, static_path
+from derive.reading.programs.evaluation.numeric_values import number
+from derive.reading.programs.syntax.code import (
+    Assignment,
+    ExpressionStatement,
+    Loop,
+    Return,
+    Statement,
+)
+from derive.reading.programs.syntax.trees import (
+    Comprehension,
+    Expression,
+    FunctionCall,
+    Member,
+    Name,
+    NumberLiteral,
+    OperatorExpression,
+    Slice,
+)
+
+#: The number of bodies of which the equations are read.
+BODIES = 2
+#: The largest number that bounds loops over bodies.
+MAX_BODIES = 4
+#: Functions of the length of an array.
+LENGTHS = {"len", "length", "numel", "size"}
+
+
+def counts(body: tuple[Statement, ...]) -> set[str]:
+    """The bounds that count bodies in a function: names, and lengths such as ``len(m)``."""
+    loops = [one for one in statements(body, inner=False) if isinstance(one, Loop)]
+    bounds = {bound(one.bounds[1]) for one in loops if one.bounds}
+    nested = {
+        key
+        for loop in loops
+        if loop.bounds
+        for key in (bound(loop.bounds[1]),)
+        if key in {*_inner(loop.body)} or key in {*_dependent(loop)}
+    }
+    ranges = [one for one in _trees(body) if isinstance(one, Slice)]
+    lower, upper = (
+        {bound(one.lower) for one in ranges if one.lower},
+        {bound(one.upper) for one in ranges if one.upper},
+    )
+    result = (nested | (lower & upper & bounds)) - {""}
+    return {one for one in result if not one.isdigit() or int(one) <= MAX_BODIES}
+
+
+def bound(tree: Expression) -> str:
+    """The bound of a loop as a text, without the 1 after it; empty for others."""
+    match tree:
+        case NumberLiteral(digits=digits):
+            return digits
+        case OperatorExpression(operator="+", operands=(inner, NumberLiteral(digits="1"))):
+            return bound(inner)
+        case FunctionCall(function=Name(path=name), arguments=(array,)) if name in LENGTHS:
+            return f"len({static_path(array)})"
+        case FunctionCall(function=Member(base=array, name=name), arguments=()) if name in LENGTHS:
+            return f"len({static_path(array)})"
+        case Member(base=array, name="length" | "size"):
+            return f"len({static_path(array)})"
+    return static_path(tree)
+
+
+def integer(tree: Expression | None) -> int | None:
+    """The value of an index; None if it is no whole number."""
+    value = None if tree is None else number(tree)
+    return int(value) if value is not None and value == int(value) else None
+
+
+def mentions(tree: Expression, names: Iterable[str]) -> bool:
+    """Whether an expression contains one of some names."""
+    if isinstance(tree, Name):
+        return tree.path in names
+    return any(mentions(part, names) for part in tree.parts)
+
+
+def _inner(body: tuple[Statement, ...]) -> Iterator[str]:
+    """The bounds of loops and comprehensions in a body."""
+    for one in statements(body, inner=False):
+        if isinstance(one, Loop) and one.bounds:
+            yield bound(one.bounds[1])
+    yield from (bound(one.upper) for one in _trees(body) if isinstance(one, Comprehension))
+
+
+def _dependent(loop: Loop) -> Iterator[str]:
+    """The bound of a loop if ranges that start at its index stand in its body."""
+    assert loop.bounds
+    for one in _trees(loop.body):
+        if isinstance(one, Slice) and one.lower and mentions(one.lower, {loop.variable}):
+            yield bound(loop.bounds[1])
+
+
+def _trees(body: Sequence[Statement]) -> Iterator[Expression]:
+    """All expressions in statements, with their parts."""
+    for one in statements(tuple(body), inner=False):
+        match one:
+            case Assignment(target=target, value=value):
+                yield from _parts(target)
+                yield from _parts(value)
+            case Return(value=Expression() as value) | ExpressionStatement(value=value):
+                yield from _parts(value)
+
+
+def _parts(tree: Expression) -> Iterator[Expression]:
+    yield tree
+    for part in tree.parts:
+        yield from _parts(part)
