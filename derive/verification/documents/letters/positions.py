@@ -22,6 +22,7 @@ from derive.verification.documents.letters.document_system import derivation, va
 from derive.verification.documents.letters.energies import stated_energies
 from derive.verification.documents.letters.letters import KINDS, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.text import order
 
 #: Names of Cartesian components.
 AXES = ("x", "y", "z")
@@ -70,14 +71,14 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[SystemCandid
     """Yield the candidates of a system in the document's own letters: its forces alone vary."""
     names = {symbol.name: name for name in letters.coordinates for symbol in system.q
              if symbol.name == valid_name(name)}  # fmt: skip
-    order = tuple(names[symbol.name] for symbol in system.q)
-    n = len(order)
+    own = tuple(names[symbol.name] for symbol in system.q)
+    n = len(own)
     signs = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
     parameters = {p.name: name for name in letters.parameters for p in system.params
                   if p.name == valid_name(name)}  # fmt: skip
     for forces in loads(letters, "force", n):
         for friction in frictions(letters, n):
-            one = SystemCandidate(system, order, signs, (0,) * n, parameters, forces, friction)
+            one = SystemCandidate(system, own, signs, (0,) * n, parameters, forces, friction)
             yield from constrained(one, letters)
 
 
@@ -91,7 +92,7 @@ def _points(
     moving = {symbols[q] for q in letters.coordinates}
     for formula in formulas:
         for name, text in definitions(formula):
-            if name in known or name in columns:
+            if name in known or name in columns or order(name):
                 continue
             try:
                 value = parse(text, {**namespace, **known})
