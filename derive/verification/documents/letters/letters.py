@@ -55,7 +55,10 @@ PARTS: dict[str, tuple[str, ...]] = {
     "mass": ("mass",),
     "length": ("length",),
     "gravity": ("grav",),
-    "damping": ("damp", "fric"),
+    "stiffness": ("stiff", "spring"),
+    "inertia": ("inertia",),
+    "frequency": ("omega", "freq"),
+    "damping": ("damp", "fric", "gam"),
     "force": ("force", "torque", "action"),
 }
 

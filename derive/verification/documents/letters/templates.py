@@ -10,6 +10,7 @@ from sympy import cos, sin, symbols
 
 from derive.system.parts import Coordinate, Parameter, PointMass
 from derive.system.rigid_body import RigidBody
+from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.system.system_catalogue import load
 
@@ -118,7 +119,54 @@ def _others() -> Iterator[System]:
             [RigidBody(m, (l * sin(theta) / part, -l * cos(theta) / part),
                        m * (2 * l / part)**2 / 12, theta)],
         )  # fmt: skip
-    g, a = sp.Symbol("g", real=True), sp.Symbol("a", real=True)
+    A, W, W0 = symbols("A Omega omega0", positive=True)
+    g = sp.Symbol("g", real=True)
+    for name, title, mass, pull, constants in (
+        (
+            "forced_pendulum",
+            "Pendulum with a harmonic torque",
+            m,
+            m * g * l,
+            _parameters(m="kg", l="m", g="m/s^2", A="N m", Omega="1/s"),
+        ),
+        (
+            "scaled_forced_pendulum",
+            "Pendulum with a harmonic acceleration",
+            1,
+            W0**2,
+            _parameters(A="1/s^2", Omega="1/s", omega0="1/s"),
+        ),
+    ):
+        yield System(
+            name, title, _coordinates((theta, "rad")), constants,
+            [PointMass(mass, (l * theta if mass == m else theta, 0))],
+            potential=-pull * cos(theta) - A * theta * cos(W * TIME),
+        )  # fmt: skip
+    for name, title, potential, constants in (
+        (
+            "attracted_mass",
+            "Mass in the plane, in the field of another that is fixed",
+            -G * M * m / sp.sqrt(x1**2 + x2**2),
+            _parameters(m="kg", M="kg", G="m^3/(kg s^2)"),
+        ),
+        (
+            "attracted_unit_mass",
+            "Mass in the plane, in the field of a centre",
+            -k * m / sp.sqrt(x1**2 + x2**2),
+            _parameters(m="kg", k="m^3/s^2"),
+        ),
+        (
+            "cubic_potential",
+            "Henon and Heiles' star with a parameter of its cubic potential",
+            (x1**2 + x2**2) / 2 * m + k * m * (x1**2 * x2 - x2**3 / 3),
+            _parameters(m="kg", k="1/m"),
+        ),
+    ):
+        yield System(
+            name, title, _coordinates((x1, "m"), (x2, "m")), constants,
+            [PointMass(m, (x1, x2))], potential=potential,
+        )  # fmt: skip
+    a = sp.Symbol("a", real=True)
     yield System(
         "pushed_rod", "Uniform rod on a hinge with a given acceleration",
         _coordinates((theta, "rad")),

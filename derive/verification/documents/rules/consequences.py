@@ -6,14 +6,18 @@ No right formula is to be called wrong: a verdict without enough evidence become
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import sympy as sp
 
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.text import order, stem
 from derive.verification.engine import joined
 from derive.verification.reference_system import time_derivative
 
@@ -138,7 +142,9 @@ def weighed(
     A formula is wrong by a system that the user states, or that follows from positions or energies
     in the document. It is not if other formulas of the document, which `doubts` has for its number,
     fit the rest as well and agree with it. A system that is known from elsewhere must have a letter
-    for each of its parameters, and more formulas that hold than such with more than one wrong term.
+    for each of its parameters, unless that is a factor of the Lagrangian, such as the mass of a
+    single body, and the accelerations as written have no potential of their own; and more formulas
+    that hold than such with more than one wrong term.
     If it is complete, and several formulas hold and one does not, it decides that this is wrong,
     unless it `has_rivals`, with which as many hold.
     """
@@ -147,7 +153,12 @@ def weighed(
     misfits = sum(FOLLOWS not in one.note and len(one.corrections) != 1 for one in wrong)
     holding = sum(one.verdict.verdict in ("verified", "equivalent") for _, one in results)
     is_known = candidate.basis == "catalogue" and not is_stated
-    is_weak = is_known and (candidate.lacking > 0 or misfits > max(1, holding))
+    has_all = candidate.lacking == 0 or (
+        misfits == 0 < holding
+        and {*_unnamed(candidate)} == {*_scales(candidate)}
+        and not _is_conservative([formula for formula, _ in results])
+    )
+    is_weak = is_known and (not has_all or misfits > max(1, holding))
     is_complete = is_known and candidate.lacking == 0 and not has_rivals
     decides = is_complete and len(wrong) == 1 and holding >= SEVERAL
     is_guess = (
@@ -170,6 +181,40 @@ def weighed(
             note = joined(verdict.note, f"given {given}")
             result = replace(result, verdict=replace(verdict, note=note))
         yield formula, result
+
+
+def _unnamed(candidate: SystemCandidate) -> Iterator[str]:
+    """The parameters of a system that have neither a letter nor a number."""
+    known = {*candidate.parameters, *candidate.numbers}
+    return (p.symbol.name for p in candidate.system.parameters if p.symbol.name not in known)
+
+
+def _scales(candidate: SystemCandidate) -> Iterator[str]:
+    """Those that drop out of the equations of motion: factors of the Lagrangian."""
+    system = candidate.system
+    if any(system.applied) or candidate.forces or candidate.friction:
+        return
+    for name in _unnamed(candidate):
+        symbol = next(p.symbol for p in system.parameters if p.symbol.name == name)
+        if not sp.expand(derivation(system).lagrangian / symbol).has(symbol):
+            yield name
+
+
+def _is_conservative(formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether accelerations that formulas state are the gradient of a potential energy."""
+    words = {word for formula in formulas for word in formula.words}
+    symbols = {word: sp.Symbol(word, positive=True) for word in words}
+    rows = {stem(one.subject): one.sides[-1].text for one in formulas if order(one.subject) == 2}
+    try:
+        values = {q: parse(text, {**symbols, **FUNCTIONS}) for q, text in rows.items()}
+    except ExpressionError:
+        return False
+    if any(order(str(symbol)) for value in values.values() for symbol in value.free_symbols):
+        return False
+    point = {symbols[word]: sp.Rational(k + 7, k + 5) for k, word in enumerate(sorted(words))}
+    q = {name: sp.Symbol(name, positive=True) for name in rows}
+    curls = (values[a].diff(q[b]) - values[b].diff(q[a]) for a, b in combinations(rows, 2))
+    return all(abs(one.subs(point).evalf(30)) < 1e-20 for one in curls)
 
 
 def _lines(numbers: Iterable[int]) -> str:
