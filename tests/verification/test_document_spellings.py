@@ -207,3 +207,47 @@ def test_a_search_of_too_many_meanings_ends_with_its_reason(
         "its 3 formulas have too many letters to try all meanings: state the system by --system, "
         "and its letters by --names"
     }
+
+
+PIVOTS = r"""
+(a) The pivot moves on a circle:
+$$x = a\cos\gamma t + l\sin\phi, \quad y = -a\sin\gamma t + l\cos\phi$$
+$$L = \frac12 m l^2\dot\phi^2 + m l a\gamma^2\sin(\phi - \gamma t) + m g l\cos\phi$$
+(b) It oscillates sideways: $$x = a\cos\gamma t + l\sin\phi, \quad y = l\cos\phi$$
+$$L = \frac12 m l^2\dot\phi^2 + m l a\gamma^2\cos\gamma t\sin\phi + m g l\cos\phi$$
+(c) It oscillates vertically: $$x = l\sin\phi, \quad y = a\cos\gamma t + l\cos\phi$$
+$$L = \frac12 m l^2\dot\phi^2 + m l a\gamma^2\cos\gamma t\cos\phi + m g l\cos\phi$$
+"""  # L. D. Landau, E. M. Lifshitz, Mechanics, § 5, problem 3
+LENGTHS = r"""
+$$x_1 = l_1\sin\theta_1, \quad y_1 = -l_1\cos\theta_1$$
+$$x_2 = x_1 + l_2\sin\theta_2, \quad y_2 = y_1 - l_2\cos\theta_2$$
+$$\dot l_1 = \dot l_2 = 0$$
+$$T = \frac12(m_1 + m_2) l_1^2\dot\theta_1^2 + \frac12 m_2 l_2^2\dot\theta_2^2
++ m_2 l_1 l_2\dot\theta_1\dot\theta_2\cos(\theta_1 - \theta_2)$$
+"""
+
+
+def test_cases_have_positions_of_their_own(tmp_path: Path) -> None:
+    stated = ["definition", "definition", "equivalent"]
+    assert verdicts(tmp_path, PIVOTS) == 3 * stated
+    slip = PIVOTS.replace(r"\cos\gamma t\cos\phi", r"\sin\gamma t\cos\phi")
+    assert verdicts(tmp_path, slip) == [*(2 * stated), "definition", "definition", "wrong"]
+
+
+def test_lengths_that_rest_are_no_coordinates(tmp_path: Path) -> None:
+    assert last(tmp_path, LENGTHS) == "verified"
+    assert last(tmp_path, LENGTHS.replace(r"+ m_2 l_1", r"- m_2 l_1")) == "wrong"
+
+
+def test_a_letter_in_braces_is_a_function_of_time(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m {\dot x}\left( t \right)^2 - \frac12 k x\left( t \right)^2$$
+    $$m {\ddot x}\left( t \right) + k x\left( t \right) = 0$$"""
+    assert verdicts(tmp_path, text) == ["verified", "verified"]
+    assert verdicts(tmp_path, text.replace("k x", "2 k x", 1)) == ["context", "verified"]
+
+
+@pytest.mark.parametrize(("factor", "verdict"), [("", "verified"), (r"\frac12", "wrong")])
+def test_twice_the_kinetic_energy_is_stated(tmp_path: Path, factor: str, verdict: str) -> None:
+    text = rf"""$$2T = {factor} m l^2\dot\theta^2$$ $$V = -m g l\cos\theta$$
+    $$\ddot\theta = -\frac gl\sin\theta$$"""
+    assert verdicts(tmp_path, text) == [verdict, "verified", "verified"]

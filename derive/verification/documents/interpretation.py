@@ -40,6 +40,8 @@ TIE = 0.25
 #: Most work of a search: characters of formulas, times candidates, times coordinates. Documents
 #: of several pages take up to two fifths.
 MAX_WORK = 1_000_000_000
+#: Most potential energies of stated positions that are compared by their verdicts.
+MAX_DIRECTIONS = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
@@ -122,9 +124,31 @@ def _best(
     best = max(supported, key=rank, default=None)  # the first of several with the same rank
     if best is None:
         return Interpretation(letters, None)
+    best = _with_direction(best, matches, statements, letters)
     best, is_decided = _with_fewest_slips(best, matches, statements, letters)
     doubts = {} if is_decided else _doubts(best, matches)
     return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
+
+
+def _with_direction(
+    best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
+) -> Match:
+    """Of stated positions with both directions of gravity, that with fewest wrong formulas."""
+    same = [
+        one for one in matches
+        if one.candidate.basis == "positions" and one.score == best.score
+    ]  # fmt: skip
+    if best.candidate.basis != "positions" or not best.failed or len(same) < 2:
+        return best
+
+    def wrong(match: Match) -> int:
+        judge = judge_of(statements, letters, match.candidate)
+        return sum(one.verdict.verdict == "wrong" for _, one in judge.verdicts(statements.formulas))
+
+    first: dict[int, Match] = {}
+    for one in (best, *same):
+        first.setdefault(id(one.candidate.system), one)
+    return min(list(first.values())[:MAX_DIRECTIONS], key=wrong)
 
 
 def _doubts(best: Match, matches: Sequence[Match]) -> dict[int, frozenset[int]]:

@@ -18,6 +18,7 @@ from derive.verification.documents.interpretation import (
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.letters.positions import sections
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
@@ -37,7 +38,7 @@ from derive.verification.documents.statements import (
 from derive.verification.documents.text import RATES, stem
 from solvers.io.suggestion import did_you_mean
 
-#: Most systems of a document.
+#: Most systems of a section of a document.
 MAX_SYSTEMS = 3
 #: Brackets around a letter, as those of a function's argument.
 BRACKETS = re.compile(r"\s*(?:\\left)?\(\s*([^()]*?)\s*(?:\\right)?\)\s*")
@@ -67,37 +68,34 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
-    remaining, work = statements.formulas, Work()
-    while remaining and len(titles) < (1 if hints else MAX_SYSTEMS):
-        part = replace(statements, formulas=remaining)
-        found = interpretation(part, hints, work)
-        if found.match is None:
-            break
-        candidate = found.match.candidate
-        judge = judge_of(part, found.letters, candidate)
-        titles.append(candidate.title)
-        verdicts = [
-            *weighed(
-                judge.verdicts(remaining),
-                candidate,
-                found.doubts,
-                hints is not None,
-                has_rivals=bool(found.rivals),
-            )
-        ]
-        conventions.append(convention(candidate))
-        others += alternatives(part, found, verdicts, written)
-        for formula, result in verdicts:
-            before = results.get(formula.occurrence)
-            if before is None or _is_graver(result, before[1]):
-                results[formula.occurrence] = formula, result
-                is_known = candidate.basis == "catalogue" and hints is None
-                (known.add if is_known else known.discard)(formula.occurrence)
-        bound = {q for one in candidate.constraints for q in one.coordinates}
-        remaining = tuple(
-            one for one, result in verdicts
-            if not result.is_understood and bound.isdisjoint(map(stem, one.words))
-        )  # fmt: skip
+    work = Work()
+    for section in sections(statements.formulas):
+        remaining, count = section, 0
+        while remaining and count < (1 if hints else MAX_SYSTEMS):
+            count += 1
+            part = replace(statements, formulas=remaining)
+            found = interpretation(part, hints, work)
+            if found.match is None:
+                break
+            candidate = found.match.candidate
+            judge = judge_of(part, found.letters, candidate)
+            titles.append(candidate.title)
+            own = judge.verdicts(remaining)
+            is_stated, has_rivals = hints is not None, bool(found.rivals)
+            verdicts = [*weighed(own, candidate, found.doubts, is_stated, has_rivals)]
+            conventions.append(convention(candidate))
+            others += alternatives(part, found, verdicts, written)
+            for formula, result in verdicts:
+                before = results.get(formula.occurrence)
+                if before is None or _is_graver(result, before[1]):
+                    results[formula.occurrence] = formula, result
+                    is_known = candidate.basis == "catalogue" and hints is None
+                    (known.add if is_known else known.discard)(formula.occurrence)
+            bound = {q for one in candidate.constraints for q in one.coordinates}
+            remaining = tuple(
+                one for one, result in verdicts
+                if not result.is_understood and bound.isdisjoint(map(stem, one.words))
+            )  # fmt: skip
     note = "no system was found for which its formulas hold"
     if work.left < 0:
         note = (

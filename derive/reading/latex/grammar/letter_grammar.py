@@ -110,12 +110,19 @@ class LetterTokens(Arguments):
         return result[0]
 
     def _in_braces(self, at: int, end: int) -> tuple[Letter, int] | None:
-        r"""A letter in braces before an index or a prime, as in ``{\theta}_1``."""
-        if at not in self.partner or self.kind(self.partner[at] + 1, end) not in ("_", "'"):
+        r"""A letter in braces before an index, a prime or time: ``{\theta}_1``, ``{\dot x}(t)``."""
+        if at not in self.partner:
             return None
         after = self.partner[at] + 1
-        letter = self._alone(at + 1, after - 1)
+        is_marked = self.kind(after, end) in ("_", "'")
+        letter = self._alone(at + 1, after - 1) if is_marked or self._is_time(after, end) else None
         return None if letter is None else (replace(letter, span=self.tokens[at].span), after)
+
+    def _is_time(self, at: int, end: int) -> bool:
+        """Whether tokens begin with the argument t in brackets."""
+        places = [k for k in range(at, min(end, at + 6)) if self.tokens[k].kind != "space"][:3]
+        kinds = [self.tokens[k].kind for k in places]
+        return kinds == ["open", "letter", "close"] and self.tokens[places[1]].text == "t"
 
     def _spelled(self, at: int, end: int) -> tuple[Letter, int] | None:
         """A name such as ``t1`` or ``td2``, as in programs, with its digits as the index."""

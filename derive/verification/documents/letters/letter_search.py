@@ -29,6 +29,8 @@ from derive.verification.documents.text import order, stem
 
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
+#: A multiple of a quantity on the left, such as that in 2 T = m v**2.
+MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -50,6 +52,7 @@ def letters_of(
     # a function K that is differentiated by a momentum is a Hamiltonian of other coordinates
     transformed = {one for one, by in derivatives.values() if any(map(MOMENTUM.match, by))}
     subjects = {formula.subject for formula in formulas}
+    subjects |= {match[1] for one in formulas if (match := MULTIPLE.fullmatch(one.sides[0].text))}
     quantities = {
         one: kind
         for one in stems
@@ -64,10 +67,12 @@ def letters_of(
     quantities |= _matrices(formulas)
     defined = _defined(formulas, orders)
     varied = {stem(v) for _, variables in derivatives.values() for v in variables}
+    resting = _resting(formulas)
     moving = [
         one
         for one in stems
         if (orders[one] or one in varied)
+        and one not in resting
         and one not in {*quantities, *defined, "t"}
         and not GENERIC.match(one)
         and not one.endswith("_column")
@@ -158,6 +163,16 @@ def _quantity(name: str) -> str | None:
     if letter == "E" and index in ENERGIES:
         return ENERGIES[index]
     return QUANTITIES.get(letter) if index in TOTAL else None
+
+
+def _resting(formulas: Iterable[DocumentFormula]) -> set[str]:
+    """Letters of which the rates vanish, as ``l_dot = 0`` states, and occur nowhere else."""
+    stated, others = set[str](), set[str]()
+    for formula in formulas:
+        rates = {stem(word) for word in formula.words if order(word)}
+        *first, last = (side.text for side in formula.sides)
+        (stated if last == "0" and all(map(str.isidentifier, first)) else others).update(rates)
+    return stated - others
 
 
 def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
