@@ -83,6 +83,8 @@ class CandidateMotions:
         self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
         own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
         self._signs = np.array([one.signs for one in tried], float)
+        #: Gradients of energies by coordinates (order 0) or velocities (1), as far as needed.
+        self._gradients: dict[tuple[str, int], Mapping[str, Array]] = {}
         self._names = self._system_names(own)
         if tried[0].condition_count:
             self._move(own)
@@ -238,20 +240,12 @@ class CandidateMotions:
 
     def gradient(self, kind: str, coordinate: str, order: int) -> Array:
         """The derivative of an energy by a coordinate (order 0) or its velocity (1)."""
-        return self._gradients[kind][order][coordinate]
-
-    @cached_property
-    def _gradients(self) -> Mapping[str, Sequence[Mapping[str, Array]]]:
-        d = self._derivation
-        values = {
-            "kinetic_energy": d.kinetic_energy,
-            "potential_energy": d.potential_energy,
-            "lagrangian": d.lagrangian,
-        }
-        return {
-            kind: [self._gradient(value, by) for by in (self._system.q, self._system.qdot)]
-            for kind, value in values.items()
-        }
+        known = self._gradients.get((kind, order))
+        if known is None:
+            symbols = self._system.qdot if order else self._system.q
+            known = self._gradient(getattr(self._derivation, kind), symbols)
+            self._gradients[kind, order] = known
+        return known[coordinate]
 
     def _gradient(self, value: sp.Expr, symbols: Sequence[sp.Symbol]) -> Mapping[str, Array]:
         own = np.array([self._numbers(value.diff(symbol)) for symbol in symbols])
@@ -270,6 +264,8 @@ class CandidateMotions:
         loads = np.zeros((STATES, len(candidate.coordinates)))
         for name, i in candidate.forces:
             loads[:, i] += self.parameters[name]
+        if not candidate.friction:
+            return loads
         speeds = np.stack([_row(self.speeds[q], number) for q in candidate.coordinates], axis=-1)
         for name, damped in candidate.friction:
             if isinstance(damped, int):
@@ -292,9 +288,9 @@ class CandidateMotions:
 
     def _by_coordinate(self, table: Array) -> Mapping[str, Array]:
         result = {q: np.full(self.shape, np.nan) for q in self.places}
-        for b, one in enumerate(self._tried):
-            for i, q in enumerate(one.coordinates):
-                result[q][b] = table[b, :, i]
+        for order, rows in self._orders.items():
+            for i, q in enumerate(order):
+                result[q][rows] = table[rows, :, i]
         return result
 
     def _numbers(self, expression: sp.Expr) -> Array:

@@ -111,9 +111,10 @@ def best_matches(
     if len(votes) <= FEW:
         own = [one.letters for one in tried]
         for row, (index, side, vote) in enumerate(votes):
-            hits = numbers.is_near(formulas[index].sides[0].text, side)
-            if hits is not None:
-                near[row] = hits & ~vote & _uses_letters(own, letters, formulas[index])
+            possible = ~vote & _uses_letters(own, letters, formulas[index])
+            first = formulas[index].sides[0].text
+            if possible.any() and (hits := numbers.is_near(first, side)) is not None:
+                near[row] = hits & possible
     holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
     usual = np.array([one.is_usual for one in tried])
     score = holding - UNUSUAL * ~usual
