@@ -6,6 +6,7 @@ from operator import itemgetter
 from derive.reading.programs.evaluation.arrays import added, entries, flat, product
 from derive.reading.programs.evaluation.mathematics import IDENTITIES, applied, split
 from derive.reading.programs.evaluation.numeric_values import number
+from derive.reading.programs.evaluation.sums import inner
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.syntax.trees import (
     Array,
@@ -50,9 +51,9 @@ def of_arrays(
         case ("dot" | "matmul" | "dot_product", (left, right)):
             return product(call.line, left, right, language)
         case ("solve" | "linsolve" | "mldivide", (matrix, column)):
-            return OperatorExpression(call.line, "solve", (matrix, flat(column)))
+            return OperatorExpression(call.line, "solve", (inner(matrix), flat(inner(column))))
         case "solve", (column,) if is_method and base is not None:  # of Eigen
-            return OperatorExpression(call.line, "solve", (base, flat(column)))
+            return OperatorExpression(call.line, "solve", (inner(base), flat(inner(column))))
         case "inverse", () if is_method and base is not None:
             return OperatorExpression(call.line, "inverse", (base,))
         case name, () if name in FACTORED and is_method and base is not None:

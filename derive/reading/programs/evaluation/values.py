@@ -202,7 +202,8 @@ class Values:
             return self.variable(tree.line, f"{base.path}[{index}]")
         if isinstance(base, Opaque):
             return base
-        if is_zeros(base):
+        whole_array = self.variables.get(self.place(tree.base) or "", base)
+        if is_zeros(base) or is_zeros(whole_array):
             return NumberLiteral(tree.line, "0")
         return Item(tree.line, base, tuple(map(self.value, tree.indices)))
 

@@ -114,7 +114,12 @@ class Findings:
 
     def _add_updates(self, region: Region, *, is_met: bool) -> None:
         updates = Updates(region.follower, is_met=is_met)
-        written = written_methods(updates, region.follower.returned)
+        leaps = {one.velocity.variable for one in updates.pairs if one.uses_middle_velocity}
+        written = [
+            one
+            for one in written_methods(updates, region.follower.returned)
+            if not {*one.rates} <= leaps  # its second stage is that of the next step
+        ]
         self._findings += runge_kutta_findings(written, region.name)
         names = Names(region.follower.steps)
         equations = FunctionEquations(region.name, names)

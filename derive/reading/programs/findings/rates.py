@@ -128,6 +128,10 @@ def _state(
         used = {name for name in names if _split(name)[0] == base}
         own = {name for name in rates_by_name if _split(name)[0] == base}
         is_canonical = used == {*keys} and base in parameters
+        is_canonical &= not any(
+            {f"{other}[{i + first}]" for i in range(len(outputs))} <= {*names}
+            for other in parameters - {base}
+        )  # a force by coordinates and velocities
         if (own and own <= {*keys}) or is_canonical:
             return keys
     return _scalars(definition, outputs, rates_by_name)

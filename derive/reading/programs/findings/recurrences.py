@@ -56,9 +56,9 @@ def _squares(parts: Sequence[Expression]) -> Iterator[list[Expression]]:
 
 def _divided(term: Expression, step: Sequence[Expression]) -> Expression | None:
     """A term without the factors of a step; None if it lacks one of them."""
-    parts = _factors(term)
-    for one in step:
-        if one not in parts:
-            return None
-        parts.remove(one)
-    return product(term.line, parts)
+    for parts in (factors(term, lambda tree: tree.line != term.line), _factors(term)):
+        if all(one in parts for one in step):  # a value from another line stays whole
+            for one in step:
+                parts.remove(one)
+            return product(term.line, parts)
+    return None

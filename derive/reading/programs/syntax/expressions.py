@@ -137,6 +137,8 @@ class ExpressionTranslator:
         if any(one.type == "for_clause" for one in nodes):
             array = self._comprehension(node, nodes)
             return FunctionCall(line(node), self.tree(function), (array,))
+        if function.type == "operator" and text(function) == "-" and len(nodes) == 1:  # of Julia
+            return OperatorExpression(line(node), "-", (self.tree(nodes[0]),))
         keywords = [one for one in nodes if self.role(one) == "keyword"]
         arguments = [one for one in nodes if self.role(one) != "keyword"]
         named = tuple((self.word(k), self.tree(v)) for k, v in map(self._pair, keywords))
