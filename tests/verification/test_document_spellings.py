@@ -194,6 +194,23 @@ def test_rare_statements_are_judged(text: str, old: str, new: str, tmp_path: Pat
     assert "wrong" in verdicts(tmp_path, text.replace(old, new, 1))
 
 
+def test_no_formula_is_wrong_by_a_partial_search(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = r"""$$V = -m g l\cos\theta$$ $$p = m l^2\dot\theta$$
+    $$\ddot\theta = -2\frac gl\sin\theta$$"""
+    work = Work()
+    monkeypatch.setattr(judgement, "Work", lambda: work)
+    full = judged(tmp_path, text)
+    assert [one.verdict for one in full.formulas] == ["verified", "verified", "wrong"]
+    needed = Work().left - work.left
+    monkeypatch.setattr(judgement, "Work", lambda: Work(needed - 1))
+    partial = judged(tmp_path, text)
+    assert [one.verdict for one in partial.formulas] == ["verified", "verified", "context"]
+    assert judgement.PARTIAL in partial.notes
+    assert judgement.PARTIAL not in full.notes
+
+
 def test_a_search_of_too_many_meanings_ends_with_its_reason(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

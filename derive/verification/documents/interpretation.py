@@ -268,7 +268,8 @@ def _of_templates(
 ) -> Iterator[Sequence[SystemCandidate]]:
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
-        for system in templates(count, has_rods, bool(letters.constraints)):
+        is_free, has_energies = bool(letters.constraints), bool(letters.quantities)
+        for system in templates(count, has_rods, is_free, has_energies):
             yield [*candidates(system, letters, numbers)]
 
 

@@ -40,6 +40,11 @@ from solvers.io.suggestion import did_you_mean
 
 #: Most systems of a section of a document.
 MAX_SYSTEMS = 3
+#: The note on a document of which too many meanings are possible.
+PARTIAL = (
+    "not all meanings of its letters were tried, so that verdicts are partial: state the system "
+    "by --system, and its letters by --names"
+)
 #: Brackets around a letter, as those of a function's argument.
 BRACKETS = re.compile(r"\s*(?:\\left)?\(\s*([^()]*?)\s*(?:\\right)?\)\s*")
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
@@ -81,8 +86,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             judge = judge_of(part, found.letters, candidate)
             titles.append(candidate.title)
             own = judge.verdicts(remaining)
-            is_stated, has_rivals = hints is not None, bool(found.rivals)
-            verdicts = [*weighed(own, candidate, found.doubts, is_stated, has_rivals)]
+            is_stated, has_rivals, is_partial = hints is not None, bool(found.rivals), work.left < 0
+            verdicts = [*weighed(own, candidate, found.doubts, is_stated, has_rivals, is_partial)]
             conventions.append(convention(candidate))
             others += alternatives(part, found, verdicts, written)
             for formula, result in verdicts:
@@ -108,7 +113,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     places = {formula.occurrence for formula in statements.formulas} - results.keys()
     judged += [_plain(place, "context", note) for place in places]
     judged += [_judged(*pair, written, place in known) for place, pair in results.items()]
-    notes = (*document.notes, *_unused(hints, statements.formulas))
+    partial = (PARTIAL,) if work.left < 0 and titles else ()
+    notes = (*document.notes, *partial, *_unused(hints, statements.formulas))
     system, ordered = "; ".join(dict.fromkeys(titles)), sorted(judged, key=lambda one: one.span)
     meanings = "; ".join(filter(None, dict.fromkeys(conventions)))
     return DocumentVerdicts(

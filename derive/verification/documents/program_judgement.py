@@ -68,7 +68,8 @@ def _judged(equation: ProgramEquation, result: SideVerdict) -> FormulaVerdict:
     for one in verdict.corrections:
         start, end = next(iter(places(text, one.wrong)), (0, 0)) if one.wrong else (0, 0)
         if start < end:
-            line = _line(equation, start, end)
+            unsigned = text[start:end].lstrip("+- ")
+            line = _line(equation, end - len(unsigned), end)
             terms.append(one.wrong)
             text = inserted(text[:start], one.wrong, one.correct, text[end:])
     correction = verdict.correction

@@ -28,13 +28,21 @@ RODS = frozenset(
 
 #: Systems without constraints of their own, which documents add.
 FREE = frozenset("polar_mass mass_in_space body_in_plane body_on_plane body_by_point".split())
+#: Systems that are tried where no energy is stated, as in programs.
+OF_EQUATIONS = frozenset(
+    "forced_pendulum scaled_forced_pendulum attracted_mass attracted_unit_mass "
+    "cubic_potential".split()
+)
 
 
-def templates(count: int, has_rods: bool = True, is_free: bool = False) -> Iterator[System]:
-    """Yield the systems with so many coordinates, with uniform rods, and free ones, or without."""
+def templates(
+    count: int, has_rods: bool = True, is_free: bool = False, has_energies: bool = True
+) -> Iterator[System]:
+    """Yield the systems with so many coordinates: with uniform rods, free ones, or without."""
+    left_out = (frozenset() if has_rods else RODS) | (frozenset() if is_free else FREE)
+    left_out |= OF_EQUATIONS if has_energies else frozenset()
     for system in _all():
-        is_meant = (has_rods or system.name not in RODS) and (is_free or system.name not in FREE)
-        if len(system.coordinates) == count and is_meant:
+        if len(system.coordinates) == count and system.name not in left_out:
             yield system
 
 
