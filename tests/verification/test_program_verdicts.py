@@ -124,7 +124,19 @@ class DoublePendulum:
         q, w = y[:2], y[2:]
         return np.concatenate([w, np.linalg.solve(self.mass_matrix(q), self.forces(q, w))])
 """
+ORBIT = """
+function update(dt) {
+  const r = Math.hypot(pos.x, pos.y);
+  const ax = -G * M * pos.x / r ** 3;
+  const ay = -G * M * pos.y / r ** 3;
+  vel.x += ax * dt;
+  vel.y += ay * dt;
+  pos.x += vel.x * dt;
+  pos.y += vel.y * dt;
+}
+"""
 PROGRAMS = {
+    "orbit": ("JavaScript", ORBIT, 2),
     "methods": ("Python", METHODS, 2),
     "chain": ("Python", CHAIN, 2),
     "leapfrog": ("Python", LEAPFROG, 2),
@@ -139,6 +151,7 @@ PROGRAMS = {
 }
 #: A part of a program, the slip in its place, and the line at which it is found.
 SLIPS = {
+    "power": ("orbit", "pos.x / r ** 3", "pos.x / r ** 2", "const ax"),
     "second line": ("methods", "- (self.m1", "+ (self.m1", "+ (self.m1 + self.m2) * self.g"),
     "index": ("chain", "F[i] -= mass * self.l[i]", "F[i] -= mass * self.l[j]", "F[i] -= mass"),
     "square": ("eigen", "y(2) * y(2) * s", "y(2) * s", "l[0] * y(2)"),
@@ -194,6 +207,8 @@ def kick(p, dt):
     p.v += 0.5 * dt * a
 def acceleration(x):
     return -k / m * x
+for i in range(100):
+    kick(body, 0.001)
 """
 
 
