@@ -21,6 +21,7 @@ MOTIONS: list[tuple[Callable[[], System], dict, dict, float]] = [
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.usefixtures("fused")  # the motion takes longer than the compiler
 @pytest.mark.parametrize(("make", "start", "guess", "change"), MOTIONS)
 def test_a_million_steps_leave_no_residual(
     make: Callable[[], System], start: dict, guess: dict, change: float

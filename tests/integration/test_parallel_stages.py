@@ -278,6 +278,7 @@ def test_a_motion_at_rest_stays_there(backend: str) -> None:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.usefixtures("fused")  # the motions take longer than the compiler
 @pytest.mark.parametrize("compensated", [False, True])
 @pytest.mark.parametrize("form", ["hamiltonian", "rational"])
 @pytest.mark.parametrize(

@@ -274,7 +274,7 @@ def turned(
     return np.asarray(results).imag / 1e-30
 
 
-@pytest.mark.long("more cases of the same kind", keep=12)
+@pytest.mark.long("more cases of the same kind", keep=6)
 def test_energy_changes_by_the_power_of_forces_and_drives_alone(
     module: ModuleType,
 ) -> None:

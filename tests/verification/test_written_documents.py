@@ -15,7 +15,7 @@ def failures(results: list[Outcome]) -> list[str]:
     return crashes + [f"{one.name}: {accused}" for one in results for accused in one.accused]
 
 
-@pytest.mark.long("more styles", keep=3)
+@pytest.mark.long("more styles", keep=2)
 @pytest.mark.parametrize("style", DEVELOPED)
 def test_the_slip_is_found_and_no_right_formula_is_accused(style: str, tmp_path: Path) -> None:
     results = [*outcomes([style], [3, 10, 15], tmp_path)]
