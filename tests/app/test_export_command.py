@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solvers import run_scene
+from solvers.app import simulation_export
 from solvers.app.cli import main
 
 
@@ -29,6 +30,13 @@ def test_the_rows_of_a_scene_keep_its_accuracy(
     assert f"differ from the motion of the scene by at most {difference:.1e}" in printed
     assert "run it with: python figure_3_1.py" in printed
     assert f"at most {difference:.1e}" in file.read_text()
+
+
+def test_rows_that_are_too_low_differ_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    low = run_scene("figure_3_1").y - 0.002
+    monkeypatch.setattr(simulation_export, "_motion", lambda *_, **__: low)
+    _, simulation = simulation_export.of_scene("figure_3_1")
+    assert "differ from the motion of the scene by at most 2.0e-03" in simulation.note
 
 
 def test_an_event_has_rows_between_the_others(tmp_path: Path) -> None:

@@ -64,6 +64,13 @@ def test_formulas_are_plain_latex(formula: str, text: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("letter", "text"), [(r"\phi_a", r"\dot{\phi}_a"), (r"\psi", r"\dot{\psi}")]
+)
+def test_the_rate_of_a_letter_has_a_dot_and_its_index(letter: str, text: str) -> None:
+    assert latex(syntax_tree("q_dot"), {"q": letter}) == text
+
+
+@pytest.mark.parametrize(
     ("value", "text"),
     [
         (sp.sin(x) * length * g * m, r"m g l \sin\left(x\right)"),

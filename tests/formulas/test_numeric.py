@@ -5,7 +5,7 @@ from itertools import combinations
 import pytest
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import STATES, sample
+from derive.formulas.evaluation.generic_values import STATES, is_small, sample
 from derive.formulas.evaluation.numeric import Evaluator, NoValueError, independent, solved
 
 x, y = sp.symbols("x y", real=True)
@@ -64,6 +64,12 @@ def test_values_agree_with_those_of_sympy() -> None:
 def test_expressions_without_a_value_are_reported(expression: sp.Expr) -> None:
     with pytest.raises(NoValueError):
         EVALUATOR(expression)
+
+
+def test_an_expression_is_small_only_where_it_has_values() -> None:
+    assert is_small(sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1)
+    assert not is_small(x)
+    assert not is_small(sp.log(sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1))
 
 
 def test_linear_equations_are_solved_and_dependent_rows_are_recognised() -> None:

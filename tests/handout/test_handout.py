@@ -300,6 +300,13 @@ def test_normal_modes_have_the_frequencies_of_textbooks(documents) -> None:
     assert cart[0] == ("0", "none", "none", "1, 0, 0, 0")  # the cart moves freely
 
 
+def test_characteristic_equations_are_those_of_two_coordinates(documents) -> None:
+    sentence = "of a normal mode solves this equation"
+    assert sentence in page(documents("double_pendulum"))
+    assert len(modes(documents("chain_3"))) == 3
+    assert sentence not in page(documents("chain_3"))
+
+
 def modes(one: HandoutDocument) -> tuple[tuple[str, ...], ...]:
     (section,) = (section for section in one.sections if section.title == "Small oscillations")
     rows: tuple[tuple[str, ...], ...] = section.blocks[-1].rows  # type: ignore[union-attr]

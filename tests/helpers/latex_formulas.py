@@ -8,6 +8,8 @@ LETTERS = r"""
 \dot\theta_1  ⟶  theta_1.
 \dot\theta_1^2  ⟶  theta_1.^2
 \dot{x}^{2}  ⟶  x.^2
+\dot{{x}}  ⟶  x.
+\ddot{{{x}_2}}  ⟶  x_2..
 \dot\theta^2_1  ⟶  theta_1.^2
 \ddot{\theta}{}_1  ⟶  theta_1..
 {\theta}_1^2  ⟶  theta_1^2

@@ -35,6 +35,7 @@ def test_a_page_is_small_and_as_exact_as_a_screen(tracks: list[Track], tmp_path:
         assert np.array(values[name]) == pytest.approx(getattr(tracks[0], name), abs=tolerance)
     for name, digits in (("positions", 6), ("energy_error", 5)):
         assert all(x == float(f"{x:.{digits}g}") for x in np.ravel(values[name]))
+    assert values["t"] == [round(t, 6) for t in tracks[0].t.tolist()]
     assert not re.search(r"https?:|\bsrc=|@import|url\(", path.read_text(encoding="utf-8"))
 
 

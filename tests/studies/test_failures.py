@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.modules import load
+from solvers.equations.linearisation.normal_modes import Modes
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
@@ -64,6 +65,23 @@ def test_rk3_and_rk4_grow_beyond_their_interval_and_not_within(method: str) -> N
     assert within.measured < 0 < beyond.measured
     for found in (beyond, within):
         assert found.measured == pytest.approx(found.predicted, rel=1e-4)
+
+
+@pytest.mark.parametrize("ratio", [30.0, 300.0])
+def test_the_frequencies_of_stiff_scenes_are_those_of_textbooks(ratio: float) -> None:
+    def frequencies(family: str) -> np.ndarray:
+        system, motion, _ = stiffness.FAMILIES[family]
+        return Modes.at_rest(load(system), motion(ratio)[0]).frequencies
+
+    # a rod under the mass of both, a bead amid a string, and a mass on a spring
+    for family, length in (("short second rod", 1), ("light first mass", 2), ("stiff spring", 1)):
+        slow, fast = frequencies(family)
+        assert slow == pytest.approx(sqrt(9.81 / length), rel=3 / ratio**2)
+        assert fast == pytest.approx(sqrt(9.81) * ratio, rel=3 / ratio**2)
+    # of equal rods: omega^2 = g/l (1 + s)/(1 - s^2) with both signs of s^2 = m2/(m1 + m2)
+    slow, fast = frequencies("light second mass")
+    s = 1 / sqrt(ratio**2 + 1)
+    assert (fast / slow) ** 2 == pytest.approx((1 + s) / (1 - s), rel=1e-12)
 
 
 @pytest.mark.long("a whole study")

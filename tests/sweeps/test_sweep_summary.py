@@ -1,6 +1,7 @@
 """A sweep reports the ranges of its maps, and by how much tighter tolerances change them."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
+from solvers.sweeps.maps.lyapunov import Lyapunov
+from solvers.sweeps.plots.plot_quantity import Quantity
 from solvers.sweeps.results import STATUSES, Results
 from solvers.sweeps.sweep_summary import as_json, ranges, summary
 
@@ -144,3 +147,11 @@ def test_the_order_of_fixed_values_does_not_matter() -> None:
         for values in ({"theta2": 0.2, "m1": 2.0}, {"m1": 2.0, "theta2": 0.2})
     )
     assert one == other
+
+
+def test_colours_of_exponents_begin_at_zero_or_below(results: Results) -> None:
+    definition = replace(results.definition, maps={"exponent": Lyapunov()})
+    quantity = Quantity(replace(results, definition=definition), "exponent")
+    for values, lowest in (([0.5, 1.0, 1.5], 0.0), ([-0.5, -0.5, 1.5], -0.5)):
+        _, scale = quantity.colours(np.array(values))
+        assert scale.vmin == lowest

@@ -100,7 +100,9 @@ def plot_horizons(axes: Axes, rows: Sequence[Horizon]) -> None:
     for method, colour in coloured(row.method for row in rows):
         lost = [row for row in rows if row.method == method and row.measured < inf]
         axes.semilogx(*columns(lost, "tolerance", "measured"), "o", color=colour, label=method)
-    predicted = sorted({row.tolerance: row.predicted for row in rows}.items())
-    axes.semilogx(*zip(*predicted, strict=True), color="#888888", label="ln(1/tolerance)/exponent")
+    predicted = {row.tolerance: row.predicted for row in rows}
+    axes.semilogx(
+        [*predicted], [*predicted.values()], color="#888888", label="ln(1/tolerance)/exponent"
+    )
     axes.set(xlabel="tolerance", ylabel="horizon / s")
     axes.legend(frameon=False)
