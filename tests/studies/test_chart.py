@@ -10,13 +10,16 @@ from dataclasses import replace
 from functools import partial
 from math import inf, isnan, nan
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+import sympy as sp
 from sharing import Shared
 
 import generated.double_pendulum as dp
+from derive import Derivation
+from derive.formulas.evaluation.generic_values import is_small
 from solvers.app.cli import main
 from solvers.app.commands.chart import _measured
 from solvers.app.modules import load as load_module
@@ -412,6 +415,20 @@ def test_heyoka_gets_the_equations_of_every_system(system: str) -> None:
     assert [x.value for x in variables] == state.tolist()
     expected = form.rhs(t, state)
     assert np.array([rate.value for rate in rates]) == pytest.approx(expected, rel=1e-14)
+
+
+def test_heyoka_gets_the_derived_lagrangian_of_the_double_pendulum(double: Derivation) -> None:
+    system = double.system
+    variables = iter([system.q, system.qdot])
+    hy = SimpleNamespace(
+        make_vars=lambda *_: next(variables),
+        par=[one.symbol for one in system.parameters],
+        sin=sp.sin,
+        cos=sp.cos,
+        lagrangian=lambda function, *_: function,
+    )
+    for function in heyoka.double_pendulum(hy).values():
+        assert is_small(function - double.lagrangian)
 
 
 def test_a_program_that_fails_loses_no_other_curve(
