@@ -51,6 +51,12 @@ def test_values_agree_with_those_of_sympy() -> None:
     assert abs(EVALUATOR(expression).rounded() - expected) < sp.Float("1e-78")
 
 
+def test_inverse_functions_may_have_complex_values() -> None:
+    expected = sp.pi - sp.acos(sp.Rational(3, 7))  # of cosh(i a) = cos(a)
+    value = EVALUATOR(sp.acosh(x)).rounded()
+    assert abs(value - sp.I * expected.evalf(80)) < sp.Float("1e-78")
+
+
 @pytest.mark.parametrize(
     "expression",
     [

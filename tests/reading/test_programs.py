@@ -228,6 +228,17 @@ class Model:
     assert (constant.name, constant.value) == ("g", "9.81")
 
 
+def test_methods_call_those_of_their_own_class() -> None:
+    text = """
+double Weak::force(double x) { return -5*x; }
+double Strong::force(double x) { return -3*x; }
+double Strong::pull(double x) { return force(x); }
+void step(double &x, double &v, double dt) { v += pull(x)*dt; x += v*dt; }
+"""
+    (function,) = read_program(text, "C++").functions
+    assert [one.text for one in function.equations] == ["x_ddot = -3*x"]
+
+
 def test_parts_of_equations_have_their_lines() -> None:
     program = read_program(programs.SKETCH, "JavaScript")
     first = program.equations[0]
