@@ -1,9 +1,9 @@
 """The C compiler of the tests: less optimisation, and each library compiled once.
 
 Most of the time of a compilation is optimisation, which only tests of speed would notice. The short
-part of the tests compiles some 470 libraries without any. In the long part,
-``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does, and an index outside an array
-ends the process.
+part of the tests compiles some 470 libraries, those of single motions without any. In the long
+part, ``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does, and an index outside an
+array ends the process.
 """
 
 import os
@@ -22,18 +22,22 @@ PLACE = ROOT / "out" / "tests"
 CHECKS = "-fsanitize=bounds -fsanitize-undefined-trap-on-error"
 #: Flags of the two parts of the tests.
 SHORT, LONG = "-O0", f"-O1 -fexpensive-optimizations {CHECKS}"
+#: Flags of the short part for loops over many motions, which run longer than the compiler.
+LANES = "-Og"
 #: Libraries that no test has used for these seconds are removed.
 UNUSED = 7 * 86_400.0
 SCRIPT = """#!/bin/sh
 # {compiler}, with less optimisation; libraries that were compiled before are copied
 case "$*" in
 *" -shared -o library.so source.c -lm")
-    key=$( (echo "$* {flags}"; cat source.c) | sha256sum | cut -c1-32)
+    flags='{flags}'
+    grep -q '^#define HOLONOMIC_VECTOR' source.c && flags='{lanes}'
+    key=$( (echo "$* $flags"; cat source.c) | sha256sum | cut -c1-32)
     if cp '{folder}/libraries/'"$key" library.so 2> /dev/null; then
         touch '{folder}/libraries/'"$key"
         exit 0
     fi
-    '{compiler}' "$@" {flags} || exit
+    '{compiler}' "$@" $flags || exit
     cp library.so '{folder}/libraries/'"$key.$$"
     mv '{folder}/libraries/'"$key.$$" '{folder}/libraries/'"$key"
     ;;
@@ -56,7 +60,8 @@ def install(flags: str) -> None:
     for library in libraries.iterdir():
         if library.stat().st_mtime < time.time() - UNUSED:
             library.unlink(missing_ok=True)
-    text = SCRIPT.format(compiler=compiler, folder=folder, flags=flags)
+    lanes = LANES if flags == SHORT else flags
+    text = SCRIPT.format(compiler=compiler, folder=folder, flags=flags, lanes=lanes)
     # a script with another time is another compiler, whose libraries are built anew
     if not script.is_file() or script.read_text(encoding="utf-8") != text:
         beside = folder / f"cc.{os.getpid()}"

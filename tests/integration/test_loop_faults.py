@@ -348,7 +348,7 @@ def test_a_prepared_run_names_the_invalid_argument() -> None:
 
 
 def test_a_prepared_run_refuses_a_second_thread_during_a_call() -> None:
-    run = prepare(dp, dp.DEFAULTS, method="rk4", h=2e-6, max_steps=10**8)
+    run = prepare(dp, dp.DEFAULTS, method="rk4", h=1e-5, max_steps=10**8)
     alone = run((0, 10), (1.0, 2.0, 0.0, 0.0))
     barrier = threading.Barrier(2)
 
