@@ -373,6 +373,12 @@ def test_a_kernel_of_opencl_has_the_bits_of_other_programs() -> None:
         assert y == end
 
 
+@pytest.mark.parametrize("simulation", [None, FIXED])
+def test_opencl_has_a_kernel_if_there_are_steps(simulation: Simulation | None) -> None:
+    _, text = exported_text(load("double_pendulum"), "opencl", simulation)
+    assert text.count("__kernel void integrate(") == (simulation is not None)
+
+
 def test_headers_are_code_for_a_gpu(folder: Path) -> None:
     if shutil.which("nvcc") is None:
         pytest.skip("needs nvcc")
