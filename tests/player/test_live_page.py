@@ -1,6 +1,7 @@
 """Pages that integrate, in a real browser: bits of the motion, dragging, address, comparison."""
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from time import monotonic
@@ -173,6 +174,7 @@ def test_a_motion_of_an_own_start_is_continued_from_there(
 ) -> None:
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)  # of another test
     motion = integrate(
         dp, (0, 2), {"theta1": "60 deg", "theta2": 0, "theta2_dot": 1.5}, {"m2": "300 g"}
     )
