@@ -86,8 +86,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             judge = judge_of(part, found.letters, candidate)
             titles.append(candidate.title)
             own = judge.verdicts(remaining)
-            is_stated, has_rivals, is_partial = hints is not None, bool(found.rivals), work.left < 0
-            verdicts = [*weighed(own, candidate, found.doubts, is_stated, has_rivals, is_partial)]
+            is_stated, is_partial = hints is not None, work.left < 0
+            verdicts = [*weighed(own, candidate, found.doubts, is_stated, is_partial)]
             conventions.append(convention(candidate))
             others += alternatives(part, found, verdicts, written)
             for formula, result in verdicts:

@@ -135,7 +135,6 @@ def weighed(
     candidate: SystemCandidate,
     doubts: Mapping[int, frozenset[int]],
     is_stated: bool,
-    has_rivals: bool = False,
     is_partial: bool = False,
 ) -> Iterator[WithVerdict]:
     """Yield the verdicts, with `context` for formulas that are wrong by too weak evidence.
@@ -147,8 +146,7 @@ def weighed(
     single body, and the accelerations as written have no potential of their own; and more formulas
     that hold than such with more than one wrong term.
     With a partial search for it, none is wrong.
-    If it is complete, and several formulas hold and one does not, it decides that this is wrong,
-    unless it `has_rivals`, with which as many hold.
+    If it is complete, and several formulas hold and one does not, it decides that this is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -161,8 +159,7 @@ def weighed(
         and not _is_conservative([formula for formula, _ in results])
     )
     is_weak = is_known and (is_partial or not has_all or misfits > max(1, holding))
-    is_complete = is_known and candidate.lacking == 0 and not has_rivals
-    decides = is_complete and len(wrong) == 1 and holding >= SEVERAL
+    decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = (
         is_known
         and holding < 2
