@@ -169,3 +169,14 @@ def test_importing_a_generated_module_loads_neither_sympy_nor_numpy() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
     )
     assert run.stdout == "[]\n"
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a clone")
+def test_the_top_level_holds_the_agreed_files_and_folders() -> None:
+    command = ["git", "-C", str(ROOT), "ls-files"]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
+    names = {line.partition("/")[0] for line in run.stdout.splitlines()}
+    visible = {name for name in names if not name.startswith(".")}
+    folders = {"derive", "generated", "notebooks", "solvers", "tests"}
+    files = {"CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "README.md", "holonomic.py"}
+    assert visible == folders | files | {"pyproject.toml"}
