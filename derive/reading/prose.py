@@ -62,14 +62,14 @@ def prose(
     document
         The document.
     formula, program
-        The markup of a formula, and what follows a program of a notebook.
+        The markup of a formula, and what follows a program of a notebook; they are not called for
+        what stands in a part that is left out.
 
     Raises
     ------
     OSError
         When a package is missing that the format needs.
     """
-    markups = [formula(one) for one in document.displays]
     form = known_formats()[document.kind]
     programs = {one.start: one for one in document.programs}
     parts = []
@@ -79,7 +79,7 @@ def prose(
             parts.append(program(programs[start]))
         else:
             text = "".join(_with_places(document, start, end))
-            parts.append(_Blocks(document.displays, markups).html(form.prose(text)))
+            parts.append(_Blocks(document.displays, formula).html(form.prose(text)))
     return "\n".join(parts)
 
 
@@ -105,9 +105,11 @@ def _with_places(document: Document, start: int, end: int) -> Iterator[str]:
 class _Blocks(HTMLParser):
     """The text of a page as plain elements, closed in order, with formulas in their places."""
 
-    def __init__(self, displays: tuple[Display, ...], markups: list[FormulaMarkup]) -> None:
+    def __init__(
+        self, displays: tuple[Display, ...], formula: Callable[[Display], FormulaMarkup]
+    ) -> None:
         super().__init__()
-        self._displays, self._markups = displays, markups
+        self._displays, self._formula = displays, formula
         self._pieces: list[str] = []
         self._open: list[str] = []
         self._skipped = ""
@@ -172,8 +174,9 @@ class _Blocks(HTMLParser):
             if k % 2 == 0:
                 self._pieces.append(escape(piece, quote=False))
                 continue
-            inside, below = self._markups[int(piece)]
-            if self._displays[int(piece)].is_inline:
+            display = self._displays[int(piece)]
+            inside, below = self._formula(display)
+            if display.is_inline:
                 self._pieces.append(inside)
                 self._below.append(below)
                 continue

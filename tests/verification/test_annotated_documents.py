@@ -300,6 +300,12 @@ def test_definitions_of_macros_are_not_shown(tmp_path: Path) -> None:
     assert "newcommand" not in page([(judged(read), read)])
 
 
+def test_formulas_in_parts_that_are_left_out_are_listed(tmp_path: Path) -> None:
+    read = document(tmp_path, "<p>text</p><button>$x = 1$</button>", "a.html")
+    text = page([(judged(read, ("x = 1", {"verdict": "wrong"})), read)])
+    assert text.count('<li class="wrong"') == 1
+
+
 def test_marks_state_what_verdicts_rest_on(tmp_path: Path) -> None:
     read = document(tmp_path, "$$x = 1$$ $$y = 1$$ $$z = 1$$", "a.md")
     rows = [("x = 1", {"basis": "document"}), ("y = 1", {"basis": "known system"}), ("z = 1", {})]

@@ -252,6 +252,14 @@ def test_right_statements_of_usual_kinds_are_not_accused(tmp_path: Path, name: s
     assert sum(one.verdict in ("verified", "equivalent") for one in formulas) >= least
 
 
+def test_factors_with_a_decimal_point_are_no_example(tmp_path: Path) -> None:
+    text = r"$$T = 0.5 m l^2\dot\theta^2, \quad V = -m g l\cos\theta$$"
+    text += r"$$m l^2\ddot\theta + m g l\sin\theta = 0$$"
+    chain = r"$$E = T + V = 0.5 m l^2\dot\theta^2 - m g l\sin\theta$$"
+    (one,) = wrong(judged(tmp_path, text + chain))
+    assert one.latex.startswith("E = T + V")
+
+
 #: The same with a slip, where another statement decides.
 SLIPS = {
     "the letter of a constant of the motion": (r"- m r\dot\theta^2", r"- m r^2\dot\theta^2"),

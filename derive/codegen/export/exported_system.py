@@ -284,7 +284,8 @@ class ExportedSystem:
         event = self.event(of)
         if event is None:
             return []
-        (k, value), name = event, of.event[0] if of.event else ""
+        k, value = event
+        name = (*self.system.q, *self.system.qdot)[k].name
         formula, condition = f"{self._places[k]} - {_float(value)}", "True"
         about = f"{name} - {value:g}"
         if k in self.angles:

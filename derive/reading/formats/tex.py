@@ -40,8 +40,8 @@ BODY_END = re.compile(r"^[^%\n]*?(?=\\end\{document\})", re.M)
 INCLUDED = re.compile(r"^[^%\n]*?(\\(?:input|include|subfile)\b[^%\n]{0,80})", re.M)
 
 
-#: Text in LaTeX, after escapes of HTML, and what stands for it in a page, in this order.
 ARGUMENT = rf"\{{({BRACES})\}}"
+#: Text in LaTeX, after escapes of HTML, and what stands for it in a page, in this order.
 PROSE = (
     (rf"\\(?:title|part|chapter|(?:sub)*section|paragraph)\*?\s*(?:\[[^\]]*\]\s*)?{ARGUMENT}",
      r"\n\n<h3>\1</h3>\n\n"),

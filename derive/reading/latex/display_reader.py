@@ -119,11 +119,10 @@ def _sides(tokens: list[Token]) -> tuple[list[list[Token]], list[str]]:
     while at < len(tokens):
         end = max(at, partner.get(at, at))
         is_repeated = relations[-1:] == [tokens[at].text] and not _is_visible(sides[-1])
-        if tokens[at].kind == "relation" and is_repeated:
-            pass  # at the end of a row and at the start of the next one
-        elif tokens[at].kind == "relation":
-            relations.append(tokens[at].text)
-            sides.append([])
+        if tokens[at].kind == "relation":
+            if not is_repeated:  # at the end of a row and at the start of the next one
+                relations.append(tokens[at].text)
+                sides.append([])
         else:
             sides[-1] += tokens[at : end + 1]
         at = end + 1

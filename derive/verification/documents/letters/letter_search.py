@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 
-from derive.formulas.syntax import is_sum, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, is_sum, syntax_tree
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -204,7 +204,10 @@ def _is_momentum(name: str, formulas: Iterable[DocumentFormula]) -> bool:
 
 def _has_one_velocity(text: str) -> bool:
     rates = [word for word in _words(text) if order(word)]
-    is_product = len(summands(tree := syntax_tree(text))) == 1 and not is_sum(tree)
+    try:
+        is_product = not is_sum(syntax_tree(text))
+    except ExpressionError:
+        return False
     return is_product and len(rates) == 1 and f"{rates[0]}**" not in text
 
 

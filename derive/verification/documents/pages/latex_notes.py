@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import get_args
 
-from derive.reading.document import Display, Document
+from derive.reading.document import Document
 from derive.reading.formats.tex import BODY
 from derive.reading.latex.display_reader import Macro, macros_of
 from derive.verification.documents.pages.latex_text import COMMANDS, code, escaped, formula
@@ -67,7 +67,7 @@ def latex_notes(verdicts: DocumentVerdicts, document: Document) -> str:
 def _notes(verdicts: DocumentVerdicts, document: Document) -> Iterator[tuple[int, str]]:
     """Places and texts of notes: before displays, and after inline formulas."""
     for display in document.displays:
-        within = [one for one in verdicts.formulas if _is_in(display, one)]
+        within = [one for one in verdicts.formulas if one.is_in(display)]
         if within:
             lines = dict.fromkeys(_short(one) for one in within)
             start, end = display.extent
@@ -76,10 +76,6 @@ def _notes(verdicts: DocumentVerdicts, document: Document) -> Iterator[tuple[int
 
 def _note(text: str) -> str:
     return rf"\formulaverdict{{{text}}}"
-
-
-def _is_in(display: Display, one: FormulaVerdict) -> bool:
-    return display.extent[0] <= one.span[0] < display.extent[1]
 
 
 def _short(one: FormulaVerdict) -> str:

@@ -27,7 +27,7 @@ def markdown_notes(verdicts: DocumentVerdicts, document: Document) -> str:
 
 def notebook_notes(verdicts: DocumentVerdicts, document: Document) -> str:
     """The notebook with verdicts in its cells, and below cells with programs."""
-    content = json.loads(Path(document.file).read_text(encoding="utf-8"))
+    content = json.loads(Path(document.file).read_text(encoding="utf-8-sig"))
     programs = {one.number for one in document.programs}
     ends = (*(start - 1 for start in document.cells[1:]), len(document.text))
     cells = []
@@ -57,15 +57,13 @@ def _noted(verdicts: DocumentVerdicts, document: Document, start: int, end: int)
     """A part of the text with its notes."""
     pieces = []
     for display in document.displays:
-        own = [one for one in verdicts.formulas if _is_in(display, one)]
-        if start <= display.extent[0] < end and (note := _note(document, display, own)):
+        if not start <= display.extent[0] < end:
+            continue
+        own = [one for one in verdicts.formulas if one.is_in(display)]
+        if note := _note(document, display, own):
             pieces += [document.text[start : display.extent[1]], note]
             start = display.extent[1]
     return "".join([*pieces, document.text[start:end]])
-
-
-def _is_in(display: Display, one: FormulaVerdict) -> bool:
-    return display.extent[0] <= one.span[0] < display.extent[1]
 
 
 def _note(document: Document, display: Display, own: Sequence[FormulaVerdict]) -> str:

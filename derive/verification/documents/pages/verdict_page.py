@@ -105,8 +105,7 @@ def _text(verdicts: DocumentVerdicts, document: Document, macros: Macros) -> str
         return own
 
     def formula(display: Display) -> FormulaMarkup:
-        start, end = display.extent
-        own = taken(lambda one: start <= one.span[0] < end)
+        own = taken(lambda one: one.is_in(display))
         if not own and not re.sub(DEFINITION, "", display.latex).strip():
             return FormulaMarkup("")
         if not display.is_inline:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from derive.reading.document import Kind
+from derive.reading.document import Display, Kind
 from derive.reading.latex.tree import Span
 from derive.verification.verdict import VerdictName
 
@@ -76,6 +76,11 @@ class FormulaVerdict:
     wrong_spans: tuple[Span, ...] = ()
     state: str = ""
     basis: Literal["document", "known system", ""] = ""
+
+    def is_in(self, display: Display) -> bool:
+        """Whether the formula stands in a display."""
+        start, end = display.extent
+        return start <= self.span[0] < end
 
 
 @dataclass(frozen=True)

@@ -106,7 +106,7 @@ class Judge:
         if self._unknown(formula.sides[:1]):
             return self._not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
-        if len(formula.sides) > 2 and any(DECIMAL.search(side.text) for side in formula.sides):
+        if len(formula.sides) > 2 and any(map(self._has_numbers, formula.sides)):
             known = [k for k in known if k == 1]  # others have the numbers of an example
             if not known:
                 return plain("context", formula, "it states a value")
@@ -181,6 +181,11 @@ class Judge:
             and value.is_number
             and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
         )
+
+    def _has_numbers(self, side: FormulaText) -> bool:
+        """Whether a side has the numbers of an example, perhaps with units, in place of letters."""
+        words = WORD.findall(side.text)
+        return bool(DECIMAL.search(side.text)) and (not words or bool(self._unknown([side])))
 
     def _prescribes(self, formula: DocumentFormula) -> bool:
         """Whether a formula states a coordinate or its rate as a function of time, as φ = ω t."""
