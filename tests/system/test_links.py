@@ -202,7 +202,7 @@ height = "R/2"
         ('rod = [0, ["q", 0]]', "links 1: .*q"),
         ("rod = [0, [0, 0]]\nradius = 1", "a rod has no radius"),
         ("radius = 1", "must have one of the keys rod, thread"),
-        ("wheel = 0", "'radius' is missing in links 1"),
+        ("wheel = 0", "links 1: a wheel needs radius; its keys are wheel, radius, angle"),
         ("wheel = 0\nradius = 1\nplane = [[1, 0, 0], [0, 1, 0]]", "plane of 3 and 3 components"),
         ("wheels = 0", "unknown key 'wheels'.*wheel"),
         ('rod = [0, ["x_dot", 0]]', "links depends on x_dot"),

@@ -1,0 +1,127 @@
+"""Joints and links of a system in a TOML file.
+
+A row has its kind as a key, with the first argument of the kind's function or class as the value;
+its other keys are the names of the other arguments.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
+from inspect import Parameter, signature
+from typing import Any
+
+import sympy as sp
+
+from derive.system.constraints import Constraint
+from derive.system.files.body_tables import Value, orientation
+from derive.system.files.tables import TomlTable
+from derive.system.joints.body_joints import hinge, prismatic
+from derive.system.joints.point_joints import ball, fixed_distance, pin, slider
+from derive.system.joints.rolling_joints import rolling_on_line, rolling_on_plane
+from derive.system.links.centred_links import Block, Box, Cart, Wheel
+from derive.system.links.line_links import Line, Plate, Rail, Rod, Spring, Thread
+from derive.system.links.link import Link
+from derive.system.parts import SystemDefinitionError
+from solvers.io.suggestion import shortened
+from solvers.io.toml_input import InputError
+
+JOINTS: dict[str, Callable[..., list[Constraint]]] = {
+    joint.__name__: joint
+    for joint in (pin, ball, slider, fixed_distance, hinge, prismatic,
+        rolling_on_line, rolling_on_plane)
+}  # fmt: skip
+LINKS: dict[str, Callable[..., Link]] = {
+    link.__name__.lower(): link
+    for link in (Rod, Thread, Spring, Rail, Plate, Wheel, Block, Cart, Box)
+}
+#: Arguments that are orientations of bodies.
+ORIENTATIONS = ("orientation", "first", "second")
+#: The argument that is no key: the coordinates are those of the system.
+COORDINATES = "coordinates"
+
+
+def read_joints(table: TomlTable, value: Value, q: Sequence[sp.Symbol]) -> Iterator[Constraint]:
+    """The constraints of the joints of a file; ``value(name, text)`` is the value of a formula."""
+    for row, kind in _rows(table, "joints", JOINTS):
+        arguments = {key: _joint_value(row, key, value) for key in row.values if key != kind}
+        if COORDINATES in signature(JOINTS[kind]).parameters:
+            arguments[COORDINATES] = q
+        with _named_errors(row):
+            constraints = JOINTS[kind](row.text(kind), **arguments)
+        yield from constraints
+
+
+def read_links(table: TomlTable, value: Value) -> Iterator[Link]:
+    """The links of a file; ``value(name, text)`` is the value of a formula."""
+    for row, kind in _rows(table, "links", LINKS):
+        formula, points = partial(value, row.name), row.values[kind]
+        if LINKS[kind] not in Line.__subclasses__():
+            points = [points]
+        elif not isinstance(points, list):
+            raise InputError(f"{kind} = {shortened(points)} in {row.name} must be a list of points")
+        with _named_errors(row):
+            places = [_place(row, kind, point, formula) for point in points]
+            arguments = {key: _link_value(row, key, formula) for key in row.values if key != kind}
+            link = LINKS[kind](*places, **arguments)
+        yield link
+
+
+def _arguments(part: Callable[..., Any]) -> dict[str, Parameter]:
+    """The arguments of a kind that are keys beside the kind."""
+    _, *others = signature(part).parameters.values()
+    return {one.name: one for one in others if one.name != COORDINATES}
+
+
+def _rows(
+    table: TomlTable, name: str, kinds: Mapping[str, Callable[..., Any]]
+) -> Iterator[tuple[TomlTable, str]]:
+    """Rows of a file with their kinds; an `InputError` names a key that is missing or unknown."""
+    keys = dict.fromkeys(key for part in kinds.values() for key in _arguments(part))
+    for row in table.listed(name, (*kinds, *keys)):
+        own = [kind for kind in kinds if kind in row.values]
+        if len(own) != 1:
+            raise InputError(f"{row.name} must have one of the keys {', '.join(kinds)}")
+        kind, known = own[0], _arguments(kinds[own[0]])
+        named = f"its keys are {', '.join([kind, *known])}"
+        for key, argument in known.items():
+            if key not in row.values and argument.default is Parameter.empty:
+                raise InputError(f"{row.name}: a {kind} needs {key}; {named}")
+        for key in row.values:
+            if key not in (kind, *known):
+                raise InputError(f"{row.name}: a {kind} has no {key}; {named}")
+        yield row, kind
+
+
+@contextmanager
+def _named_errors(row: TomlTable) -> Iterator[None]:
+    try:
+        yield
+    except SystemDefinitionError as error:
+        raise InputError(f"{row.name}: {error}") from error
+
+
+def _joint_value(row: TomlTable, key: str, value: Value) -> object:
+    if key in ORIENTATIONS:
+        return orientation(row, key, value)
+    if key in ("axis", "axle"):
+        return row.text(key)
+    formula, given = partial(value, row.name), row.values[key]
+    return (
+        _place(row, key, given, formula) if isinstance(given, list) else formula(row.formula(key))
+    )
+
+
+def _link_value(row: TomlTable, key: str, formula: Callable[[str], sp.Expr]) -> object:
+    if key != "plane":
+        return formula(row.formula(key))
+    axes = row.values[key]
+    if not isinstance(axes, list) or len(axes) != 2:
+        raise InputError(f"plane = {shortened(axes)} in {row.name} must be two unit vectors")
+    return tuple(_place(row, key, axis, formula) for axis in axes)
+
+
+def _place(row: TomlTable, key: str, point: object, formula: Callable[[str], sp.Expr]) -> object:
+    """A point: the number of a mass, or formulas of its components."""
+    if isinstance(point, list):
+        return tuple(map(formula, TomlTable(row.name, {key: point}, (key,)).formulas(key)))
+    return point
