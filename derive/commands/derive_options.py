@@ -3,7 +3,7 @@
 from argparse import Action, ArgumentParser
 from pathlib import Path
 
-from derive.system.shipped import large_names, names
+from derive.system.files.shipped import large_names, names
 
 EXAMPLES = """\
 examples:

@@ -15,9 +15,9 @@ from derive.commands.derive_options import add_arguments
 from derive.mechanics.constraints.differentiated_constraints import Constraints
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.reduced_coordinates import reduced
+from derive.system.files.shipped import names
+from derive.system.files.system_catalogue import UnknownSystemError, load
 from derive.system.parts import SystemDefinitionError
-from derive.system.shipped import names
-from derive.system.system_catalogue import UnknownSystemError, load
 from solvers.io.terminal import standard_streams
 
 PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""

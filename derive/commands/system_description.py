@@ -5,8 +5,8 @@ import tomllib
 from itertools import groupby
 from textwrap import TextWrapper
 
-from derive.system.shipped import USUAL, large_names, names
-from derive.system.system_catalogue import LARGEST, drawing, load, published
+from derive.system.files.shipped import USUAL, large_names, names
+from derive.system.files.system_catalogue import LARGEST, drawing, load, published
 
 WIDTH = 96
 #: Remark on systems whose modules do not ship.

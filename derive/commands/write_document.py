@@ -4,8 +4,8 @@ from argparse import Namespace
 
 from derive.handout.document_files import WRITERS, write_document
 from derive.mechanics.derivation import Derivation
+from derive.system.files.system_catalogue import load
 from derive.system.parts import SystemDefinitionError
-from derive.system.system_catalogue import load
 
 
 def is_requested(arguments: Namespace) -> bool:

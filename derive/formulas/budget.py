@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import log
+from math import log, prod
 
 import sympy as sp
 from sympy.core.basic import Basic
@@ -175,3 +175,36 @@ def _extent(value: Basic, parts: Sequence[Extent]) -> Extent:
     own = sum(not factor.as_base_exp()[0].is_Atom for factor in value.args) if value.is_Mul else 0
     factors = max(own, *(part.factors for part in parts))
     return Extent(size, depth, exponent, nesting, first, second, factors)
+
+
+WAVES = (sp.sin, sp.cos)
+#: Terms of the largest expression that is expanded.
+MOST_EXPANDED = 5000
+
+
+def is_expandable(expression: sp.Expr, *, waves: int = 1, largest: int = MOST_EXPANDED) -> bool:
+    """Whether the expanded expression has at most `largest` terms, before terms are collected.
+
+    With `waves` = 2, products of sines and cosines are expanded, too, into sums of them.
+    """
+    return _expanded_size(expression, waves, {}) <= largest
+
+
+def _expanded_size(expression: sp.Expr, waves: int, known: dict[sp.Expr, int]) -> int:
+    """Number of terms of the expanded expression, up to a bound."""
+    if expression not in known:
+        sizes = [_expanded_size(part, waves, known) for part in expression.args]
+        if isinstance(expression, WAVES):
+            sizes = [waves]  # a product of n waves is a sum of 2^n waves, of a power n + 1
+        if expression.is_Add:
+            size = sum(sizes)
+        elif expression.is_Mul:
+            size = prod(sizes)
+        elif expression.is_Pow and isinstance(expression.base, WAVES) and expression.exp.is_Integer:
+            size = 1 + (waves - 1) * abs(int(expression.exp))
+        elif expression.is_Pow and expression.exp.is_Integer:  # denominators are expanded, too
+            size = min(sizes[0], MOST_EXPANDED + 1) ** min(abs(int(expression.exp)), 100)
+        else:
+            size = max(sizes, default=1)
+        known[expression] = min(size, MOST_EXPANDED + 1)
+    return known[expression]

@@ -15,13 +15,13 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.budget import is_expandable
 from derive.formulas.derivative import derivative
-from derive.formulas.proofs.expansion_size import is_expandable
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.independence import is_singular
-from derive.system.rigid_body import RigidBody
+from derive.system.bodies.rigid_body import RigidBody
 from derive.system.symbols import TIME
 
 AXES = "xyz"

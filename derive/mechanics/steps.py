@@ -7,7 +7,7 @@ from html import escape
 import sympy as sp
 
 from derive.formulas.typeset.typesetting import Formula
-from derive.mechanics.cyclic_coordinates import CyclicCoordinates
+from derive.mechanics.routhian import CyclicCoordinates
 
 WORDS = {
     "Positions": "The positions of the masses; with the forces, they define the system.",

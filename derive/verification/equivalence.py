@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion_size import is_expandable
+from derive.formulas.budget import is_expandable
 from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.engine import joined

@@ -9,10 +9,10 @@ from typing import Any
 from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
+from derive.system.files.system_catalogue import load, published
 from derive.system.files.tables import TomlTable, read
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
-from derive.system.system_catalogue import load, published
 from derive.verification.derived import QUANTITIES
 from derive.verification.motion_verdicts import judge_set
 from derive.verification.quantity_verdicts import judge_formula

@@ -7,8 +7,8 @@ from functools import partial
 
 import sympy as sp
 
+from derive.formulas.budget import is_expandable
 from derive.formulas.evaluation.numeric import independent, solved
-from derive.formulas.proofs.expansion_size import is_expandable
 from derive.formulas.syntax import ExpressionError
 from derive.verification.constrained_motions import equations
 from derive.verification.engine import joined

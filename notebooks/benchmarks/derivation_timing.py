@@ -12,7 +12,7 @@ from sympy.core.cache import clear_cache
 from derive.codegen.module_files import files
 from derive.codegen.module_functions import contents
 from derive.mechanics.derivation import Derivation
-from derive.system.system_catalogue import load
+from derive.system.files.system_catalogue import load
 
 
 def lambdified_rhs() -> Callable[..., Any]:

@@ -67,7 +67,7 @@ def load(name: str) -> GeneratedModule:
     """
     if module := _shipped(name):
         return module
-    from derive.system import system_catalogue
+    from derive.system.files import system_catalogue
 
     try:
         return build(system_catalogue.load(name))
@@ -177,7 +177,7 @@ def specialiser(
 def system_of(module: GeneratedModule) -> "System":
     """The system that a module was generated from, without eliminated coordinates."""
     from derive import reduced
-    from derive.system import system_catalogue
+    from derive.system.files import system_catalogue
 
     return reduced(_systems.get(module.__name__) or system_catalogue.load(module.SYSTEM))
 

@@ -13,7 +13,7 @@ from derive import Coordinate, Derivation, Parameter, PointMass, System, reduced
 from derive.codegen import module_functions as codegen
 from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
 from derive.codegen.module_files import files as files_of
-from derive.system import system_catalogue
+from derive.system.files import system_catalogue
 from solvers import integrate, load
 from solvers.app.modules import build
 from solvers.equations.module import GeneratedModule, depends_on_time, has_function, header

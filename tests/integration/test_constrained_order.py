@@ -22,9 +22,8 @@ from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import with_functions
 from solvers.equations.starts.consistent_start import consistent_start
 from solvers.equations.starts.decimal_state import decimal_state, sine_and_cosine
-from solvers.references.decimal_projection import DecimalProjection
 from solvers.references.exact_literals import with_exact_literals
-from solvers.references.taylor import decimal_motion
+from solvers.references.taylor import DecimalProjection, decimal_motion
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau

@@ -20,8 +20,8 @@ from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled import method_source
-from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Kernel
+from solvers.integration.compiled.method_source import IMPLICIT_FILES
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.loops import compiled_loop

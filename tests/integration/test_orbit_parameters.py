@@ -16,11 +16,10 @@ import generated.single_pendulum as single
 from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
 from solvers.app.modules import build
 from solvers.integration.orbits.family import SpecialOrbit
-from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.orbit_family import orbit_family
 from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart
 from solvers.integration.orbits.periodic_orbit import periodic_orbit
-from solvers.integration.orbits.symmetry import Reversal
+from solvers.integration.orbits.symmetry import Nature, Reversal
 
 DAMPED = {"a": 0.01, "Omega": 6.0, "c": 0.3}
 

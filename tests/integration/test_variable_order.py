@@ -8,9 +8,9 @@ import pytest
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.integration.compiled import method_source
-from solvers.integration.compiled.implicit_source import IMPLICIT_FILES
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.memory_layout import STATUSES
+from solvers.integration.compiled.method_source import IMPLICIT_FILES
 from solvers.integration.integrate import integrate
 from solvers.integration.loops import python_loop
 from solvers.integration.problem.problem import Options, Problem

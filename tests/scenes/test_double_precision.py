@@ -11,7 +11,7 @@ import generated.double_pendulum as dp
 import generated.henon_heiles as hh
 import generated.swinging_atwood as atwood
 from solvers.app.modules import load as load_module
-from solvers.integration.accuracy import double_precision, integration_run, longer_numbers
+from solvers.integration.accuracy import double_precision, integration_run, sufficient_run
 from solvers.integration.accuracy.double_precision import sufficient
 from solvers.integration.accuracy.integration_run import IntegrationRun, NotAccurateError
 from solvers.integration.accuracy.method_choice import MethodChoice
@@ -115,7 +115,7 @@ def test_without_a_compiler_sums_are_not_compensated(monkeypatch: pytest.MonkeyP
 def test_series_report_progress_and_stop_at_their_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, lines = replace(LONG, duration=12.0, accuracy=1e-13), list[str]()
     monkeypatch.setattr(integration_run, "MAX_PRODUCTS", 1e6)
-    monkeypatch.setattr(longer_numbers, "PRECISIONS", {})
+    monkeypatch.setattr(sufficient_run, "PRECISIONS", {})
     with pytest.raises(NotAccurateError, match=r"double precision reaches .* 1e\+06 products"):
         selected(scene, lines.append)
     assert lines[-1].startswith("Taylor series of 24 digits at ")

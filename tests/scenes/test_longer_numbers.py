@@ -12,11 +12,11 @@ import generated.double_pendulum as dp
 from derive import Coordinate, Parameter, PointMass, System
 from holonomic import build
 from solvers.app.modules import load as load_module
-from solvers.integration.accuracy import longer_numbers, sufficient_run
+from solvers.integration.accuracy import sufficient_run
 from solvers.integration.accuracy.checked_run import CheckedRun
 from solvers.integration.accuracy.integration_run import IntegrationRun
-from solvers.integration.accuracy.longer_numbers import by_longer_numbers
 from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.integration.accuracy.sufficient_run import by_longer_numbers
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended, kernel
 from solvers.references.taylor import taylor
@@ -58,7 +58,7 @@ def test_double_double_numbers_take_over_where_doubles_end() -> None:
 def without_double_double(monkeypatch: pytest.MonkeyPatch) -> None:
     """As for right-hand sides that call functions."""
     rest = {name: PRECISIONS[name] for name in ("long double", "quadruple")}
-    monkeypatch.setattr(longer_numbers, "PRECISIONS", rest)
+    monkeypatch.setattr(sufficient_run, "PRECISIONS", rest)
 
 
 @pytest.mark.usefixtures("without_double_double")
@@ -124,7 +124,7 @@ def test_runs_are_compared_where_motions_are_fast() -> None:
     slowest = np.sqrt(2 / farthest - 1)
     scene = Scene(comet, comet.DEFAULTS, (farthest, 0.0, 0.0, slowest), 6.0, samples=9)
     run = IntegrationRun(motion_of(scene), MethodChoice("gauss8", "lagrangian", ""), 1e-12)
-    times = longer_numbers._compared_times(run, scene.times)
+    times = sufficient_run._compared_times(run, scene.times)
     assert np.abs(times - np.pi).min() < 1e-5
     assert np.abs(np.array([*scene.times, *run.motion.sample_times]) - np.pi).min() > 1e-3
 
@@ -137,7 +137,7 @@ def test_rounding_errors_of_constants_count() -> None:
         scene = Scene(bars, bars.DEFAULTS, tuple(start), 12.0, samples=61)
         limit = kernel(bars, "long double").epsilon
         arguments = motion_of(scene), "long double", limit, scene.times, lambda _: None
-        model, _ = longer_numbers._checked(*arguments)
+        model, _ = sufficient_run._checked(*arguments)
         exact = integrate_extended(bars, bars.DEFAULTS, start, scene.times, "quadruple", 1e-24)
         assert np.abs(model.states(scene.times) - exact).max() <= model.error_estimate
 
@@ -161,7 +161,7 @@ def test_without_a_compiler_decimals_take_over(monkeypatch: pytest.MonkeyPatch) 
     def series(motion, choice, *arguments):
         return CheckedRun(IntegrationRun(motion, choice, 24), 1e-15)
 
-    monkeypatch.setattr(longer_numbers, "kernel", missing)
+    monkeypatch.setattr(sufficient_run, "kernel", missing)
     monkeypatch.setattr(sufficient_run, "by_series", series)
     result = selected(LONG)
     assert result.model.run.method_choice.is_series
@@ -176,7 +176,7 @@ def test_quadruple_numbers_need_no_long_double(monkeypatch: pytest.MonkeyPatch) 
             raise NoCompilerError(f"no {name} numbers")
         return kernel(module, name)
 
-    monkeypatch.setattr(longer_numbers, "kernel", only_quadruple)
+    monkeypatch.setattr(sufficient_run, "kernel", only_quadruple)
     declined: dict[str, str] = {}
     scene = replace(LONG, duration=5.0)
     model = by_longer_numbers(motion_of(scene), 1e-14, scene.times, declined, lambda _: None)
@@ -193,7 +193,7 @@ def test_too_many_steps_and_too_little_accuracy_are_reasons(
     assert by_longer_numbers(*arguments) is None
     assert declined["double-double"].startswith("double-double numbers reach ")
     assert declined["quadruple"].startswith("quadruple numbers reach ")
-    monkeypatch.setattr(longer_numbers, "MOST_PRODUCTS", 1e4)
+    monkeypatch.setattr(sufficient_run, "MOST_PRODUCTS", 1e4)
     assert by_longer_numbers(*arguments) is None
     assert all("steps" in reason for reason in declined.values())
 
@@ -201,10 +201,10 @@ def test_too_many_steps_and_too_little_accuracy_are_reasons(
 def test_growth_of_errors_is_extrapolated_where_they_are_large() -> None:
     times = np.linspace(0, 30, 301)
     errors = np.minimum(1e-18 * np.exp(2 * times), 1.0)
-    assert longer_numbers._growth(times, errors, 1e-18) == pytest.approx(e**60, rel=1e-6)
+    assert sufficient_run._growth(times, errors, 1e-18) == pytest.approx(e**60, rel=1e-6)
     small = 1e-18 * np.exp(times / 10)
-    assert longer_numbers._growth(times, small, 1e-18) == pytest.approx(e**3)
-    assert longer_numbers._growth(times, np.ones(301), 1e-18) == 1.0
+    assert sufficient_run._growth(times, small, 1e-18) == pytest.approx(e**3)
+    assert sufficient_run._growth(times, np.ones(301), 1e-18) == 1.0
 
 
 def test_a_named_method_is_not_replaced_and_the_summary_names_the_numbers() -> None:

@@ -20,7 +20,7 @@ import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 from solvers.app.modules import load as load_module
 from solvers.equations.linearisation.normal_modes import _generalized_eigh, mode_spread
-from solvers.integration.accuracy import checked_run, longer_numbers
+from solvers.integration.accuracy import checked_run, sufficient_run
 from solvers.integration.accuracy.checked_motion import Motion, OutsideDomainError
 from solvers.integration.accuracy.checked_run import estimated_error
 from solvers.integration.accuracy.double_precision import check_times
@@ -30,7 +30,7 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import RECORD, MethodChoice, cheapest, usual_form
-from solvers.integration.accuracy.taylor_motion import by_series
+from solvers.integration.accuracy.sufficient_run import by_series
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
@@ -477,7 +477,7 @@ def test_the_full_equations_are_checked_by_another_method() -> None:
 def test_where_no_compiled_numbers_are_sufficient_series_have_more_digits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(longer_numbers, "PRECISIONS", {})
+    monkeypatch.setattr(sufficient_run, "PRECISIONS", {})
     scene = find("long", load_module)
     selection = selected(scene)
     assert selection.model.run.method_choice.method == "taylor"

@@ -34,8 +34,7 @@ from derive.system.parts import SystemDefinitionError
 from holonomic import Status, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.equations.singularities.singular_coordinates import singular_coordinates
-from solvers.integration.checks.singularity import SingularityWarning
+from solvers.integration.checks.singularity import SingularityWarning, singular_coordinates
 from solvers.references.rigid_bodies import free_body, top_inclination
 
 w, x, y, z, a, b, c, g = sp.symbols("w x y z a b c g", real=True)

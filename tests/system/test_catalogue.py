@@ -26,8 +26,8 @@ from scipy.optimize import minimize
 
 import generated
 from derive import TIME, PointMass, RigidBody, System, load, names, reduced, systems, write
-from derive.system.shipped import large_names
-from derive.system.system_catalogue import drawing
+from derive.system.files.shipped import large_names
+from derive.system.files.system_catalogue import drawing
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form

@@ -240,7 +240,7 @@ def test_joints_in_files(text: str, joint: list[Constraint], tmp_path: Path) -> 
     [
         ('p = ["x", "y"]', "must have one of the keys pin, ball"),
         ('pin = "A"\np = ["x", "y"]', "joints 1: a pin needs q"),
-        ('pin = "A"\np = ["x", "y"]\nq = [0, 0]\nlength = 1', "a pin has no length; its keys are pin, p, q"),
+        ('pin = "A"\np = ["x", "y"]\nq = [0, 0]\nlength = 1', "a pin has no length; its keys"),
         ('pin = "A"\np = ["x"]\nq = [0, 0]', "a point of 1 components: give 2"),
         ('pin = "A"\np = "x"\nq = [0, 0]', "not a sequence"),
         ('slider = "x"\np = ["x", "y"]\nthrough = [0, 0]\ndirection = [1, 2]',

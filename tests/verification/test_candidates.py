@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from derive.system.system_catalogue import load
+from derive.system.files.system_catalogue import load
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.numbers.matching import Match

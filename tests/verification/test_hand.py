@@ -15,8 +15,8 @@ from damage import toml
 from mutation import Mutation
 
 from derive import Derivation, load, names
-from derive.system.shipped import large_names
-from derive.system.system_catalogue import published
+from derive.system.files.shipped import large_names
+from derive.system.files.system_catalogue import published
 from derive.verification import hand, quantity_verdicts
 from derive.verification.hand import EQUATIONS, HEADER, judge
 from derive.verification.quantity_verdicts import judge_formula

@@ -6,7 +6,7 @@ import pytest
 from derivations import DERIVATIONS
 
 from derive.reading.documents import read_document
-from derive.system.system_catalogue import load
+from derive.system.files.system_catalogue import load
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import Hints, hints
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict

@@ -23,7 +23,7 @@ from typing import TypeAlias, TypeVar
 import sympy as sp
 from sympy.polys.rings import PolyElement, PolyRing
 
-from derive.formulas.proofs.expansion_size import is_expandable
+from derive.formulas.budget import is_expandable
 
 #: Largest power, and largest multiple of an angle, that is expanded.
 MAX_MULTIPLE = 100

@@ -14,8 +14,8 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.budget import is_expandable
 from derive.formulas.derivative import derivative
-from derive.formulas.proofs.expansion_size import is_expandable
 from derive.mechanics.energies.reduction import reduced
 
 Vector: TypeAlias = tuple[sp.Expr, ...]

@@ -7,13 +7,13 @@ from typing import TypeAlias
 
 import sympy as sp
 
+from derive.formulas.budget import is_expandable
 from derive.formulas.derivative import derivative
-from derive.formulas.proofs.expansion_size import is_expandable
 from derive.formulas.switching_functions import CHOICES, decisive_numbers, switching_functions
 from derive.mechanics.energies.kinematic_tree import KinematicTree, kinematic_tree
 from derive.mechanics.energies.reduction import gathered, reduced
 from derive.mechanics.energies.turning import turned
-from derive.system.rigid_body import RigidBody
+from derive.system.bodies.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
 

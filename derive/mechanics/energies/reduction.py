@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion_size import LARGEST, is_expandable
+from derive.formulas.budget import MOST_EXPANDED, is_expandable
 from derive.mechanics.energies.harmonics import Harmonics
 
 Square = Callable[[sp.Expr], sp.Expr]
@@ -20,7 +20,7 @@ MOST_TERMS = 1000
 SQUARES: tuple[Square, ...] = (lambda a: 1 - 2 * sp.sin(a) ** 2, lambda a: 2 * sp.cos(a) ** 2 - 1)
 
 
-def reduced(expression: sp.Expr, largest: int = LARGEST) -> sp.Expr:
+def reduced(expression: sp.Expr, largest: int = MOST_EXPANDED) -> sp.Expr:
     """The form of `expression` with the fewest operations; unchanged if too long."""
     if not expression.has(sp.sin, sp.cos) or not is_expandable(
         expression, waves=2, largest=largest

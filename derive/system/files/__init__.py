@@ -1,1 +1,1 @@
-"""Systems as TOML files."""
+"""Systems by name or from TOML files."""

@@ -5,9 +5,9 @@ from typing import Any
 
 import sympy as sp
 
+from derive.system.bodies.orientation import Orientation, quaternion, rotation_matrix, rotations
+from derive.system.bodies.rigid_body import RigidBody
 from derive.system.files.tables import TomlTable
-from derive.system.orientation import Orientation, quaternion, rotation_matrix, rotations
-from derive.system.rigid_body import RigidBody
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion_size import is_expandable
+from derive.formulas.budget import is_expandable
 from derive.system.constraints import AXES, Constraint, Point
 from derive.system.parts import SystemDefinitionError, formulas
 

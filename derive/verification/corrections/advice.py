@@ -11,8 +11,8 @@ from itertools import islice
 
 import sympy as sp
 
+from derive.formulas.budget import is_expandable
 from derive.formulas.expression import parse
-from derive.formulas.proofs.expansion_size import is_expandable
 from derive.mechanics.energies.reduction import reduced
 from derive.verification.corrections.goals import Goal, goals
 from derive.verification.corrections.replacement import (

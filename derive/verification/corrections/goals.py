@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.formulas.proofs.expansion_size import is_expandable
+from derive.formulas.budget import is_expandable
 from derive.system.symbols import TIME
 from derive.verification.derived import QUANTITIES, foreign_symbols
 from derive.verification.reference_system import ReferenceSystem, depends_on, variables

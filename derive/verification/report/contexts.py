@@ -13,7 +13,7 @@ import sympy as sp
 from derive.formulas import expression
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.reduction import reduced
-from derive.system.system_catalogue import load
+from derive.system.files.system_catalogue import load
 from derive.verification.engine import Context
 from derive.verification.reference_system import depends_on, time_derivative
 

@@ -9,7 +9,7 @@ from typing import Any
 from derive.reading.document import Display, Document
 from derive.reading.latex.display_reader import macros_of
 from derive.reading.latex.tree import Span, Statement, Unreadable
-from derive.system.system_catalogue import load
+from derive.system.files.system_catalogue import load
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.report.alignment import aligned
 from derive.verification.report.differences import first_difference

@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 
 from derive.commands import derive_options as derive_arguments
-from derive.system.shipped import large_names, names
+from derive.system.files.shipped import large_names, names
 from solvers.app.commands.options import complete_with
 
 SUMMARY = "write generated modules, or check them"

@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from derive.system.shipped import large_names, names
+from derive.system.files.shipped import large_names, names
 from solvers.app.commands import options
 
 SUMMARY = "write equations or a whole simulation in another language"
@@ -43,7 +43,7 @@ def _listing() -> str:
 def run(arguments: Namespace) -> int:
     """Write the file; print its path, and how to run it."""
     from derive.codegen.export.language_export import export, target_of
-    from derive.system.system_catalogue import UnknownSystemError, load
+    from derive.system.files.system_catalogue import UnknownSystemError, load
     from solvers.app.mockup_unit import write_unit
     from solvers.app.simulation_export import of_scene
     from solvers.io.suggestion import did_you_mean

@@ -2,7 +2,7 @@
 
 from argparse import ArgumentParser, Namespace
 
-from derive.system.shipped import large_names, names
+from derive.system.files.shipped import large_names, names
 from solvers.app.commands.options import add_examples, complete_with
 
 SUMMARY = "list systems, with drawings"

@@ -16,9 +16,9 @@ import numpy as np
 
 from solvers.equations.forms import Form
 from solvers.equations.sliding import is_affine
+from solvers.integration.problem.events import SwitchEvent
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.problem.switch import SwitchEvent
 from solvers.integration.results.outcome import Outcome
 from solvers.runge_kutta.stepper import Array
 

@@ -8,8 +8,7 @@ import numpy as np
 from solvers.equations.module import GeneratedModule, function, has_constraints
 from solvers.equations.number_checks import positive
 from solvers.equations.starts.assembly import Assembly
-from solvers.integration.orbits.nature import Nature, states_near
-from solvers.integration.orbits.symmetry import Reversal, angles
+from solvers.integration.orbits.symmetry import Nature, Reversal, angles, states_near
 from solvers.integration.variations.tangents import Tangents
 from solvers.runge_kutta.stepper import Array
 

@@ -9,11 +9,10 @@ from solvers.equations.module import GeneratedModule, function, integrals
 from solvers.equations.number_checks import Values, positive, real_number
 from solvers.equations.signature_checks import checked
 from solvers.integration.checks.predictability import ignore_predictability
-from solvers.integration.orbits.nature import Nature
 from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.orbits.orbit_newton import NoPeriodicOrbitError, solve
 from solvers.integration.orbits.orbit_shooting import SMALL, OrbitConditions, OrbitStart
-from solvers.integration.orbits.symmetry import Reversal
+from solvers.integration.orbits.symmetry import Nature, Reversal
 from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options

@@ -1,18 +1,20 @@
-"""Events: a component of the state crosses a value, or a user's function changes its sign."""
+"""Events: a component of the state crosses a value, or a function changes its sign."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import REAL, real_number
 from solvers.equations.signature_checks import checked
 from solvers.io.argument_types import check_direction
 from solvers.io.suggestion import did_you_mean, shortened
+from solvers.runge_kutta.stepper import Array, NotFiniteError
 
 
 @checked
@@ -162,3 +164,32 @@ class UserEvent:
         if type(value) in REAL and isfinite(value):
             return float(value)  # at once, since events are called often
         return real_number(f"the value of {self._name} at t = {t}", value)
+
+
+#: Stands for a switching function that is 0, with the sign that is held.
+TINY = float(np.finfo(float).tiny)
+
+
+@dataclass(frozen=True)
+class SwitchEvent:
+    """An event that ends a step: a switching function changes its sign, or does not stay 0."""
+
+    form: Form  # Lagrange's, with the signs that are held
+    index: int
+    level: float  # the value that counts as 0, up to rounding errors
+    terminal: ClassVar[bool] = True
+
+    def __call__(self, t: float, y: Array) -> float:
+        """The switching function at an ordinary state, or 1 - s² of one that stays 0."""
+        value = self.value(t, y) - self.level
+        return value or TINY * (self.form.signs[self.index] or 1.0)
+
+    def value(self, t: float, y: Array) -> float:
+        """The same without the level."""
+        k, state = self.index, y[: len(self.form.state)]
+        try:
+            if self.form.signs[k]:
+                return float(self.form.values(t, state)[k])
+            return float(1 - self.form.switching(t, state).signs[k] ** 2)
+        except ArithmeticError as error:
+            raise NotFiniteError(f"a switching function at t = {t}: {error}") from error

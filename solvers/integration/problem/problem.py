@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from solvers.equations.forms import Form
 from solvers.equations.module import integrals
 from solvers.equations.number_checks import Values
+from solvers.integration.problem.events import SwitchEvent
 from solvers.integration.problem.inputs import Controller, Held, History, Schedule
-from solvers.integration.problem.switch import SwitchEvent
 from solvers.runge_kutta.stepper import Array
 from solvers.runge_kutta.tableau import Tableau
 

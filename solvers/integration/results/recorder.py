@@ -5,16 +5,18 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from solvers.integration.problem.problem import EventFunction, Problem
-from solvers.integration.results.crossings import (
+from solvers.integration.results.event_location import (
     NODES,
     ROUGH_NODES,
+    Bracket,
     Shape,
     approach,
+    estimate,
+    locate,
     may_recur,
     rough_polynomial,
     separate_crossings,
 )
-from solvers.integration.results.location import Bracket, estimate, locate
 from solvers.integration.results.outcome import Outcome
 from solvers.integration.results.step_states import Curve, EventCourse, OrdinaryStates, StepStates
 from solvers.runge_kutta.stepper import Array

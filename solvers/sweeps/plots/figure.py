@@ -14,10 +14,9 @@ from solvers.io import figures
 from solvers.io.figure_names import symbol
 from solvers.io.units import with_unit
 from solvers.sweeps.definition.sweep_checks import ENERGY
-from solvers.sweeps.plots.bifurcation_plot import bifurcation
+from solvers.sweeps.plots.diagrams import bifurcation, response
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
 from solvers.sweeps.plots.plot_quantity import Quantity, label_axis, letter
-from solvers.sweeps.plots.response_plot import response
 from solvers.sweeps.results import GOOD, Results
 
 #: Titles of panels, and the functions that draw them.

@@ -11,9 +11,9 @@ from importlib import import_module
 from os import PathLike, fspath
 from types import ModuleType
 
+from derive.system.files.shipped import USUAL, large_names, names, stems
 from derive.system.files.system_file import read_system
 from derive.system.parts import SystemDefinitionError
-from derive.system.shipped import USUAL, large_names, names, stems
 from derive.system.system import System
 from solvers.io.suggestion import did_you_mean
 
