@@ -1,6 +1,8 @@
 """Tables in the READMEs of a repository checkout, rendered from the code they describe."""
 
+import ast
 from collections.abc import Callable
+from functools import partial
 from math import inf
 from pathlib import Path
 
@@ -20,6 +22,17 @@ def status_table() -> str:
     """The numbers of the statuses of motions, as a Markdown table."""
     rows = [f"| {code} | {status} |\n" for code, status in enumerate(STATUSES)]
     return "| number | status |\n|---|---|\n" + "".join(rows)
+
+
+def contents_table(folder: str) -> str:
+    """The rooms and files of a folder with the summaries of their docstrings, in Markdown."""
+    files = {f"{path.parent.name}/": path for path in (ROOT / folder).glob("*/__init__.py")}
+    files |= {path.name: path for path in (ROOT / folder).glob("[!_]*.py")}
+    rows = []
+    for name, path in sorted(files.items()):
+        text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+        rows.append(f"| `{name}` | {text.partition(chr(10))[0].removesuffix('.')} |\n")
+    return "| file or room | contains |\n|---|---|\n" + "".join(rows)
 
 
 def methods_table() -> str:
@@ -53,7 +66,9 @@ def _joined(numbers: list[int]) -> str:
 #: The table between the markers ``<!-- title -->`` and ``<!-- end of title -->`` of a README.
 TABLES: tuple[tuple[str, str, Callable[[], str]], ...] = (
     ("derive/README.md", "systems", system_description.markdown_table),
+    ("derive/verification/README.md", "files", partial(contents_table, "derive/verification")),
     ("solvers/runge_kutta/README.md", "methods", methods_table),
+    ("solvers/runge_kutta/README.md", "files", partial(contents_table, "solvers/runge_kutta")),
     ("solvers/scenes/README.md", "models", model_catalogue.markdown_table),
     ("solvers/sweeps/README.md", "map kinds", map_kinds.markdown_table),
     ("solvers/sweeps/README.md", "statuses of motions", status_table),

@@ -29,8 +29,7 @@ from solvers.integration.problem import memory, validation
 from solvers.integration.problem.events import Extremum
 from solvers.integration.problem.problem import EventFunction, Options, Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.ensemble_solution import Ensemble
-from solvers.integration.results.ensemble_times import EnsembleTimes
+from solvers.integration.results.ensemble_solution import Ensemble, EnsembleTimes
 from solvers.integration.results.solution import Interrupted, Solution
 from solvers.integration.single_motion import single_motion
 from solvers.io.argument_types import check_type

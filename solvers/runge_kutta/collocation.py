@@ -2,7 +2,7 @@
 
 Over a step, a collocation polynomial fulfils the differential equation at the nodes c. The method
 has the order of the quadrature formula with these nodes (E. Hairer, S. P. Nørsett, G. Wanner,
-Solving Ordinary Differential Equations I, theorem II.7.9).
+Solving Ordinary Differential Equations I, theorem II.7.9). It is a sum of Lagrange polynomials.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ from itertools import count
 from math import comb
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solvers.runge_kutta.order_conditions import WORKING_DIGITS, Number
 
@@ -100,3 +101,21 @@ def _lagrange(c: Sequence[Decimal], j: int) -> list[Decimal]:
             shifted, scaled = [Decimal(0), *polynomial], [*(-x * a for a in polynomial), Decimal(0)]
             polynomial = [(a + b) / (c[j] - x) for a, b in zip(shifted, scaled, strict=True)]
     return polynomial
+
+
+Array = NDArray[np.float64]
+
+
+def lagrange_factors(c: Array) -> Array:
+    """Reciprocal denominators of the Lagrange polynomials; 0 if nodes coincide."""
+    differences = c[:, np.newaxis] - c + np.eye(len(c))
+    if not differences.all():
+        return np.zeros(len(c))
+    return np.asarray(1 / differences.prod(axis=1))
+
+
+def lagrange(c: Array, x: Array) -> Array:
+    """Values of the Lagrange polynomials of the nodes c at each of `x`, in rows."""
+    differences = np.tile(x[:, np.newaxis, np.newaxis] - c, (1, len(c), 1))
+    differences[:, range(len(c)), range(len(c))] = 1
+    return np.asarray(lagrange_factors(c) * differences.prod(axis=2))

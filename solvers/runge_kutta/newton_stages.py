@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.runge_kutta.blocks import Blocks
-from solvers.runge_kutta.lagrange import lagrange, lagrange_factors
+from solvers.runge_kutta.collocation import lagrange, lagrange_factors
 from solvers.runge_kutta.tableau import Tableau
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.io.suggestion import shortened
+from solvers.runge_kutta.collocation import lagrange
 from solvers.runge_kutta.continuous_extension import ContinuousExtension
-from solvers.runge_kutta.lagrange import lagrange
 from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start, UnsolvedError
 from solvers.runge_kutta.parallel_stages import NoFixedPointError, ParallelStages, Polynomial
 from solvers.runge_kutta.tableau import Splitting, Tableau

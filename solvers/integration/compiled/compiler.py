@@ -11,9 +11,9 @@ from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 
-from solvers.integration.compiled.command import CommandError
 from solvers.integration.compiled.compilation import (
     LIBRARY,
+    CommandError,
     Compilation,
     FailedCompilations,
     identity,

@@ -16,8 +16,7 @@ from solvers.integration.problem.events import Extremum
 from solvers.integration.problem.inputs import History
 from solvers.integration.problem.problem import EventFunction, Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.ensemble_solution import Ensemble
-from solvers.integration.results.ensemble_times import EnsembleTimes
+from solvers.integration.results.ensemble_solution import Ensemble, EnsembleTimes
 from solvers.integration.results.outcome import Outcome
 from solvers.runge_kutta.stepper import Array
 
