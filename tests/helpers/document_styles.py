@@ -31,6 +31,15 @@ WORDS = {
         "momenta": "Impulse:", "hamiltonian": "Hamiltonfunktion:", "canonical": "Kanonisch:",
         "energy": "Energie:", "abbreviations": "Mit der Abkürzung",
     },
+    "fr": {
+        "positions": "Les positions :", "velocities": "Les vitesses :",
+        "kinetic": "L'énergie cinétique vaut", "potential": "L'énergie potentielle vaut",
+        "lagrangian": "Le lagrangien s'écrit", "partials": "Ses dérivées partielles :",
+        "rates": "Puis", "equations": "Les équations du mouvement sont",
+        "accelerations": "D'où les accélérations :", "momenta": "Les moments conjugués :",
+        "hamiltonian": "Le hamiltonien :", "canonical": "Les équations canoniques :",
+        "energy": "L'énergie totale", "abbreviations": "On pose",
+    },
 }  # fmt: skip
 
 BY_POSITIONS = ("positions", "kinetic", "potential", "lagrangian", "equations")
@@ -44,7 +53,7 @@ class Style:
     """How an author writes."""
 
     steps: tuple[str, ...]
-    markup: str = "md"  # md, tex, html or ipynb
+    markup: str = "md"  # md, tex, html, rst or ipynb
     letters: Mapping[str, str] = field(default_factory=dict)  # beside those that are common
     rates: str = "dot"  # dot, time (functions of t), leibniz or prime
     energies: Sequence[str] = ("T", "V", "L", "H")
@@ -82,6 +91,8 @@ class Style:
     def _display(self, formula: str) -> str:
         if self.markup == "tex":
             return f"\\begin{{equation}}\n{formula}\n\\end{{equation}}"
+        if self.markup == "rst":
+            return ".. math::\n\n" + "\n".join(f"   {line}" for line in formula.splitlines())
         if self.markup == "html":
             formula = formula.replace("&", "&amp;").replace("<", "&lt;")
             return f"\\[ {formula} \\]"
@@ -111,40 +122,59 @@ STYLES: dict[str, Style] = {
         ("kinetic", "potential", "equations", "accelerations"), "ipynb", rates="leibniz",
         moves_right=True,
     ),
-    "primes": Style(BY_ENERGIES, rates="prime", brackets=True, is_held_out=True),
+    "primes": Style(BY_ENERGIES, rates="prime", brackets=True),
     "blog": Style(
         BY_STEPS, "html", {"l": r"\ell", "l1": r"\ell_1", "l2": r"\ell_2", **ANGLES_PHI},
-        brackets=True, is_chained=True, times=r" \cdot ", is_held_out=True,
+        brackets=True, is_chained=True, times=r" \cdot ",
     ),
     "mechanics_exam": Style(
         ("energy", "equations"), "tex", {"J": "I", "k": "c", "m": "M", "a": "d"}, halves=True,
-        moves_right=True, is_held_out=True,
+        moves_right=True,
     ),
-    "horizontal": Style(BY_POSITIONS, shift=sp.pi / 2, is_chained=True, is_held_out=True),
+    "horizontal": Style(BY_POSITIONS, shift=sp.pi / 2, is_chained=True),
     "leibniz": Style(
         (*BY_ENERGIES, "energy"), "tex", rates="leibniz", energies=("K", "U", "L", "H"),
-        is_held_out=True,
     ),
     "long_hamilton": Style(
         ("kinetic", "potential", "momenta", "hamiltonian", "canonical"), "ipynb", ANGLES_PHI,
-        rates="time", brackets=True, is_held_out=True,
+        rates="time", brackets=True,
     ),
     "speeds": Style(
         ("positions", "velocities", "kinetic", "potential", "equations"), is_down=True,
         letters={"theta": r"\alpha", "theta1": r"\alpha", "theta2": r"\beta", "alpha": "b",
                  "l": "R", "R": "D", "phi": r"\gamma"},
-        energies=("T", "U", "L", "H"), is_held_out=True,
+        energies=("T", "U", "L", "H"),
     ),
     "abbreviated_late": Style(
         ("kinetic", "potential", "abbreviations", "lagrangian", "partials", "equations"), "tex",
-        abbreviated=("inertia", "total", "difference"), is_aligned=True, is_held_out=True,
+        abbreviated=("inertia", "total", "difference"), is_aligned=True,
     ),
     "accelerations_first": Style(
         ("equations", "accelerations", "energy"), letters=ANGLES_PHI, halves=True,
-        is_held_out=True,
     ),
     "german_hamilton": Style(
         ("positions", "lagrangian", "momenta", "hamiltonian", "canonical"), "html", language="de",
-        is_chained=True, is_held_out=True,
+        is_chained=True,
+    ),
+    "robotics": Style(
+        ("positions", "velocities", "kinetic", "potential", "equations", "accelerations"), "rst",
+        {"theta": "q", "theta1": "q_1", "theta2": "q_2", "l": "L", "l1": "L_1", "l2": "L_2"},
+        energies=("K", "P", r"\mathcal{L}", "H"),
+    ),
+    "french": Style(
+        (*BY_STEPS, "energy"), "tex", {"theta": r"\alpha", "alpha": r"\beta", "l": r"\ell"},
+        energies=("E_c", "E_p", "L", "H"), language="fr", halves=True, is_held_out=True,
+    ),
+    "hamilton_first": Style(
+        ("hamiltonian", "canonical", "energy"), "rst", times=r" \, ", is_held_out=True,
+    ),
+    "horizontal_in_time": Style(
+        (*BY_STEPS, "accelerations"), "ipynb", ANGLES_PHI, rates="time", shift=sp.pi / 2,
+        brackets=True, moves_right=True, is_held_out=True,
+    ),
+    "downwards_chained": Style(
+        ("positions", "potential", "kinetic", "lagrangian", "momenta", "equations"), "html",
+        {"g": r"\gamma", "m": r"\mu", "m1": r"\mu_1", "m2": r"\mu_2"}, is_down=True,
+        is_chained=True, halves=True, is_held_out=True,
     ),
 }  # fmt: skip

@@ -233,6 +233,11 @@ RIGHT = {
         $$ \begin{aligned} E &= T + V = \\ &= \frac12 m\dot x^2 + \frac12 k x^2 \end{aligned} $$""",
         1,
     ),
+    "a potential energy P beside K": (
+        r"""$$ K = \frac12 m L^2\dot q^2, \qquad P = -g L m\cos q $$
+        $$ m L^2\ddot q + g L m\sin q = 0 $$""",
+        2,
+    ),
     "a chain that ends with a new letter": (
         r"""$$ T = \frac12 I_1(\dot\theta^2 + \dot\phi^2\sin^2\theta)
         + \frac12 I_3(\dot\psi + \dot\phi\cos\theta)^2, \quad V = M g l\cos\theta $$
@@ -266,6 +271,7 @@ SLIPS = {
     "equations divided by lengths": (r"+ g\sin\theta_2", r"- g\sin\theta_2"),
     "a spring that is absent": (r"- k_2 (x_1 - x_2)", r"+ k_2 (x_1 - x_2)"),
     "numbers of an example": (r"= \frac{m_2 g}", r"= \frac{m_1 g}"),
+    "a potential energy P beside K": (r"g L m\sin q", r"g L m\cos q"),
     "a prescribed angle": (r"= m R^2\omega^2", r"= 2 m R^2\omega^2"),
 }
 

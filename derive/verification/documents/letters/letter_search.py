@@ -29,6 +29,8 @@ from derive.verification.documents.text import order, stem
 
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
+#: Letters of potential energies beside those of kinetic ones; alone they can be momenta.
+PARTNERS = {"K": "P", "T": "Pi"}
 #: A multiple of a quantity on the left, such as that in 2 T = m v**2.
 MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: Orders of the rows of a matrix that are tried.
@@ -77,6 +79,7 @@ def letters_of(
         and not GENERIC.match(one)
         and not one.endswith("_column")
     ]
+    quantities |= _partners(formulas, quantities, moving)
     generic = _generic(formulas, derivatives)
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
@@ -242,6 +245,24 @@ def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
             if match and signs.get(kind or "") == match[2]:
                 result |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
     return result
+
+
+def _partners(
+    formulas: Iterable[DocumentFormula], quantities: Mapping[str, str], moving: Sequence[str]
+) -> dict[str, str]:
+    """Potential energies P beside kinetic ones K: functions of coordinates without velocities."""
+    if "potential_energy" in quantities.values():
+        return {}
+    names = {PARTNERS[name] for name, kind in quantities.items()
+             if kind == "kinetic_energy" and name in PARTNERS}  # fmt: skip
+    words = {name: {word for one in formulas if one.subject == name
+                    for side in one.sides[1:] for word in _words(side.text)}
+             for name in names}  # fmt: skip
+    return {
+        name: "potential_energy"
+        for name, own in words.items()
+        if own & {*moving} and not any(order(word) or MOMENTUM.match(word) for word in own)
+    }
 
 
 def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
