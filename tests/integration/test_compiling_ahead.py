@@ -1,4 +1,4 @@
-"""The loop that measures predictability is compiled while that of the motion is."""
+"""Loops that measure predictability or errors are compiled while that of the motion is."""
 
 import shutil
 import subprocess
@@ -11,7 +11,7 @@ from folders import ROOT
 RUN = """
 import generated.double_pendulum as dp
 from solvers import integrate
-print(integrate(dp, (0, 1), (1.0, 0.5, 0.0, 0.0), {}).run)
+print(integrate(dp, (0, 1), (1.0, 0.5, 0.0, 0.0), {}ARGUMENTS).run)
 """
 #: A compiler that waits until another one runs, for the time of 100 short pauses at most.
 WAITING = """#!/bin/sh
@@ -32,14 +32,14 @@ pytestmark = [
 ]
 
 
-def run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, script: str, arguments: str = "") -> subprocess.CompletedProcess[str]:
     """A process that integrates a motion with an empty cache and this compiler."""
     (folder / "bin").mkdir()
     compiler = folder / "bin" / "cc"
     compiler.write_text(script.format(cc=shutil.which("cc"), folder=folder))
     compiler.chmod(0o755)
     return subprocess.run(
-        [sys.executable, "-c", RUN],
+        [sys.executable, "-c", RUN.replace("ARGUMENTS", arguments)],
         cwd=ROOT,
         env={"PATH": f"{compiler.parent}:/usr/bin:/bin", "XDG_CACHE_HOME": str(folder / "cache")},
         capture_output=True,
@@ -48,8 +48,9 @@ def run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_both_loops_are_compiled_at_the_same_time(tmp_path: Path) -> None:
-    process = run(tmp_path, WAITING)
+@pytest.mark.parametrize("arguments", ["", ", accuracy=1e-6"])
+def test_loops_are_compiled_at_the_same_time(arguments: str, tmp_path: Path) -> None:
+    process = run(tmp_path, WAITING, arguments)
     assert "compiled by" in process.stdout
     assert process.stderr == ""
     assert (tmp_path / "together").exists()

@@ -15,6 +15,7 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.integration.loops.compiled_loop import compile_ahead
 from solvers.runge_kutta.method_catalogue import SCIPY, load
 
 #: Methods of the check, how much finer its tolerance is, and the finest tolerance.
@@ -98,6 +99,8 @@ def estimated_error(run: IntegrationRun, checked: Motion) -> float:
     `EndsEarlyError` where the motion itself does not.
     """
     checks = _checks(run, checked)
+    for check in checks if checked.inputs is None else ():  # while the run's loop is compiled
+        compile_ahead(checked.module, check.method_choice.form, check.method_choice.method)
     try:
         times = check_times(run)
         states = run.states(times)
