@@ -53,14 +53,16 @@ def letter_and_index(name: str) -> tuple[str, str]:
     markup = f"<mi>{GREEK.get(read.letter, escape(read.letter))}</mi>"
     if read.has_arrow:
         markup = f'<mover accent="true">{markup}<mo stretchy="false" mathsize="60%">→</mo></mover>'
-    if read.dots:
-        # without accent="true", because many fonts draw accent dots into the letter; the
-        # fixed height keeps superscripts at their usual height
-        dotted = f"<mover>{markup}<mo>{'.' * read.dots}</mo></mover>"
-        height = "1.05em" if read.has_arrow else "0.75em"
-        markup = f'<mpadded height="{height}">{dotted}</mpadded>'
+    markup = dotted(markup, read.dots, "1.05em" if read.has_arrow else "0.75em")
     indices = "".join(map(_index_markup, read.indices))
     return markup, f"<mrow>{indices}</mrow>" if indices else ""
+
+
+def dotted(markup: str, dots: int, height: str = "0.75em") -> str:
+    """Return the MathML of a letter under dots; the height keeps superscripts where they are."""
+    # without accent="true", because many fonts draw accent dots into the letter
+    over = f"<mover>{markup}<mo>{'.' * dots}</mo></mover>"
+    return f'<mpadded height="{height}">{over}</mpadded>' if dots else markup
 
 
 def _index_markup(index: str) -> str:

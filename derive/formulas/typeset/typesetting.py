@@ -65,7 +65,7 @@ def elements(sides: Iterable[ast.expr], relations: Iterable[str]) -> Iterator[st
     """Yield the MathML elements of a statement: the terms of its sides, with their signs."""
     for relation, side in zip(["", *relations], sides, strict=True):
         head, *tail = _terms(side)
-        for term in (_infix(RELATIONS[relation]) + head if relation else head, *tail):
+        for term in (infix(RELATIONS[relation]) + head if relation else head, *tail):
             yield f'<math displaystyle="true">{term}</math>'
 
 
@@ -79,7 +79,7 @@ def _terms(node: ast.expr) -> list[str]:
     rest: list[str] = []
     while isinstance(node, ast.BinOp) and is_sum(node):
         sign = "+" if isinstance(node.op, ast.Add) else "−"
-        rest.append(_infix(sign) + _operand(node.right, PRODUCT))
+        rest.append(infix(sign) + _operand(node.right, PRODUCT))
         node = node.left
     return [_markup(node), *rest[::-1]]
 
@@ -108,7 +108,7 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
             return _operand(left, PRODUCT) + TIMES + gap + _operand(right, PRODUCT), PRODUCT
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             if isinstance(left, ast.Constant) or not isinstance(right, ast.Constant):
-                return f"<mfrac>{_row(_markup(left))}{_row(_markup(right))}</mfrac>", PRODUCT
+                return f"<mfrac>{grouped(_markup(left))}{grouped(_markup(right))}</mfrac>", PRODUCT
             # a numeric factor before a long numerator, instead of a long fraction
             factor = ast.BinOp(ast.Constant(1), ast.Div(), right)
             return _markup_and_binding(ast.BinOp(factor, ast.Mult(), left))
@@ -135,17 +135,17 @@ def negated(node: ast.expr) -> ast.expr | None:
 def _operand(node: ast.expr, least: int) -> str:
     """Return the markup of an operand, in brackets if it binds less than `least`."""
     markup, binding = _markup_and_binding(node)
-    return markup if binding >= least else _brackets(markup)
+    return markup if binding >= least else brackets(markup)
 
 
 def _power(base: ast.expr, exponent: ast.expr) -> str:
-    raised = _row(_markup(exponent))
+    raised = grouped(_markup(exponent))
     match base:
         case ast.Call(func=ast.Name(id="sin" | "cos" | "tan" as name), args=[argument]):
-            return f"<msup><mi>{name}</mi>{raised}</msup>{APPLY}{_brackets(_markup(argument))}"
+            return f"<msup><mi>{name}</mi>{raised}</msup>{APPLY}{brackets(_markup(argument))}"
         case ast.Name(id=name) if (pair := letter_and_index(name))[1]:
             return f"<msubsup>{''.join(pair)}{raised}</msubsup>"
-    return f"<msup>{_row(_operand(base, ATOM))}{raised}</msup>"
+    return f"<msup>{grouped(_operand(base, ATOM))}{raised}</msup>"
 
 
 def _call(name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
@@ -153,39 +153,40 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
     match name, parts:
         case "d", [value, variable]:
             simple = isinstance(arguments[0], ast.Name)
-            above = _row(f"<mo>∂</mo>{value if simple else ''}")
-            fraction = f"<mfrac>{above}{_row(f'<mo>∂</mo>{variable}')}</mfrac>"
-            return fraction + ("" if simple else _brackets(value)), PRODUCT
+            above = grouped(f"<mo>∂</mo>{value if simple else ''}")
+            fraction = f"<mfrac>{above}{grouped(f'<mo>∂</mo>{variable}')}</mfrac>"
+            return fraction + ("" if simple else brackets(value)), PRODUCT
         case "ddt", [_]:
-            fraction = f"<mfrac><mi>d</mi>{_row('<mi>d</mi><mi>t</mi>')}</mfrac>"
+            fraction = f"<mfrac><mi>d</mi>{grouped('<mi>d</mi><mi>t</mi>')}</mfrac>"
             return fraction + _operand(arguments[0], ATOM), PRODUCT
         case (("norm" | "Abs"), [value]):
-            return _row(f"<mo>|</mo>{value}<mo>|</mo>"), ATOM
+            return grouped(f"<mo>|</mo>{value}<mo>|</mo>"), ATOM
         case "sqrt", [value]:
             return f"<msqrt>{value}</msqrt>", ATOM
         case "inverse", [value]:
-            return f"<msup>{_row(value)}{_row('<mo>−</mo><mn>1</mn>')}</msup>", POWER
+            return f"<msup>{grouped(value)}{grouped('<mo>−</mo><mn>1</mn>')}</msup>", POWER
         case "only", [function, *variables]:
-            return function + APPLY + _brackets("<mo>,</mo>".join(variables)), ATOM
-    return name_markup(name) + APPLY + _brackets("<mo>,</mo>".join(parts)), ATOM
+            return function + APPLY + brackets("<mo>,</mo>".join(variables)), ATOM
+    return name_markup(name) + APPLY + brackets("<mo>,</mo>".join(parts)), ATOM
 
 
 def _matrix(rows: Sequence[Sequence[ast.expr]]) -> str:
     cells = ("".join(f"<mtd>{_markup(entry)}</mtd>" for entry in row) for row in rows)
-    return _brackets(f"<mtable>{''.join(f'<mtr>{row}</mtr>' for row in cells)}</mtable>")
+    return brackets(f"<mtable>{''.join(f'<mtr>{row}</mtr>' for row in cells)}</mtable>")
 
 
-def _infix(sign: str) -> str:
+def infix(sign: str) -> str:
+    """Return the markup of a sign between two operands."""
     return f'<mo form="infix">{sign}</mo>'
 
 
-def _brackets(markup: str) -> str:
-    # brackets grow with fractions and tables only, not with accents
-    stretchy = "true" if "<mfrac" in markup or "<mtable" in markup else "false"
-    left = f'<mo form="prefix" stretchy="{stretchy}">(</mo>'
-    right = f'<mo form="postfix" stretchy="{stretchy}">)</mo>'
-    return _row(left + markup + right)
+def brackets(markup: str, left: str = "(", right: str = ")") -> str:
+    """Return markup in brackets, which grow with fractions and tables, but not with accents."""
+    stretchy = "true" if any(one in markup for one in ("<mfrac", "<mtable", "<mroot")) else "false"
+    start = f'<mo form="prefix" stretchy="{stretchy}">{left}</mo>'
+    return grouped(f'{start}{markup}<mo form="postfix" stretchy="{stretchy}">{right}</mo>')
 
 
-def _row(markup: str) -> str:
+def grouped(markup: str) -> str:
+    """Return markup as one element."""
     return f"<mrow>{markup}</mrow>"

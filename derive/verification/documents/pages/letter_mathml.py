@@ -2,7 +2,7 @@
 
 from html import escape
 
-from derive.formulas.typeset.lettering import GREEK
+from derive.formulas.typeset.lettering import GREEK, dotted
 from derive.reading.latex.tree import Letter
 
 SYMBOLS = GREEK | {
@@ -44,12 +44,7 @@ def letter_and_index(letter: Letter) -> tuple[str, str]:
     markup = f"<mi{style}>{escape(SYMBOLS.get(name, name))}</mi>"
     if mark:
         markup = f'<mover accent="true">{markup}<mo>{MARKS[mark]}</mo></mover>'
-    if letter.dots:
-        # without accent="true", because many fonts draw accent dots into the letter; the
-        # fixed height keeps superscripts at their usual height
-        dotted = f"<mover>{markup}<mo>{'.' * letter.dots}</mo></mover>"
-        markup = f'<mpadded height="0.75em">{dotted}</mpadded>'
-    return markup, _index(letter.index)
+    return dotted(markup, letter.dots), _index(letter.index)
 
 
 def _index(index: str) -> str:

@@ -6,7 +6,7 @@ from dataclasses import fields
 from html import escape
 from itertools import groupby, pairwise
 
-from derive.formulas.typeset.typesetting import APPLY, MINUS, TIMES
+from derive.formulas.typeset.typesetting import APPLY, MINUS, TIMES, brackets, grouped, infix
 from derive.reading.latex.tree import (
     Application,
     AtPlace,
@@ -65,7 +65,7 @@ def statement_html(
     elements = []
     for relation, side in zip(("", *statement.relations), statement.sides, strict=True):
         head, *tail = typesetter.terms(side)
-        elements += [_infix(_relation(relation)) + head if relation else head, *tail]
+        elements += [infix(_relation(relation)) + head if relation else head, *tail]
     return "<wbr>".join(f'<math displaystyle="true">{one}</math>' for one in elements)
 
 
@@ -110,7 +110,7 @@ class _Typesetter:
             return [self._markup(node)[0]]
         terms = []
         for k, (sign, term) in enumerate(node.terms):
-            before = ("" if sign > 0 else MINUS) if k == 0 else _infix("+" if sign > 0 else "−")
+            before = ("" if sign > 0 else MINUS) if k == 0 else infix("+" if sign > 0 else "−")
             if self._is_marked(term):  # with its sign, which may be wrong
                 terms.append(self._mark(before + self._within_mark.operand(term, PRODUCT)))
             else:
@@ -125,7 +125,7 @@ class _Typesetter:
     def _enclosed(self, node: Node, markup: str) -> str:
         """The markup in the brackets of the document."""
         result = self._brackets_of(node)
-        return _brackets(markup, *BRACKETS[result[1] if result else "("])
+        return brackets(markup, *BRACKETS[result[1] if result else "("])
 
     def _brackets_of(self, node: Node) -> re.Match[str] | None:
         return BRACKET.match(self._latex, *node.span)
@@ -159,7 +159,10 @@ class _Typesetter:
                 pair = "".join(letter_and_index(base))
                 return f"<msubsup>{pair}{self._row(exponent)}</msubsup>", POWER
             case Power(base=base, exponent=exponent):
-                return f"<msup>{_row(self.operand(base, ATOM))}{self._row(exponent)}</msup>", POWER
+                return (
+                    f"<msup>{grouped(self.operand(base, ATOM))}{self._row(exponent)}</msup>",
+                    POWER,
+                )
             case Root(radicand=radicand, degree=2):
                 return f"<msqrt>{self._row(radicand)}</msqrt>", ATOM
             case Root(radicand=radicand, degree=degree):
@@ -167,12 +170,12 @@ class _Typesetter:
             case Call(function=name, argument=argument):
                 return _function(name) + self._argument(argument), CALL
             case Application(head=head, arguments=arguments):
-                return symbol(head) + APPLY + _brackets(self._list(arguments)), ATOM
+                return symbol(head) + APPLY + brackets(self._list(arguments)), ATOM
             case Derivative():
                 return self._derivative(node), PRODUCT
             case Dotted(operand=operand, dots=dots):
                 return (
-                    f"<mover>{_row(self.operand(operand, ATOM))}<mo>{'.' * dots}</mo></mover>",
+                    f"<mover>{grouped(self.operand(operand, ATOM))}<mo>{'.' * dots}</mo></mover>",
                     ATOM,
                 )
             case Matrix():
@@ -180,16 +183,16 @@ class _Typesetter:
             case Tuple(items=items):
                 return self._enclosed(node, self._list(items)), ATOM
             case Transpose(operand=operand):
-                return f"<msup>{_row(self.operand(operand, ATOM))}<mi>T</mi></msup>", POWER
+                return f"<msup>{grouped(self.operand(operand, ATOM))}<mi>T</mi></msup>", POWER
             case Norm(operand=operand):
-                return _brackets(self._markup(operand)[0], "|", "|"), ATOM
+                return brackets(self._markup(operand)[0], "|", "|"), ATOM
             case AtPlace(operand=operand):
-                return _brackets(self._markup(operand)[0], "", "|"), ATOM
+                return brackets(self._markup(operand)[0], "", "|"), ATOM
             case Summation():
                 return self._summation(node), PRODUCT
 
     def _row(self, node: Node) -> str:
-        return _row(self._markup(node)[0])
+        return grouped(self._markup(node)[0])
 
     def _list(self, nodes: Sequence[Node]) -> str:
         return "<mo>,</mo>".join(self._markup(node)[0] for node in nodes)
@@ -216,7 +219,7 @@ class _Typesetter:
             below += sign + _times(variable, len(list(group)))
         is_simple = isinstance(node.operand, Letter)
         above = _times(sign, len(node.variables)) + (self._row(node.operand) if is_simple else "")
-        fraction = _fraction(_row(above), _row(below))
+        fraction = _fraction(grouped(above), grouped(below))
         return fraction if is_simple else fraction + self._bracketed(node.operand)
 
     def _bracketed(self, node: Node) -> str:
@@ -233,7 +236,7 @@ class _Typesetter:
         below = index + (f"<mo>=</mo>{self._row(node.lower)}" if node.lower else "")
         above = self._row(node.upper) if node.upper else "<mrow></mrow>"
         sign = '<mo movablelimits="false">∑</mo>'
-        sign = f"<munderover>{sign}{_row(below)}{above}</munderover>" if below else sign
+        sign = f"<munderover>{sign}{grouped(below)}{above}</munderover>" if below else sign
         return sign + self.operand(node.body, PRODUCT)
 
 
@@ -242,7 +245,7 @@ def _base(node: Node) -> Node:
 
 
 def _times(markup: str, order: int) -> str:
-    return raised(_row(markup), f"<mn>{order}</mn>" if order > 1 else "")
+    return raised(grouped(markup), f"<mn>{order}</mn>" if order > 1 else "")
 
 
 def _relation(sign: str) -> str:
@@ -255,18 +258,3 @@ def _function(name: str) -> str:
 
 def _fraction(above: str, below: str) -> str:
     return f"<mfrac>{above}{below}</mfrac>"
-
-
-def _infix(sign: str) -> str:
-    return f'<mo form="infix">{sign}</mo>'
-
-
-def _brackets(markup: str, left: str = "(", right: str = ")") -> str:
-    # brackets grow with fractions and tables only, not with accents
-    stretchy = "true" if any(one in markup for one in ("<mfrac", "<mtable", "<mroot")) else "false"
-    start = f'<mo form="prefix" stretchy="{stretchy}">{left}</mo>'
-    return _row(f'{start}{markup}<mo form="postfix" stretchy="{stretchy}">{right}</mo>')
-
-
-def _row(markup: str) -> str:
-    return f"<mrow>{markup}</mrow>"
