@@ -60,6 +60,15 @@ def summands(node: ast.expr) -> list[tuple[ast.expr, int]]:
     return terms[::-1]
 
 
+def place(text: str, node: ast.expr) -> tuple[int, int]:
+    """Where a part of a formula begins and ends in its text, which may have spaces around it."""
+    stripped = text.lstrip()
+    spaces, line = len(text) - len(stripped), python_source(stripped).encode()
+    columns = node.col_offset, node.end_col_offset  # counted in bytes
+    start, end = (spaces + len(line[:column].decode()) for column in columns)
+    return start, end
+
+
 def python_source(text: str) -> str:
     """The formula as Python's parser reads it; columns of a syntax tree are those of this text."""
     # with a wide letter, the parser reads a keyword as a name, and normalises it

@@ -26,6 +26,7 @@ class Correction:
 
     wrong: str
     correct: str
+    span: tuple[int, int] = (0, 0)  # of the wrong term with its sign, in the judged formula
 
 
 @dataclass(frozen=True)

@@ -102,6 +102,7 @@ def test_one_wrong_term_is_named_with_its_correction(
 ) -> None:
     (correction,) = judged(system, kind, key, text).corrections
     assert (correction.wrong, correction.correct) == (wrong, correct)
+    assert text[slice(*correction.span)].replace(" ", "") == wrong.replace(" ", "")
 
 
 def test_a_wave_of_half_the_angle_mends_a_formula() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from derive.verification.documents.jets import Jet, evaluated
 from derive.verification.documents.numbers.single_mistakes import is_near
-from derive.verification.documents.rules.corrections import in_brackets, inserted, places
+from derive.verification.documents.rules.corrections import in_brackets, inserted
 from derive.verification.verdict import Correction
 
 SPEED = np.linspace(0.3, 1.7, 8)[None]
@@ -56,23 +56,6 @@ def test_a_term_is_put_in_with_its_sign(
     before: str, old: str, new: str, after: str, result: str
 ) -> None:
     assert inserted(before, old, new, after) == result
-
-
-@pytest.mark.parametrize(
-    ("text", "term", "before"),
-    [
-        ("a + b*c - c", "c", ["a + b*c - ", "a + b*"]),
-        ("2*m*l + m*l", "m*l", ["2*m*l + ", "2*"]),
-        ("am*l + m*l", "m*l", ["am*l + "]),
-        ("x - m *l", "-m*l", ["x "]),
-        ("b*sin(a)", "sin(a)", ["b*"]),
-        ("a**2/a + b**a - a", "a", ["a**2/a + b**a - ", "a**2/"]),
-    ],
-)
-def test_places_of_a_term_come_before_those_of_a_factor(
-    text: str, term: str, before: list[str]
-) -> None:
-    assert [text[:start] for start, _ in places(text, term)] == before
 
 
 @pytest.mark.parametrize(

@@ -17,10 +17,10 @@ from derive.mechanics.energies.reduction import reduced
 from derive.verification.corrections.goals import Goal, goals
 from derive.verification.corrections.replacement import (
     applied,
+    correction,
     extended,
     is_unique,
     replaced,
-    shown,
 )
 from derive.verification.corrections.search import Search
 from derive.verification.corrections.source_names import SourceNames
@@ -162,7 +162,7 @@ def _all_terms(
     corrections: list[Correction] = []
     mended = text
     for piece, value in reversed(wrong):
-        corrections.insert(0, Correction(shown(text, piece), sp.sstr(names.write(value))))
+        corrections.insert(0, correction(text, piece, sp.sstr(names.write(value))))
         mended = replaced(mended, piece, corrections[0].correct)
     if missing:
         corrections.append(Correction("", sp.sstr(names.write(missing))))

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from derive.formulas.expression import Namespace, parse
-from derive.formulas.syntax import is_sum, python_source, summands, syntax_tree
+from derive.formulas.syntax import is_sum, place, summands, syntax_tree
 from derive.verification.corrections.state_samples import (
     FUNCTIONS,
     Numbers,
@@ -91,7 +91,9 @@ class Pieces:
             case ast.BinOp(left=left, op=symbol, right=right):
                 return [*map(OPERATIONS[type(symbol)], self._value(left), self._value(right))]
             case ast.Call():  # an operator such as a derivative
-                return self._samples(parse(self._text[slice(*self._span(node))], self._namespace))
+                return self._samples(
+                    parse(self._text[slice(*place(self._text, node))], self._namespace)
+                )
         raise NotImplementedError(ast.unparse(node))
 
     def _parts(self, whole: FormulaPart) -> Iterator[FormulaPart]:
@@ -158,7 +160,7 @@ class Pieces:
         is_summand: bool = False,
         is_squared: bool = False,
     ) -> FormulaPart:
-        start, end = self._span(node)
+        start, end = place(self._text, node)
         source, span = self._text[start:end], (start + self._offset, end + self._offset)
         if sign < 0:
             bracketed, start = start, self._text.rindex("-", 0, start)
@@ -179,13 +181,6 @@ class Pieces:
             is_summand,
             is_squared,
         )
-
-    def _span(self, node: ast.expr) -> tuple[int, int]:
-        # columns are counted in bytes, after leading spaces
-        stripped = self._text.lstrip()
-        spaces, line = len(self._text) - len(stripped), python_source(stripped).encode()
-        start = spaces + len(line[: node.col_offset].decode())
-        return start, spaces + len(line[: node.end_col_offset].decode())
 
 
 def has_bracket(node: ast.expr) -> bool:

@@ -23,7 +23,7 @@ def applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:
         piece = piece.parent
     if piece.sign < 0:
         new = _negative(new)
-    return (Correction(shown(text, piece), new),), replaced(text, piece, new)
+    return (correction(text, piece, new),), replaced(text, piece, new)
 
 
 def replaced(text: str, piece: FormulaPart, new: str) -> str:
@@ -33,9 +33,10 @@ def replaced(text: str, piece: FormulaPart, new: str) -> str:
     return f"{before}{'+' * (piece.sign < 0 and not is_first)}({new}){text[piece.end :]}"
 
 
-def shown(text: str, piece: FormulaPart) -> str:
-    """A piece as written, without space after its sign."""
-    return re.sub(r"^-\s+", "-", text[piece.start : piece.end])
+def correction(text: str, piece: FormulaPart, new: str) -> Correction:
+    """The correction of a piece, which is shown without space after its sign."""
+    span = piece.start, piece.end
+    return Correction(re.sub(r"^-\s+", "-", text[slice(*span)]), new, span)
 
 
 def extended(text: str, missing: str) -> str:

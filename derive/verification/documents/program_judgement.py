@@ -1,5 +1,6 @@
 """Verdicts on the equations of programs, and on their methods of integration."""
 
+import re
 from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
@@ -14,12 +15,14 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
 )
 from derive.verification.documents.rules.consequences import weighed
-from derive.verification.documents.rules.corrections import inserted, places
+from derive.verification.documents.rules.corrections import inserted, source_span
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.documents.text import FormulaText
 from derive.verification.verdict import VerdictName
 
+#: Names, numbers and signs of an equation.
+WORD_OR_SIGN = re.compile(r"\w+|\S")
 #: The note on equations for which no system is found.
 NO_SYSTEM = "no system was found for which its equations hold"
 
@@ -59,19 +62,26 @@ def _formula(equation: ProgramEquation) -> DocumentFormula:
     tree = Statement((Letter(text, (0, len(text))),), (), (0, len(text)))
     occurrence = Occurrence(0, equation.line, 1, 0, 0, text, tree)
     left, _, right = text.partition(" = ")
-    return DocumentFormula(occurrence, (FormulaText(left), FormulaText(right)), ("=",))
+    sides = _side(left, 0), _side(right, len(left) + len(" = "))
+    return DocumentFormula(occurrence, sides, ("=",))
+
+
+def _side(text: str, offset: int) -> FormulaText:
+    """A side of an equation, which begins at `offset` in it."""
+    places = [match.span() for match in WORD_OR_SIGN.finditer(text)]
+    parts = tuple((start, end, (start + offset, end + offset)) for start, end in places)
+    return FormulaText(text, parts=parts)
 
 
 def _judged(equation: ProgramEquation, result: SideVerdict) -> FormulaVerdict:
     verdict, text = result.verdict, equation.text
-    terms, line = list[str](), equation.line
-    for one in verdict.corrections:
-        start, end = next(iter(places(text, one.wrong)), (0, 0)) if one.wrong else (0, 0)
-        if start < end:
-            unsigned = text[start:end].lstrip("+- ")
-            line = _line(equation, end - len(unsigned), end)
-            terms.append(one.wrong)
-            text = inserted(text[:start], one.wrong, one.correct, text[end:])
+    spans = [(source_span(text, result, one), one) for one in verdict.corrections if one.wrong]
+    changes = sorted(((span, one) for span, one in spans if span), key=lambda change: change[0])
+    terms, line = [one.wrong for _, one in changes], equation.line
+    for (start, end), one in reversed(changes):
+        unsigned = text[start:end].lstrip("+- ")
+        line = _line(equation, end - len(unsigned), end)
+        text = inserted(text[:start], one.wrong, one.correct, text[end:])
     correction = verdict.correction
     if terms and len(terms) == len(verdict.corrections):
         correction = text

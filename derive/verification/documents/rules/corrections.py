@@ -1,6 +1,5 @@
 """Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -39,7 +38,7 @@ def corrected(
         return Corrected(correction=whole)
     changes: list[tuple[Span, str]] = []
     for one in verdict.corrections:
-        span = _place(formula, result, one)
+        span = source_span(latex, result, one)
         if span is None:
             return Corrected(correction=written(verdict.correction, letters))
         new = written(one.correct, letters)
@@ -55,38 +54,24 @@ def corrected(
     return Corrected("; ".join(terms), text[start:end].strip(), spans)
 
 
-def _place(formula: DocumentFormula, result: SideVerdict, one: Correction) -> Span | None:
-    """The span of a wrong term in the LaTeX; empty where a term is missing."""
+def source_span(source: str, result: SideVerdict, one: Correction) -> Span | None:
+    """The span of a wrong term and its sign in the source; empty where a term is missing."""
     if not one.wrong:
         side = result.parts[0][1]
         whole = side.source(0, len(side.text))
         return whole and (whole[1], whole[1])
-    for _, side in result.parts:
-        for start, end in places(side.text, one.wrong):
-            if found := side.source(start, end):
-                return _with_sign(formula.occurrence.latex, found) if one.wrong[0] == "-" else found
+    start, end = one.span
+    for offset, side in result.parts:
+        if offset <= start and end <= offset + len(side.text):
+            span = side.source(start - offset, end - offset)
+            return _with_sign(source, span) if span and one.wrong[0] == "-" else span
     return None
 
 
-def places(text: str, term: str) -> list[tuple[int, int]]:
-    """Where a term stands in a formula of our syntax, whatever its spaces: as a factor last."""
-    tokens = re.findall(r"\w+|\*\*|\S", term)
-    terms, factors = list[tuple[int, int]](), list[tuple[int, int]]()
-    for match in re.finditer(r"\s*".join(map(re.escape, tokens)), text):
-        before, after = text[: match.start()].rstrip(), text[match.end() :].lstrip()
-        if before.endswith("**") or after.startswith("**"):
-            continue
-        begins = before[-1:] in "(+-=,*/[" or text[match.start()] == "-"
-        if begins and after[:1] in ")+-=,*/]":
-            is_factor = before[-1:] in ("*", "/") or after[:1] in ("*", "/")
-            (factors if is_factor else terms).append(match.span())
-    return terms + factors
-
-
-def _with_sign(latex: str, span: Span) -> Span:
+def _with_sign(source: str, span: Span) -> Span:
     """The span with the minus sign before it."""
-    start = len(latex[: span[0]].rstrip())
-    if latex[start - 1 : start] == "-" and latex[span[0]] != "-":
+    start = len(source[: span[0]].rstrip())
+    if source[start - 1 : start] == "-" and source[span[0]] != "-":
         return start - 1, span[1]
     return span
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 import sympy as sp
 
 from derive.formulas.expression import parse
-from derive.formulas.syntax import ExpressionError, is_sum, python_source, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, is_sum, place, summands, syntax_tree
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
@@ -68,7 +68,7 @@ class MatrixTerms:
             if not required.is_Rational or required.q > MAX_DENOMINATOR:
                 return None
             new = f"-{part.text}" if required == -1 else f"{required}*{part.text}"
-            corrections = (Correction(part.text, new),)
+            corrections = (Correction(part.text, new, (0, len(part.text))),)
             verdict = Verdict("", "wrong", part.text, corrections=corrections, witness=witness)
             return SideVerdict(verdict, ((0, part),), "value")
         if self._moving(required) <= self._moving(own):
@@ -116,19 +116,13 @@ def _parts(text: str) -> Iterator[tuple[int, int, bool]]:
     for node in ast.walk(tree):
         match node:
             case ast.Tuple(elts=items):
-                yield from ((*_place(text, one), False) for one in items)
+                yield from ((*place(text, one), False) for one in items)
             case ast.List(elts=items):
                 rows = (one for one in items if not isinstance(one, ast.List))
-                yield from ((*_place(text, one), False) for one in rows)
+                yield from ((*place(text, one), False) for one in rows)
     for term, _ in summands(tree) if is_sum(tree) or isinstance(tree, ast.UnaryOp) else ():
-        yield (*_place(text, term), True)
+        yield (*place(text, term), True)
     for node in ast.walk(tree):
         match node:
             case ast.BinOp(left=left, op=ast.Mult() | ast.Div(), right=right):
-                yield from ((*_place(text, one), False) for one in (left, right))
-
-
-def _place(text: str, node: ast.expr) -> tuple[int, int]:
-    """Where a part stands; columns are counted in bytes."""
-    line = python_source(text).encode()
-    return len(line[: node.col_offset].decode()), len(line[: node.end_col_offset].decode())
+                yield from ((*place(text, one), False) for one in (left, right))

@@ -1,6 +1,5 @@
 """Verdicts on a side of a formula by what its first side is: an energy, a momentum, an equation."""
 
-import ast
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -9,7 +8,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.formulas.expression import Value, parse
-from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, place, summands, syntax_tree
 from derive.system.symbols import TIME
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict
@@ -136,9 +135,11 @@ class Roles:
         if len(corrections) != 1 or corrections[0].wrong:
             return corrections
         for term, sign in summands(syntax_tree(side.text)):
-            text = ast.unparse(term)
+            start, end = place(side.text, term)
+            text = side.text[start:end]
             if self._namespace.value(text) == 0 and text != "0":
-                return (Correction(f"-{text}" if sign < 0 else text, corrections[0].correct),)
+                text = f"-{text}" if sign < 0 else text
+                return (Correction(text, corrections[0].correct, (start, end)),)
         return corrections
 
     def value(self, side: FormulaText, name: str, value: sp.Expr) -> SideVerdict:

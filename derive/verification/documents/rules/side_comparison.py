@@ -122,7 +122,7 @@ class SideComparison:
         result = plain("wrong", formula, "", *self._witness(formula, right, left))
         ratio = sp.nsimplify(context.value(left) / context.value(right), rational=True)
         if ratio.q < MAX_DENOMINATOR and self._model.agreement(left - ratio * right) is not None:
-            correction = Correction(side.text, f"{ratio}*{side.text}")
+            correction = Correction(side.text, f"{ratio}*{side.text}", (0, len(side.text)))
             verdict = replace(result.verdict, corrections=(correction,))
             return SideVerdict(verdict, ((0, side),), "value")
         return result
