@@ -1,9 +1,13 @@
 """``holonomic verify`` of documents: table, JSON, annotation and exit code."""
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from folders import ROOT
 
 from derive.verification.documents.pages.verdict_table import document_lines, document_record
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
@@ -177,3 +181,23 @@ def test_a_run_without_a_verdict_names_what_was_missing(
     output = " ".join(capsys.readouterr().out.split())
     assert "Nothing was judged. 1 formula: 1 not judged because: no system was found" in output
     assert "--system and --names" in output
+
+
+def test_witnesses_do_not_depend_on_the_hash_seed(tmp_path: Path) -> None:
+    text = r"$$T = \frac12 m\dot x^2, \qquad V = \frac12\alpha k x^2 + b g x^4$$"
+    text += r"$$L = \frac12 m\dot x^2 - \frac12\alpha k x^2 - b g x^4$$"
+    (tmp_path / "a.md").write_text(text + r"$$m\ddot x + \alpha k x + 3 b g x^3 = 0$$")
+    code = f"from solvers.app.cli import main; main(['verify', {str(tmp_path / 'a.md')!r}])"
+    outputs = [
+        subprocess.run(
+            [sys.executable, "-c", code],
+            cwd=ROOT,
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=False,
+        ).stdout
+        for seed in "123"
+    ]
+    assert "state: " in outputs[0]
+    assert len({*outputs}) == 1

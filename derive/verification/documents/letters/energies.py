@@ -131,7 +131,7 @@ def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentF
 def _symbols(letters: Letters) -> dict[str, sp.Symbol]:
     """Symbols of the coordinates and parameters of a document, without multipliers."""
     symbols = {q: sp.Symbol(valid_name(q), real=True) for q in letters.coordinates}
-    for name in set(letters.parameters) - {*letters.multipliers}:
+    for name in (one for one in letters.parameters if one not in letters.multipliers):
         is_positive = is_length(name) or name in letters.of_kind("mass")
         assumptions = {"positive": True} if is_positive else {"real": True}
         symbols[name] = sp.Symbol(valid_name(name), **assumptions)
