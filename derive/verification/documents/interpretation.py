@@ -21,7 +21,7 @@ from derive.verification.documents.rules.consequences import FOLLOWS
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
+from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
@@ -310,6 +310,8 @@ def _with_order(statements: Translated, letters: Letters, candidate: SystemCandi
 #: Most meanings that are judged beside the one that is taken.
 MAX_ALTERNATIVES = 3
 JUDGED = (*CORRECT, "wrong")
+#: The reason of a verdict on a formula that other meanings of the letters do not refute alike.
+OPPOSED = "it is wrong with these meanings of the letters, but not alike with others that fit too"
 
 Results = Sequence[tuple[DocumentFormula, SideVerdict]]
 
@@ -352,12 +354,36 @@ def _differences(
         names = [one.verdict.verdict for one in (own, other)]
         if any(name not in JUDGED for name in names):
             continue
-        first, second = (corrected(formula, one, written).correction for one in (own, other))
-        if (names[0] == "wrong") != (names[1] == "wrong") or first != second:
-            place = formula.occurrence
+        first, second = (corrected(formula, one, written) for one in (own, other))
+        has_other = (names[0] == "wrong") != (names[1] == "wrong")
+        is_opposed = names[0] == "wrong" and (has_other or first.wrong_term != second.wrong_term)
+        if has_other or first.correction != second.correction:
+            place, verdict = formula.occurrence, "context" if is_opposed else names[0]
             yield VerdictDifference(
-                place.line, place.display, place.source, names[1], names[0], second, place.cell
-            )
+                place.line, place.display, place.source, names[1], verdict,
+                second.correction, place.cell,
+            )  # fmt: skip
+
+
+def unopposed(
+    results: Results, others: Sequence[Alternative]
+) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
+    """Yield the verdicts, with `context` for a formula that not every meaning refutes alike.
+
+    Another meaning opposes a refutation if the formula holds with it, or another term is wrong.
+    """
+    opposed = {
+        (one.line, one.display, one.latex, one.cell)
+        for other in others
+        for one in other.differences
+        if one.instead_of == "context"
+    }
+    for formula, result in results:
+        place = formula.occurrence
+        is_opposed = (place.line, place.display, place.source, place.cell) in opposed
+        if is_opposed and result.verdict.verdict == "wrong":
+            result = plain("context", formula, OPPOSED)
+        yield formula, result
 
 
 def _alternative(match: Match, rival: Match, changed: tuple[VerdictDifference, ...]) -> Alternative:

@@ -14,6 +14,7 @@ from derive.verification.documents.interpretation import (
     alternatives,
     interpretation,
     judge_of,
+    unopposed,
 )
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
@@ -89,7 +90,9 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             is_stated, is_partial = hints is not None, work.left < 0
             verdicts = [*weighed(own, candidate, found.doubts, is_stated, is_partial)]
             conventions.append(convention(candidate))
-            others += alternatives(part, found, verdicts, written)
+            contrary = [*alternatives(part, found, verdicts, written)]
+            others += contrary
+            verdicts = [*unopposed(verdicts, contrary)]
             for formula, result in verdicts:
                 before = results.get(formula.occurrence)
                 if before is None or _is_graver(result, before[1]):

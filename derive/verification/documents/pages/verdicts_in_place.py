@@ -87,7 +87,7 @@ class FormulaVerdict:
 class VerdictDifference:
     """A formula with another verdict or another correction if letters have another meaning.
 
-    `instead_of` is its verdict in the document.
+    `instead_of` is its verdict in the document: `context` if the meanings oppose each other.
     """
 
     line: int
