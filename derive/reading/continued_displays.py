@@ -10,7 +10,7 @@ from derive.reading.document import Display
 DELIMITERS = ("$$", r"\[", r"\\[")
 #: Relations and signs at the end or at the start of a display, which a side must follow or precede.
 RELATION = r"=|\\approx|\\equiv|\\simeq"
-ENDS = re.compile(rf"(?:{RELATION}|[+-]|\\cdot|\\times)\s*\Z")
+ENDS = re.compile(rf"(?:{RELATION}|(?<![_^])[+-]|\\cdot|\\times)\s*\Z")
 STARTS = re.compile(rf"\s*(?:{RELATION}|\+)")
 #: Text between two displays that are one formula: spaces and tags of a paragraph.
 BETWEEN = re.compile(r"(?:\s|<br\s*/?>|</?p>)*\Z", re.IGNORECASE)
