@@ -97,8 +97,13 @@ class DerivedMatrices:
         if shape == (n, n):
             yield d.mass_matrix.extract(rows, rows)
         if shape == (n, 1):
-            yield sp.Matrix([d.forcing[i] for i in rows])
+            forcing = sp.Matrix([d.forcing[i] for i in rows])
+            yield forcing
             at_rest = dict.fromkeys(d.system.qdot, sp.S.Zero)
+            applied = sp.Matrix([d.system.applied[i] for i in rows])
+            gravity = (forcing - applied).xreplace(at_rest)
+            yield from (gravity, -gravity)
+            yield from (forcing - applied - gravity, gravity + applied - forcing)
             yield sp.Matrix([d.momenta[i].xreplace(at_rest) for i in rows])
         if self._linear.place is None:
             return
