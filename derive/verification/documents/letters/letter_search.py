@@ -5,7 +5,10 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 
-from derive.formulas.syntax import ExpressionError, is_sum, syntax_tree
+import sympy as sp
+
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -199,19 +202,24 @@ def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
     )
 
 
-def _is_momentum(name: str, formulas: Iterable[DocumentFormula]) -> bool:
-    """Whether a name is a product with one velocity, as the momentum L = m r**2 theta_dot."""
-    sides = [side for one in formulas if one.subject == name for side in one.sides[1:]]
-    return bool(sides) and all(_has_one_velocity(side.text) for side in sides)
+def _is_momentum(name: str, formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether a name is odd in velocities, as the momentum L = x*y_dot - y*x_dot; none is T - V."""
+    sides = [side.text for one in formulas if one.subject == name for side in one.sides[1:]]
+    rates = {one.sides[-1].text for one in formulas if order(one.subject) == 1}
+    return bool(sides) and all(_is_odd(text, rates) for text in sides)
 
 
-def _has_one_velocity(text: str) -> bool:
-    rates = [word for word in _words(text) if order(word)]
+def _is_odd(text: str, rates: set[str]) -> bool:
+    """Whether a formula changes its sign with all velocities, some of which have other names."""
+    symbols = {word: sp.Symbol(word) for word in _words(text)}
+    point = {one: sp.Rational(k + 7, k + 5) for k, one in enumerate(symbols.values())}
+    back = {s: -value for s, value in point.items() if order(s.name) == 1 or s.name in rates}
     try:
-        is_product = not is_sum(syntax_tree(text))
-    except ExpressionError:
+        value = parse(text, {**symbols, **FUNCTIONS})
+        values = [value.xreplace(one).evalf(30) for one in (point, {**point, **back})]
+    except (ExpressionError, NotImplementedError, AttributeError, TypeError, ValueError):
         return False
-    return is_product and len(rates) == 1 and f"{rates[0]}**" not in text
+    return bool(back) and all(one.is_number for one in values) and abs(sum(values)) < 1e-20
 
 
 def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:
@@ -272,6 +280,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
     for formula in formulas:
         name = formula.subject
         others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
+        others -= OPERATORS
         moves = any(orders.get(one) for one in others)
         is_solution = orders.get(name) and not moves
         last = formula.sides[-1]

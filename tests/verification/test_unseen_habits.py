@@ -1,0 +1,63 @@
+"""Habits of public derivations that were misread when they were first seen."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
+
+
+def judged(folder: Path, text: str) -> DocumentVerdicts:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return judge_document(read_document(folder / "a.md"))
+
+
+def verdicts(folder: Path, text: str) -> list[str]:
+    return [one.verdict for one in judged(folder, text).formulas]
+
+
+ORBIT = r"""$$\dot x = v_x$$ $$\dot y = v_y$$ $$\dot v_x = -\frac{G M x}{(x^2+y^2)^{3/2}}$$
+$$E = \frac12 (v_x^2 + v_y^2) - \frac{G M}{\sqrt{x^2+y^2}}$$ """
+
+
+@pytest.mark.parametrize("formula", [
+    "L = x v_y - y v_x", "L = x v_y",
+])  # fmt: skip
+def test_an_angular_momentum_called_l_is_no_lagrangian(formula: str, tmp_path: Path) -> None:
+    assert verdicts(tmp_path, f"{ORBIT}$${formula}$$")[-1] != "wrong"
+
+
+def test_a_lagrangian_with_velocities_by_name_is_one(tmp_path: Path) -> None:
+    formula = r"$$L = \frac12 (v_x^2 + v_y^2) + \frac{2 G M}{\sqrt{x^2+y^2}}$$"
+    assert verdicts(tmp_path, ORBIT + formula)[-1] == "wrong"
+
+
+CART = r"""
+$$T = \frac12 M\dot s^2 + \frac12 m(\dot s^2 + 2 l\dot s\dot\theta\cos\theta + l^2\dot\theta^2)$$
+$$V = m g l\cos\theta$$
+"""
+
+
+def test_columns_can_be_parts_of_the_forces(tmp_path: Path) -> None:
+    column = r"$$c = \begin{bmatrix} m l\sin\theta\,\dot\theta^2 \\ 0 \end{bmatrix}$$"
+    weight = r"$$d = \begin{bmatrix} 0 \\ m g l\sin\theta \end{bmatrix}$$"
+    text = CART + column + weight
+    assert verdicts(tmp_path, text)[-2:] == ["verified", "verified"]
+
+
+def test_functions_do_not_make_an_abbreviation_foreign(tmp_path: Path) -> None:
+    text = r"""$$\phi = \theta_2 - \theta_1$$ $$\Delta = m_1 + m_2 - m_2\cos^2\phi$$
+$$\ddot\theta_1 = \frac{m_2 ((g\sin\theta_2 + l_1\dot\theta_1^2\sin\phi)\cos\phi
+ + l_2\dot\theta_2^2\sin\phi) - (m_1 + m_2) g\sin\theta_1}{l_1\Delta}$$
+$$\ddot\theta_2 = \frac{(m_1 + m_2) (g(\cos\phi\sin\theta_1 - \sin\theta_2)
+ - l_1\dot\theta_1^2\sin\phi) - m_2 l_2\dot\theta_2^2\cos\phi\sin\phi}{l_2\Delta}$$"""
+    assert verdicts(tmp_path, text) == ["definition", "definition", "verified", "verified"]
+
+
+def test_an_index_plus_continues_no_display(tmp_path: Path) -> None:
+    text = "$$m \\ddot q_+ = -k q_+$$\n$$m \\ddot q_- = -c q_-$$"
+    assert [one.latex for one in judged(tmp_path, text).formulas] == [
+        r"m \ddot q_+ = -k q_+", r"m \ddot q_- = -c q_-",
+    ]  # fmt: skip
