@@ -130,3 +130,29 @@ def test_alternatives_stand_in_text_json_and_pages(
     (other,) = document["alternatives"]
     assert (other["name"], other["names"]["theta"]) == ("single_pendulum", "theta")
     assert other["differences"][0]["verdict"] == "wrong"
+
+
+def test_readings_of_programs_that_contradict_each_other_accuse_none(tmp_path: Path) -> None:
+    path = tmp_path / "a.m"
+    path.write_text("""function dx = f(t, x, m1, m2, l1, l2, g)
+d = x(1) - x(2);
+M = [(m1 + m2)*l1, m2*l2*cos(d); l1*cos(d), l2];
+f = [-m2*l2*x(4)^2*sin(d) - (m1 + m2)*g*sin(x(1)); l1*x(3)^2*sin(d) + g*sin(x(2))];
+dx = [x(3:4); M \\ f];
+end
+""")
+    document = judge_file(str(path), order)[0]
+    assert verdicts(document) == ["verified", "context"]
+    assert document.alternatives
+
+
+def test_angles_from_the_horizontal_oppose_no_usual_ones(tmp_path: Path) -> None:
+    text = r"""$$\ddot\theta_1 = \frac{-g(2m_1+m_2)\sin\theta_1 - m_2 g\sin(\theta_1-2\theta_2)
+ - 2\sin(\theta_1-\theta_2) m_2(\dot\theta_2^2 l_2 + \dot\theta_1^2 l_1\cos(\theta_1-\theta_2))}
+ {l_1(2m_1+m_2-m_2\cos(2\theta_1-2\theta_2))}$$
+$$\ddot\theta_2 = \frac{2\sin(\theta_1-\theta_2)(\dot\theta_1^2 l_1(m_1+m_2)
+ + g(m_1+m_2)\sin\theta_1 + \dot\theta_2^2 l_2 m_2\cos(\theta_1-\theta_2))}
+ {l_2(2m_1+m_2-m_2\cos(2\theta_1-2\theta_2))}$$"""
+    document = judged(tmp_path, text)
+    assert verdicts(document) == ["verified", "wrong"]
+    assert document.formulas[1].wrong_term == r"\sin\theta_1"

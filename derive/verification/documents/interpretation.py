@@ -326,7 +326,8 @@ def alternatives(
         pairs = _rejudged(statements, result, rival, results)
         own = sum(one.verdict.verdict not in CORRECT for _, one, _ in pairs)
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
-        changed = tuple(_differences(pairs, written))
+        opposes = not (result.match.candidate.is_usual and rival.candidate.is_turned)
+        changed = tuple(_differences(pairs, written, opposes))
         kinds = tuple((one.line, one.latex, one.verdict) for one in changed)
         is_usual = rival.candidate.is_usual and not result.match.candidate.is_usual
         if changed and kinds not in seen and (other <= own or is_usual):
@@ -348,15 +349,19 @@ def _rejudged(
 
 
 def _differences(
-    pairs: Sequence[tuple[DocumentFormula, SideVerdict, SideVerdict]], written: Mapping[str, str]
+    pairs: Sequence[tuple[DocumentFormula, SideVerdict, SideVerdict]],
+    written: Mapping[str, str],
+    opposes: bool,
 ) -> Iterator[VerdictDifference]:
+    """Yield what changes; with `opposes`, formulas that are not refuted alike are `context`."""
     for formula, own, other in pairs:
         names = [one.verdict.verdict for one in (own, other)]
         if any(name not in JUDGED for name in names):
             continue
         first, second = (corrected(formula, one, written) for one in (own, other))
         has_other = (names[0] == "wrong") != (names[1] == "wrong")
-        is_opposed = names[0] == "wrong" and (has_other or first.wrong_term != second.wrong_term)
+        is_alike = not has_other and first.wrong_term == second.wrong_term
+        is_opposed = opposes and names[0] == "wrong" and not is_alike
         if has_other or first.correction != second.correction:
             place, verdict = formula.occurrence, "context" if is_opposed else names[0]
             yield VerdictDifference(

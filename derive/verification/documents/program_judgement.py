@@ -5,7 +5,12 @@ from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Finding, Program, ProgramEquation
-from derive.verification.documents.interpretation import alternatives, interpretation, judge_of
+from derive.verification.documents.interpretation import (
+    alternatives,
+    interpretation,
+    judge_of,
+    unopposed,
+)
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.verdicts_in_place import (
@@ -44,9 +49,10 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         candidate = found.match.candidate
         plain = [(formula, judge.verdict(formula)) for formula in formulas]
         results = [*weighed(plain, candidate, found.doubts, hints is not None)]
-        for equation, (_, result) in zip(function.equations, results, strict=True):
-            judged.append(_judged(equation, result))
-        others += alternatives(statements, found, results, {})
+        contrary = [*alternatives(statements, found, results, {})]
+        others += contrary
+        pairs = zip(function.equations, unopposed(results, contrary), strict=True)
+        judged += [_judged(equation, result) for equation, (_, result) in pairs]
     judged += [_finding(one) for one in program.findings]
     judged.sort(key=lambda one: one.line)
     title, letters = ("; ".join(filter(None, dict.fromkeys(one))) for one in (titles, conventions))

@@ -84,6 +84,11 @@ class SystemCandidate:
         return is_same and not any(isinstance(one, int) and one for one in self.offsets)
 
     @property
+    def is_turned(self) -> bool:
+        """Whether its angles are those from the horizontal, which few documents have."""
+        return any(isinstance(one, int) and one % 2 for one in self.offsets)
+
+    @property
     def lacking(self) -> int:
         """How many parameters of the system have neither a letter nor a number."""
         return len(self.system.parameters) - len({*self.parameters, *self.numbers})

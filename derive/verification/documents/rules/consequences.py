@@ -160,11 +160,7 @@ def weighed(
     )
     is_weak = is_known and (is_partial or not has_all or misfits > max(1, holding))
     decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
-    is_guess = (
-        is_known
-        and holding < 2
-        and any(isinstance(one, int) and one % 2 for one in candidate.offsets)
-    )
+    is_guess = is_known and holding < 2 and candidate.is_turned
     given = _lines(lines[k] for k in candidate.stating)
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
