@@ -152,10 +152,10 @@ PROGRAMS = {
 #: A part of a program, the slip in its place, and the line at which it is found.
 SLIPS = {
     "power": ("orbit", "pos.x / r ** 3", "pos.x / r ** 2", "const ax"),
-    "second line": ("methods", "- (self.m1", "+ (self.m1", "+ (self.m1 + self.m2) * self.g"),
+    "second line": ("methods", "- (self.m1", "- (2 * self.m1", "- (2 * self.m1 + self.m2)"),
     "index": ("chain", "F[i] -= mass * self.l[i]", "F[i] -= mass * self.l[j]", "F[i] -= mass"),
     "square": ("eigen", "y(2) * y(2) * s", "y(2) * s", "l[0] * y(2)"),
-    "sign": ("spring", "+ gravity", "- gravity", "r_ddot ="),
+    "sign": ("spring", "= r * theta_dot**2", "= -r * theta_dot**2", "r_ddot ="),
     "lost factor": ("sphere", "sin(theta) * cos(theta) * p", "sin(theta) * p", "a ="),
     "mass": ("particles", "+ m(2)*l(2)*y(4)", "+ m(1)*l(2)*y(4)", "+ m(1)*l(2)*y(4)"),
 }
@@ -180,6 +180,14 @@ def test_slips_are_found_at_their_lines(slip: str) -> None:
     assert text.count(new) == 1
     line = text[: text.index(place)].count("\n") + 1
     assert {one for one, verdict in verdicts(name, old, new) if verdict == "wrong"} == {line}
+
+
+@pytest.mark.parametrize(("name", "old", "new"), [
+    ("methods", "- (self.m1", "+ (self.m1"), ("spring", "+ gravity", "- gravity"),
+])  # fmt: skip
+def test_a_sign_of_gravity_can_be_wrong_in_either_equation(name: str, old: str, new: str) -> None:
+    # with angles from upright, the other equation has the slip
+    assert sorted(verdict for _, verdict in verdicts(name, old, new)) == ["context", "verified"]
 
 
 def test_a_conservative_system_of_its_own_is_not_accused() -> None:

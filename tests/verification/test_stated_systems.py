@@ -54,7 +54,8 @@ def test_the_partial_energy_that_is_wrong_is_found_and_its_sum_is_right(
 def test_of_two_sides_that_differ_the_one_that_is_a_part_of_the_energy_is_right(
     tmp_path: Path,
 ) -> None:
-    text = PARTS.replace(r"$$V_1 = -m_1 g l_1\cos\theta_1$$", "").replace("V = V_1 + V_2", "x = 1")
+    text = PARTS.replace("V = V_1 + V_2", "x = 1")
+    text += r"$$V = -(m_1 + m_2) g l_1\cos\theta_1 - m_2 g l_2\cos\theta_2$$"
     text = text.replace(r"l_1\cos\theta_1 + l_2\cos", r"l_1\cos\theta_1 + 2 l_2\cos")
     (wrong,) = (o for o in judged(tmp_path, text, "double_pendulum") if o.verdict == "wrong")
     assert wrong.wrong_term == r"2 l_2\cos\theta_2"
@@ -73,7 +74,7 @@ def test_the_energy_of_all_bodies_is_no_energy_of_one(tmp_path: Path) -> None:
 
 PENDULUM = r"""
 $$T = \frac12 m l^2\dot\theta^2, \quad V = -m g l\cos\theta$$
-$$\ddot\theta = -\frac gl\sin\theta$$
+$$\ddot\theta = -\frac gl\sin\theta$$ $$\frac{\partial V}{\partial\theta} = m g l\sin\theta$$
 """
 CART = r"""
 $$T = \frac12(M+m)\dot x^2 + \frac12 m l^2\dot\theta^2 + m l\dot x\dot\theta\cos\theta$$
