@@ -33,7 +33,7 @@ class DerivedMatrices:
         self._required = {
             name: required
             for name in dict.fromkeys((*names, *namespace.composed))
-            if (required := self._compared(namespace.names[name])) is not None
+            if (required := self._compared(name)) is not None
         }
         corrected = {
             name: type(value)(*value.shape, _corrected(value, required))
@@ -59,10 +59,13 @@ class DerivedMatrices:
         index = (int(match[2]) - 1) * self._namespace.names[matrix].cols + column
         return self._required[matrix][index : index + 1]
 
-    def _compared(self, value: Value) -> Required | None:
+    def _compared(self, name: str) -> Required | None:
         """The entries in which a value differs from the likeliest matrix of the system."""
-        least: Required | None = None
-        for derived in self._of_shape(value.shape) if isinstance(value, sp.MatrixBase) else ():
+        value, least = self._namespace.names[name], None
+        known = self._of_shape(value.shape) if isinstance(value, sp.MatrixBase) else []
+        if known and name not in self._namespace.letters.quantities:  # such as G of M q̈ + C q̇ = G
+            known = [*known, *self._parts(value.shape)]
+        for derived in known:
             if value.rows == len(self._rows) and has_scaled_rows(self._namespace, value, derived):
                 return [None] * len(value)
             entries = [
@@ -97,13 +100,8 @@ class DerivedMatrices:
         if shape == (n, n):
             yield d.mass_matrix.extract(rows, rows)
         if shape == (n, 1):
-            forcing = sp.Matrix([d.forcing[i] for i in rows])
-            yield forcing
+            yield sp.Matrix([d.forcing[i] for i in rows])
             at_rest = dict.fromkeys(d.system.qdot, sp.S.Zero)
-            applied = sp.Matrix([d.system.applied[i] for i in rows])
-            gravity = (forcing - applied).xreplace(at_rest)
-            yield from (gravity, -gravity)
-            yield from (forcing - applied - gravity, gravity + applied - forcing)
             yield sp.Matrix([d.momenta[i].xreplace(at_rest) for i in rows])
         if self._linear.place is None:
             return
@@ -112,6 +110,15 @@ class DerivedMatrices:
             yield from (one.extract(rows, rows) for one in (M, K, D))
         if n > 1 or shape[0] == 2:
             yield from self._of_states(shape, rows)
+
+    def _parts(self, shape: tuple[int, int]) -> Iterator[sp.Matrix]:
+        """Parts of the forces, on either side: those at rest, and those of velocities alone."""
+        d = self._namespace.derivation
+        if shape != (len(self._rows), 1):
+            return
+        forces = sp.Matrix([d.forcing[i] - d.system.applied[i] for i in self._rows])
+        at_rest = forces.xreplace(dict.fromkeys(d.system.qdot, sp.S.Zero))
+        yield from (at_rest, -at_rest, forces - at_rest, at_rest - forces)
 
     def _of_states(self, shape: tuple[int, int], rows: Sequence[int]) -> Iterator[sp.Matrix]:
         """A and B of ẋ = A x + B F for all orders of the state."""
