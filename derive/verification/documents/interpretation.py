@@ -13,6 +13,7 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import letters_of
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.positions import stated_candidates, stated_systems
+from derive.verification.documents.letters.stated_equations import StatedEquations
 from derive.verification.documents.letters.templates import templates
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.numbers.resolution import resolved
@@ -32,7 +33,7 @@ THIRD = re.compile(r"\b(?:3|6|12|24)\b")
 #: The least part if the meaning of letters is not the usual one.
 UNUSUAL = 0.4
 #: What a system can rest on, of two with the same score the last.
-BASES = ("energies", "catalogue", "positions")
+BASES = ("equations", "energies", "catalogue", "positions")
 #: Formulas that contain an abbreviation.
 SEVERAL = 2
 #: The largest difference of scores that decides nothing.
@@ -112,7 +113,8 @@ def _best(
         if not work.take(tried, letters, formulas):
             break
         result = best_matches(tried, letters, formulas, derivatives, trivial)
-        matches += [match for match in result if match.holding or not least]
+        held = [match for match in result if match.holding or not least]
+        matches += [match for match in held if not match.is_circular]
         if any(match.is_stated_by_positions for match in result):
             break
     supported = [match for match in matches if not least or _is_supported(match, least)]
@@ -155,7 +157,7 @@ def _doubts(best: Match, matches: Sequence[Match]) -> dict[int, frozenset[int]]:
     """Formulas that do not hold, but do by other stated energies with as much support."""
     result: dict[int, frozenset[int]] = {}
     for match in matches if best.failed else ():
-        if match.candidate.basis == "energies" and match.score >= best.score - TIE:
+        if match.candidate.stating and match.score >= best.score - TIE:
             for number in best.failed - match.failed:
                 result.setdefault(number, match.candidate.stating)
     return result
@@ -260,6 +262,7 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[S
     for system, numbers in systems_of_energies(letters, statements.formulas):
         tried = (replace(one, stating=numbers) for one in stated_candidates(system, letters))
         yield [one for one in tried if one.constraints or not letters.constraints]
+    yield from ([one] for one in StatedEquations(letters, statements.formulas).candidates())
     yield from _of_templates(letters, statements)
 
 

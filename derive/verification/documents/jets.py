@@ -158,7 +158,7 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
             a, b = _value(left, values), _value(right, values)
             if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
                 return a @ b
-            return b * a if isinstance(b, np.ndarray) else a * b
+            return _product(b, a) if isinstance(b, np.ndarray) else _product(a, b)
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             return _value(left, values) / _value(right, values)
         case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
@@ -196,6 +196,13 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
                     matrix[i, j] = _value(entry, values)
             return matrix
     raise UnknownNameError(ast.unparse(node)[:80])
+
+
+def _product(value: Value, factor: Jet) -> Value:
+    """A jet, or each entry of a matrix of them, times a factor."""
+    if not isinstance(value, np.ndarray):
+        return value * factor
+    return np.vectorize(lambda entry: entry * factor, otypes=[object])(value)
 
 
 def _raised(base: Jet, exponent: Jet) -> Jet:

@@ -15,8 +15,8 @@ from derive.verification.documents.letters.stated_constraints import StatedConst
 from derive.verification.documents.statements import WORD
 from derive.verification.system_names import FACTORS
 
-#: The name of systems that documents state.
-STATED = "stated"
+#: The names of systems that documents state by positions or energies, and by equations.
+STATED, BY_EQUATIONS = "stated", "stated_equations"
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
 #: The same of one with constraints, before those of the signs of multipliers.
@@ -75,6 +75,8 @@ class SystemCandidate:
     multipliers: tuple[tuple[str, int, sp.Rational], ...] = ()
     #: Numbers of formulas that state the system, beside constraints.
     stating: frozenset[int] = frozenset()
+    #: Letters of reactions along the motion, with their values in the symbols of the system.
+    reactions: Mapping[str, sp.Expr] = field(default_factory=dict)
 
     @property
     def is_usual(self) -> bool:
@@ -94,16 +96,16 @@ class SystemCandidate:
         return len(self.system.parameters) - len({*self.parameters, *self.numbers})
 
     @property
-    def basis(self) -> Literal["energies", "positions", "catalogue"]:
-        """What it rests on: energies or positions that the document states, or a known system."""
+    def basis(self) -> Literal["equations", "energies", "positions", "catalogue"]:
+        """What it rests on: statements of the document, or a known system."""
         if self.stating:
-            return "energies"
+            return "equations" if self.system.name == BY_EQUATIONS else "energies"
         return "positions" if self.system.name == STATED else "catalogue"
 
     @property
     def letters(self) -> frozenset[str]:
         """The parameters of the document that have a meaning, or can have one in constraints."""
-        own: set[str] = {*self.parameters.values()}
+        own: set[str] = {*self.parameters.values(), *self.reactions}
         own |= {one for one in self.offsets if isinstance(one, str)}
         loads: list[tuple[Any, ...]] = [*self.forces, *self.friction, *self.multipliers]
         own |= {str(name) for name, *_ in loads}

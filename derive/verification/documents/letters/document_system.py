@@ -105,6 +105,7 @@ def system_letters(candidate: SystemCandidate) -> SystemLetters:
     multipliers = {
         name: factor * system.multipliers[index] for name, index, factor in candidate.multipliers
     }
+    multipliers |= {name: value.xreplace(values) for name, value in candidate.reactions.items()}
     return SystemLetters(system, symbols, multipliers)
 
 

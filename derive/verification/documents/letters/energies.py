@@ -52,7 +52,7 @@ def systems_of_energies(
     letters: Letters, formulas: Sequence[DocumentFormula]
 ) -> Iterator[tuple[System, frozenset[int]]]:
     """Yield the systems of stated energies, and the numbers of the formulas that state them."""
-    symbols = _symbols(letters)
+    symbols = letter_symbols(letters)
     q = [symbols[name] for name in letters.coordinates]
     known: set[tuple[sp.Expr, sp.Expr]] = set()
     for T, V, numbers in stated_energies(letters, formulas, symbols):
@@ -109,7 +109,7 @@ def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentF
     rotation has a moment of inertia, which is no mass.
     """
     own = {one.name: one for one in (*system.q, *system.params)}
-    symbols = {name: own.get(one.name, one) for name, one in _symbols(letters).items()}
+    symbols = {name: own.get(one.name, one) for name, one in letter_symbols(letters).items()}
     energies = next(stated_energies(letters, formulas, symbols), None)
     if energies is None:
         return False
@@ -128,7 +128,7 @@ def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentF
     )
 
 
-def _symbols(letters: Letters) -> dict[str, sp.Symbol]:
+def letter_symbols(letters: Letters) -> dict[str, sp.Symbol]:
     """Symbols of the coordinates and parameters of a document, without multipliers."""
     symbols = {q: sp.Symbol(valid_name(q), real=True) for q in letters.coordinates}
     for name in (one for one in letters.parameters if one not in letters.multipliers):

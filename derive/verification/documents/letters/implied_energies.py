@@ -77,14 +77,14 @@ def energies_of_equations(
         v = sp.Matrix([velocity(one) for one in q])
         T = sp.expand((v.T * matrix * v)[0, 0] / 2)
         terms = zip(signs, order, strict=True)
-        forces = [s * one - _inertial(T, q, i) for i, (s, (one, _)) in enumerate(terms)]
+        forces = [s * one - inertial(T, q, i) for i, (s, (one, _)) in enumerate(terms)]
         V = _potential([sp.expand(one) for one in forces], q)
         if V is not None:
             yield T, V, frozenset(number for _, number in order)
             return
 
 
-def _inertial(kinetic: sp.Expr, q: Sequence[sp.Symbol], index: int) -> sp.Expr:
+def inertial(kinetic: sp.Expr, q: Sequence[sp.Symbol], index: int) -> sp.Expr:
     """The terms of Lagrange's equation of a coordinate without a potential."""
     p = kinetic.diff(velocity(q[index]))
     pairs = ((one, velocity(one)) for one in q)

@@ -19,7 +19,7 @@ from derive.verification.documents.letters.candidates import (
     frictions,
     loads,
 )
-from derive.verification.documents.letters.document_system import derivation, valid_name
+from derive.verification.documents.letters.document_system import derivation, drag, valid_name
 from derive.verification.documents.letters.energies import stated_energies
 from derive.verification.documents.letters.letters import KINDS, QUANTITIES, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
@@ -102,8 +102,11 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[SystemCandid
     signs = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
     parameters = {p.name: name for name in letters.parameters for p in system.params
                   if p.name == valid_name(name)}  # fmt: skip
+    has_masses = any(drag(system))  # of stated energies, it is not known what they move
     for forces in loads(letters, "force", n):
         for friction in frictions(letters, n):
+            if not has_masses and any(damped == "masses" for _, damped in friction):
+                continue
             one = SystemCandidate(system, own, signs, (0,) * n, parameters, forces, friction)
             yield from constrained(one, letters)
 

@@ -35,6 +35,7 @@ class ArbitraryMotion:
         self._random = np.random.default_rng(1)
         self.shape = (1, STATES)
         size = self.shape
+        self.coordinates = letters.coordinates
         self.places = {q: self._random.uniform(0.3, 1.3, size) for q in letters.coordinates}
         self.speeds = {q: self._random.uniform(-1, 1, size) for q in letters.coordinates}
         self.parameters = {p: float(self._random.uniform(0.5, 1.5)) for p in letters.parameters}
@@ -74,6 +75,7 @@ class CandidateMotions:
         self._system, self._tried = tried[0].system, tried
         self._derivation = derivation(self._system)
         self.shape = (len(tried), STATES)
+        self.coordinates = tuple({q for one in tried for q in one.coordinates})
         random = np.random.default_rng(0)
         names = sorted({*letters.coordinates} | {q for one in tried for q in one.coordinates})
         #: Places and speeds of the document's coordinates, and values of its parameters. Those
@@ -109,6 +111,8 @@ class CandidateMotions:
             for name, index, factor in one.multipliers:
                 table = values.setdefault(name, np.full(self.shape, np.nan))
                 table[b] = float(factor) * reactions[b, :, index]
+            for name, value in one.reactions.items():
+                values.setdefault(name, np.full(self.shape, np.nan))[b] = self._numbers(value)[b]
         return values
 
     @cached_property

@@ -57,6 +57,12 @@ class Match:
         return holding - FAILING * (self.compared - self.holding)
 
     @property
+    def is_circular(self) -> bool:
+        """Whether only the equations hold that state the system."""
+        one = self.candidate
+        return one.basis == "equations" and self.holding <= len(one.stating)
+
+    @property
     def is_stated_by_positions(self) -> bool:
         """Whether positions of the document state the system, and all its formulas hold."""
         is_full = self.compared >= ENOUGH and not self.failed
@@ -74,12 +80,11 @@ def trivial_comparisons(
     """Comparisons that hold whatever the motion is, such as those of a definition."""
     numbers = Numbers(ArbitraryMotion(letters), letters, derivatives)
     numbers.define(formulas)
-    return frozenset(
-        (index, side)
-        for index, formula in enumerate(formulas)
-        for side, vote in numbers.comparisons(formula)
-        if vote.all()
-    )
+    result: dict[Comparison, bool] = {}
+    for index, formula in enumerate(formulas):
+        for side, vote in numbers.comparisons(formula):  # for a matrix, those of all its entries
+            result[index, side] = result.get((index, side), True) and bool(vote.all())
+    return frozenset(one for one, holds in result.items() if holds)
 
 
 def best_matches(

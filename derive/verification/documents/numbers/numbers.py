@@ -73,7 +73,11 @@ class Numbers:
             jet = jet.rate
 
     def define(self, formulas: Sequence[DocumentFormula]) -> None:
-        """Set the values of names that formulas define."""
+        """Set the values of names that formulas define, also of coordinates of no candidate."""
+        subjects = {one.subject for one in formulas} - {*self._letters.accelerated}
+        for name in subjects & ({*self._letters.coordinates} - {*self._motions.coordinates}):
+            for ending in RATES[:3]:
+                self.values.pop(name + ending, None)
         for _ in range(ROUNDS):
             for formula in formulas:
                 for name, text in definitions(formula):
@@ -83,6 +87,9 @@ class Numbers:
                     self.values[name], self._definitions[name] = value, text
                     if isinstance(value, Jet):
                         self.set_rates(name, value)
+                    elif isinstance(value, np.ndarray):
+                        rates = np.vectorize(lambda one: one.rate, otypes=[object])
+                        self.values[f"{name}_dot"] = rates(value)
 
     def comparisons(self, formula: DocumentFormula) -> Iterator[tuple[str, Votes]]:
         """Yield the sides of a formula, and whether each agrees with the first with a value."""

@@ -16,7 +16,7 @@ from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import order, stem
 from derive.verification.engine import joined
 from derive.verification.reference_system import time_derivative
@@ -36,6 +36,9 @@ UNSUPPORTED = (
     "it does not hold for the system that fits best, but this fits too few other formulas to call "
     "it wrong: state the system by --system"
 )
+
+#: The reason of a verdict on an equation that differs from other equations.
+OTHER_CASE = "it can be another case, or one of these can be wrong"
 
 WithVerdict = tuple[DocumentFormula, SideVerdict]
 
@@ -161,6 +164,10 @@ def weighed(
     is_weak = is_known and (is_partial or not has_all or misfits > max(1, holding))
     decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = is_known and holding < 2 and candidate.is_turned
+    follows = [FOLLOWS in one.note for one in wrong]
+    is_tie = candidate.basis == "equations" and (
+        len(wrong) - sum(follows) != 1 or holding < 2 or misfits > 0
+    )
     given = _lines(lines[k] for k in candidate.stating)
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
@@ -172,10 +179,24 @@ def weighed(
             result = plain("context", formula, note)
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
+        elif verdict.verdict == "wrong" and (is_tie or _adds_letters(formula, result, candidate)):
+            result = plain("context", formula, f"it differs from {given or 'others'}: {OTHER_CASE}")
         elif verdict.verdict == "wrong" and given:
             note = joined(verdict.note, f"given {given}")
             result = replace(result, verdict=replace(verdict, note=note))
         yield formula, result
+
+
+def _adds_letters(
+    formula: DocumentFormula, result: SideVerdict, candidate: SystemCandidate
+) -> bool:
+    """Whether a correction has forces or friction that a formula, as of a case without, has not.
+
+    Of a system that equations state, these are all letters.
+    """
+    added = {w for one in result.verdict.corrections for w in WORD.findall(one.correct)}
+    loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
+    return bool((added - {*formula.words}) & (added if candidate.basis == "equations" else loads))
 
 
 def _unnamed(candidate: SystemCandidate) -> Iterator[str]:

@@ -1,0 +1,218 @@
+"""The system of the equations of motion that a document states, with reactions and any forces.
+
+These are equations that are linear in accelerations and in letters of reactions, such as tensions
+and normal forces: as many as there are of both determine them, and others are judged by these.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import permutations
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
+from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
+from derive.system.symbols import TIME, acceleration, velocity
+from derive.system.system import System
+from derive.verification.documents.letters.candidates import BY_EQUATIONS, SystemCandidate
+from derive.verification.documents.letters.document_system import derivation, is_length
+from derive.verification.documents.letters.energies import StatedInertia, letter_symbols
+from derive.verification.documents.letters.implied_energies import inertial
+from derive.verification.documents.letters.letters import MATRICES, Letters
+from derive.verification.documents.statements import DocumentFormula, definitions
+
+#: Letters of reactions.
+REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSR]\w*|tension|normal)(?:_\w+)?\Z")
+#: Most unknown accelerations and reactions, operations of an equation, and rounds of definitions.
+MAX_UNKNOWN, MAX_OPERATIONS, ROUNDS = 6, 120, 3
+#: Most coordinates whose equations are sought in an order with a symmetric mass matrix.
+MAX_ORDERED = 4
+
+
+@dataclass(frozen=True)
+class _Equation:
+    """A formula that vanishes, with its coefficients of unknowns, and its number."""
+
+    value: sp.Expr
+    number: int
+    coefficients: tuple[sp.Expr, ...]
+
+
+class StatedEquations:
+    """The equations of a document in its own letters, and what they determine."""
+
+    def __init__(self, letters: Letters, formulas: Sequence[DocumentFormula]) -> None:
+        self._letters, self._formulas = letters, formulas
+        self._symbols = letter_symbols(letters)
+        defined = {one.subject for one in formulas} - {*letters.accelerated}
+        self._coordinates = [q for q in letters.coordinates if q not in defined]
+        self._q = [self._symbols[name] for name in self._coordinates]
+        words = dict.fromkeys(word for one in formulas for word in one.words)
+        known = {*letters.quantities, *letters.coordinates}
+        self._reactions = {
+            name: self._symbols.get(name, sp.Symbol(name, real=True))
+            for name in words
+            if REACTION.match(name) and name not in known
+        }
+        self._names = self._namespace()
+
+    def candidates(self) -> Iterator[SystemCandidate]:
+        """Yield the systems of the first equations that suffice, and of those without one each."""
+        energies = {*self._letters.quantities.values()} - {*MATRICES.values()}
+        if energies or self._letters.momenta or self._letters.constraints or not self._q:
+            return
+        for reactions in self._choices_of_reactions():
+            unknown = (*map(acceleration, self._q), *reactions.values())
+            rows = [*self._equations(unknown)]
+            chosen = _independent(rows, len(unknown))
+            if chosen is None or len(unknown) > MAX_UNKNOWN:
+                continue
+            seen: set[frozenset[int]] = set()
+            for left_out in (-1, *(one.number for one in chosen)):
+                part = _independent([one for one in rows if one.number != left_out], len(unknown))
+                numbers = frozenset(one.number for one in part or ())
+                if part and numbers not in seen:
+                    seen.add(numbers)
+                    if candidate := self._candidate(part, reactions, numbers):
+                        yield candidate
+            return
+
+    def _choices_of_reactions(self) -> Iterator[Mapping[str, sp.Symbol]]:
+        """All letters of reactions, those in several statements, or none."""
+        counts = {r: sum(r in one.words for one in self._formulas) for r in self._reactions}
+        yield self._reactions
+        yield {r: one for r, one in self._reactions.items() if counts[r] > 1}
+        yield {}
+
+    def _namespace(self) -> dict[str, Any]:
+        """Values of letters, of their rates, and of names that the document defines by them."""
+        names: dict[str, Any] = {**FUNCTIONS, **self._symbols, **self._reactions, "t": TIME}
+        names["ddt"] = self._rate
+        for name, one in zip(self._coordinates, self._q, strict=True):
+            names |= {f"{name}_dot": velocity(one), f"{name}_ddot": acceleration(one)}
+        for name in {*self._letters.coordinates} - {*self._coordinates}:
+            del names[name]
+        for _ in range(ROUNDS):
+            for formula in self._formulas:
+                for name, text in definitions(formula):
+                    if name in names or not name.isidentifier():
+                        continue
+                    with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                        value = parse(text, names)
+                        if not isinstance(value, sp.MatrixBase):
+                            names[name] = value
+                            names[f"{name}_dot"] = self._rate(value)
+                            names[f"{name}_ddot"] = self._rate(names[f"{name}_dot"])
+        return names
+
+    def _rate(self, value: sp.Expr) -> sp.Expr:
+        """The rate of a value without accelerations."""
+        if value.has(*map(acceleration, self._q)):
+            raise ValueError("a third derivative")
+        pairs = [(one, velocity(one)) for one in self._q]
+        pairs += [(v, acceleration(one)) for one, v in pairs]
+        return sp.Add(*(value.diff(one) * rate for one, rate in pairs), value.diff(TIME))
+
+    def _equations(self, unknown: Sequence[sp.Symbol]) -> Iterator[_Equation]:
+        """The equations between neighbouring sides that are linear in unknowns."""
+        for number, formula in enumerate(self._formulas):
+            for k, relation in enumerate(formula.relations):
+                if relation not in ("=", ":="):
+                    break
+                with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                    one, other = (parse(s.text, self._names) for s in formula.sides[k : k + 2])
+                    value = one - other
+                    if isinstance(value, sp.MatrixBase) or sp.count_ops(value) > MAX_OPERATIONS:
+                        continue
+                    coefficients = tuple(value.diff(symbol) for symbol in unknown)
+                    if any(coefficients) and not sp.Tuple(*coefficients).has(*unknown):
+                        yield _Equation(value, number, coefficients)
+
+    def _candidate(
+        self, rows: Sequence[_Equation], reactions: Mapping[str, sp.Symbol], numbers: frozenset[int]
+    ) -> SystemCandidate | None:
+        """The system that equations determine; None if it is not found."""
+        unknown = (*map(acceleration, self._q), *reactions.values())
+        still = dict.fromkeys(unknown, sp.S.Zero)
+        matrix = sp.Matrix([one.coefficients for one in rows])
+        rest = sp.Matrix([-one.value.xreplace(still) for one in rows])
+        point = _point(sp.Tuple(matrix, rest))
+        try:
+            solved = matrix.LUsolve(rest, iszerofunc=lambda one: _is_zero(one, point))
+        except (ValueError, sp.matrices.exceptions.NonInvertibleMatrixError):
+            return None
+        n = len(self._q)
+        inertia, forces = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n])
+        if not reactions and (symmetric := _symmetric(matrix, rest)):
+            inertia, forces = symmetric
+            v = sp.Matrix([velocity(one) for one in self._q])
+            T = sp.expand((v.T * inertia * v)[0, 0] / 2)
+            forces = [f + inertial(T, self._q, i).xreplace(still) for i, f in enumerate(forces)]
+        used = sp.Tuple(inertia, *solved, *forces).free_symbols
+        names = {p: self._symbols[p] for p in self._letters.parameters if p in self._symbols}
+        own = {p: one for p, one in names.items() if one in used and p not in reactions}
+        try:
+            system = System(
+                BY_EQUATIONS, "The system of the stated equations",
+                [Coordinate(one, "m", "a coordinate") for one in self._q],
+                [Parameter(one, "m" if is_length(p) else "1", 1.0, "a parameter")
+                 for p, one in own.items()],
+                [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), inertia)],
+                potential=sp.S.Zero, gravity=(sp.S.Zero, sp.S.Zero), forces=forces,
+            )  # fmt: skip
+            derivation(system)
+        except (SystemDefinitionError, ValueError):
+            return None
+        return SystemCandidate(
+            system, tuple(self._coordinates),
+            tuple(tuple(int(i == j) for j in range(n)) for i in range(n)), (0,) * n,
+            {one.name: p for p, one in own.items()}, stating=numbers,
+            reactions=dict(zip(reactions, solved[n:], strict=True)),
+        )  # fmt: skip
+
+
+def _independent(rows: Sequence[_Equation], count: int) -> list[_Equation] | None:
+    """The first equations that determine so many unknowns; None if there are too few."""
+    point = _point(sp.Tuple(*(c for one in rows for c in one.coefficients)))
+    kept, table = list[_Equation](), list[list[float]]()
+    for one in rows:
+        try:
+            numbers = [float(c.xreplace(point)) for c in one.coefficients]
+        except TypeError:  # complex, or of unknown functions
+            continue
+        if np.linalg.matrix_rank(np.array([*table, numbers])) > len(table):
+            kept, table = [*kept, one], [*table, numbers]
+        if len(kept) == count:
+            return kept
+    return None
+
+
+def _symmetric(
+    matrix: sp.Matrix, rest: sp.Matrix
+) -> tuple[sp.ImmutableDenseMatrix, list[sp.Expr]] | None:
+    """A symmetric matrix of the same equations in another order, with other signs; else None."""
+    n = matrix.rows
+    for order in permutations(range(n)) if n <= MAX_ORDERED else ():
+        if not all(matrix[i, k] for k, i in enumerate(order)):
+            continue
+        signs = [-1 if matrix[i, k].could_extract_minus_sign() else 1 for k, i in enumerate(order)]
+        inertia = sp.diag(*signs) * matrix.extract(order, range(n))
+        if sp.expand(inertia - inertia.T) == sp.zeros(n):
+            forces = [s * rest[i] for s, i in zip(signs, order, strict=True)]
+            return sp.ImmutableDenseMatrix(inertia), forces
+    return None
+
+
+def _point(expression: sp.Basic) -> dict[sp.Symbol, sp.Expr]:
+    symbols = sorted(expression.free_symbols, key=str)
+    return {one: sp.Float(0.37 + 0.31 * k - 0.011 * k * k) for k, one in enumerate(symbols)}
+
+
+def _is_zero(value: sp.Expr, point: Mapping[sp.Symbol, sp.Expr]) -> bool:
+    number = value.xreplace(dict(point)).evalf()
+    return bool(number.is_number and abs(number) < 1e-10)

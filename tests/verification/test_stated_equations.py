@@ -1,0 +1,81 @@
+"""Documents that state equations of motion alone, with reactions, friction and forces."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+
+
+def judged(folder: Path, text: str) -> tuple[FormulaVerdict, ...]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return judge_document(read_document(folder / "a.md")).formulas
+
+
+def verdicts(folder: Path, text: str) -> list[str]:
+    return [one.verdict for one in judged(folder, text)]
+
+
+RODS = r"""With the force $S$ in the rod,
+$$M\ddot x = F - S\sin\theta$$
+$$m(\ddot x + l\ddot\theta\cos\theta - l\dot\theta^2\sin\theta) = S\sin\theta$$
+$$-m l\ddot\theta\sin\theta - m l\dot\theta^2\cos\theta = S\cos\theta - m g$$
+The sum is
+$$(M + m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+and without the force
+$$l\ddot\theta + \ddot x\cos\theta = g\sin\theta .$$
+The force follows:
+$$S = \frac{F - M\ddot x}{\sin\theta}$$
+"""
+CAR = r"""
+$$m\ddot a = -k (a - b) - d(\dot a - \dot b) + u$$
+$$n\ddot b = k (a - b) + d(\dot a - \dot b) - c b - h\dot b - u$$
+With $x = (a, b, \dot a, \dot b)^T$
+$$\dot x = A x + B u$$
+$$A = \begin{bmatrix} 0 & 0 & 1 & 0\\ 0 & 0 & 0 & 1\\ -k/m & k/m & -d/m & d/m\\
+ k/n & -(k+c)/n & d/n & -(d+h)/n\end{bmatrix}$$
+$$B = \begin{bmatrix}0\\0\\1/m\\-1/n\end{bmatrix}$$
+"""
+MODES = r"""$$m\ddot x_1 = -k x_1 + c (x_2 - x_1)$$ $$m\ddot x_2 = -k x_2 - c (x_2 - x_1)$$
+With $$q_+ = x_1 + x_2$$ $$q_- = x_1 - x_2$$ we have
+$$m\ddot q_+ = -k q_+$$ $$m\ddot q_- = -(k + 2c) q_-$$
+"""
+
+
+def test_forces_of_rods_are_eliminated(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, RODS) == ["definition"] * 3 + ["verified"] * 3
+
+
+def test_a_state_space_follows_from_equations_with_friction(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, CAR) == ["definition"] * 3 + ["verified"] * 3
+
+
+def test_other_coordinates_follow(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, MODES) == ["definition"] * 4 + ["verified"] * 2
+
+
+@pytest.mark.parametrize(("text", "old", "new", "term"), [
+    (RODS, r"l\ddot\theta + \ddot x\cos", r"l\ddot\theta - \ddot x\cos", r"\ddot x\cos\theta"),
+    (CAR, "& -(d+h)/n", "& -(d-h)/n", ""),
+])  # fmt: skip
+def test_one_slip_is_found(text: str, old: str, new: str, term: str, tmp_path: Path) -> None:
+    assert text.count(old) == 1
+    formulas = judged(tmp_path, text.replace(old, new))
+    (wrong,) = [one for one in formulas if one.verdict == "wrong"]
+    assert new.split("&")[-1].split("/")[0].strip() in wrong.latex
+    assert term in wrong.wrong_term
+
+
+def test_two_cases_do_not_accuse_each_other(tmp_path: Path) -> None:
+    text = r"""Without friction $$m\ddot x + k x = 0$$ $$\ddot x = -\frac km x$$
+$$\ddot x + \omega^2 x = 0, \quad \omega^2 = \frac km$$
+and with friction $$m\ddot x + c\dot x + k x = 0$$ $$m\ddot x + c\dot x + k x = F\cos\Omega t$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_a_slip_in_the_first_of_two_equations_is_not_decided(tmp_path: Path) -> None:
+    text = r"""$$m\ddot x_1 = -k x_1 + c (x_2 + x_1)$$ $$m\ddot x_2 = -k x_2 - c (x_2 - x_1)$$
+$$\ddot x_1 = -\frac km x_1 + \frac cm (x_2 - x_1)$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
