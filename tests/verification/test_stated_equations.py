@@ -79,3 +79,23 @@ def test_a_slip_in_the_first_of_two_equations_is_not_decided(tmp_path: Path) -> 
     text = r"""$$m\ddot x_1 = -k x_1 + c (x_2 + x_1)$$ $$m\ddot x_2 = -k x_2 - c (x_2 - x_1)$$
 $$\ddot x_1 = -\frac km x_1 + \frac cm (x_2 - x_1)$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+ATWOOD = r"""$$m_1 a = m_1 g - T$$ $$m_2 a = T - m_2 g$$
+$$a = \frac{(m_1 - m_2) g}{m_1 + m_2}, \quad T = \frac{2 m_1 m_2 g}{m_1 + m_2}$$"""
+TOP = r"""$$A\dot\omega_1 = (A - C)\omega_2\omega_3$$ $$A\dot\omega_2 = (C - A)\omega_3\omega_1$$
+$$C\dot\omega_3 = 0$$ With $$\Omega = \frac{C - A}{A}\omega_3$$ $$\dot\omega_1 = -\Omega\omega_2$$
+$$\dot\omega_2 = \Omega\omega_1$$ $$\frac{d}{dt}(\omega_1^2 + \omega_2^2) = 0$$"""
+
+
+@pytest.mark.parametrize(("text", "first"), [(ATWOOD, 2), (TOP, 4)])
+def test_letters_can_be_accelerations_or_velocities(text: str, first: int, tmp_path: Path) -> None:
+    found = verdicts(tmp_path, text)
+    assert found == ["definition"] * first + ["verified"] * (len(found) - first)
+
+
+def test_a_wrong_sign_in_a_body_frame_is_found(tmp_path: Path) -> None:
+    formulas = judged(tmp_path, TOP.replace(r"\dot\omega_1 = -\Omega", r"\dot\omega_1 = \Omega"))
+    assert [one.latex for one in formulas if one.verdict == "wrong"] == [
+        r"\dot\omega_1 = \Omega\omega_2"
+    ]

@@ -359,7 +359,8 @@ def _opposes(
     """Whether a meaning of letters explains the formulas with as few wrong terms as that taken."""
     if {rival.basis, own.basis} != {"catalogue"} or (own.is_usual and rival.is_turned):
         return False
-    first, second = (sum(_wrong_terms(pair[k]) for pair in pairs) for k in (1, 2))
+    first = sum(_wrong_terms(one) for _, one, _ in pairs)
+    second = sum(_wrong_terms(other) for *_, other in pairs)
     return second <= first
 
 

@@ -18,7 +18,7 @@ from derive.verification.documents.interpretation import (
 )
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
-from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.letters.letter_search import implied_rates, letters_of
 from derive.verification.documents.letters.positions import sections
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.pages.verdicts_in_place import (
@@ -32,6 +32,7 @@ from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
+    IMPLIED,
     DocumentFormula,
     Occurrence,
     translated,
@@ -68,7 +69,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     have no meaning in those before.
     """
     occurrences, judged = _read(document)
-    statements = translated(occurrences)
+    statements = implied_rates(translated(occurrences))
     judged += [_plain(place, "context", note) for place, note in statements.failures]
     written = _written(occurrences)
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
@@ -113,7 +114,9 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     letters = letters_of(statements.formulas, statements.derivatives)
     if letters.multipliers or letters.constraints:
         note = f"{note}: {WAY_OUT}"
-    places = {formula.occurrence for formula in statements.formulas} - results.keys()
+    implied = {one.occurrence for one in statements.formulas if one.occurrence.display == IMPLIED}
+    results = {place: pair for place, pair in results.items() if place not in implied}
+    places = {one.occurrence for one in statements.formulas} - {*results, *implied}
     judged += [_plain(place, "context", note) for place in places]
     judged += [_judged(*pair, written, place in known) for place, pair in results.items()]
     partial = (PARTIAL,) if work.left < 0 and titles else ()

@@ -30,6 +30,8 @@ WORD = re.compile(r"[A-Za-z_]\w*")
 CONSTANT = ("const", "constant", "konst", "konstant", "constante", "costante")
 #: Relations of statements that can hold or not.
 EQUALITIES = ("=", ":=", "~")
+#: The display of statements that are not written.
+IMPLIED = -1
 #: Letters that stand for numbers as an index.
 INDICES = ("i", "j")
 

@@ -3,12 +3,14 @@
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice, permutations
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
+from derive.reading.latex.tree import Statement
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -27,8 +29,13 @@ from derive.verification.documents.letters.stated_constraints import (
     multipliers_of,
     stated_constraints,
 )
-from derive.verification.documents.statements import DocumentFormula
-from derive.verification.documents.text import order, stem
+from derive.verification.documents.statements import (
+    IMPLIED,
+    DocumentFormula,
+    Occurrence,
+    Translated,
+)
+from derive.verification.documents.text import FormulaText, order, stem
 
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
@@ -36,6 +43,8 @@ MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
 PARTNERS = {"K": "P", "T": "Pi"}
 #: A multiple of a quantity on the left, such as that in 2 T = m v**2.
 MULTIPLE = re.compile(r"\d+\*(\w+)")
+#: Letters of accelerations of documents without any rate, and of velocities.
+ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -119,6 +128,33 @@ def letters_of(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
         ordered, tuple(others), multipliers=multipliers, constraints=constraints,
     )  # fmt: skip
+
+
+def implied_rates(statements: Translated) -> Translated:
+    """The statements after such that make a letter the rate of a place, as a is in F = m*a.
+
+    These are accelerations of a document without rates, and velocities without places: those of
+    Euler's equations.
+    """
+    letters = letters_of(statements.formulas, statements.derivatives)
+    if letters.quantities or letters.momenta or statements.derivatives:
+        return statements
+    words = Counter(word for one in statements.formulas for word in one.words)
+    if not letters.coordinates:
+        has_mass = bool(letters.of_kind("mass"))
+        names = [name for name in words if ACCELERATION.match(name) and words[name] > 1] * has_mass
+        ending = "_ddot"
+    else:
+        second = {stem(name) for name in words if order(name) > 1}
+        is_first = not any(name for name in second if not name.startswith("omega"))
+        names = [name for name in letters.coordinates if VELOCITY.match(name) and is_first]
+        ending = "_dot"
+    place = Occurrence(IMPLIED, 0, 0, 0, 0, "", Statement((), (), (0, 0)))
+    rates = [
+        DocumentFormula(place, (FormulaText(f"place_{one}{ending}"), FormulaText(one)), ("=",))
+        for one in names
+    ]
+    return replace(statements, formulas=(*rates, *statements.formulas))
 
 
 def _orders(

@@ -60,6 +60,7 @@ class StatedEquations:
             if REACTION.match(name) and name not in known
         }
         self._names = self._namespace()
+        self._leave_out_others()
 
     def candidates(self) -> Iterator[SystemCandidate]:
         """Yield the systems of the first equations that suffice, and of those without one each."""
@@ -82,6 +83,17 @@ class StatedEquations:
                         yield candidate
             return
 
+    def _leave_out_others(self) -> None:
+        """Leave out coordinates of which no equation has an acceleration."""
+        rows = [*self._equations([*map(acceleration, self._q)])]
+        used = [any(one.coefficients[k] for one in rows) for k in range(len(self._q))]
+        pairs = [pair for pair, is_used in zip(self._pairs, used, strict=True) if is_used]
+        self._coordinates, self._q = [name for name, _ in pairs], [one for _, one in pairs]
+
+    @property
+    def _pairs(self) -> list[tuple[str, sp.Symbol]]:
+        return [*zip(self._coordinates, self._q, strict=True)]
+
     def _choices_of_reactions(self) -> Iterator[Mapping[str, sp.Symbol]]:
         """All letters of reactions, those in several statements, or none."""
         counts = {r: sum(r in one.words for one in self._formulas) for r in self._reactions}
@@ -93,7 +105,7 @@ class StatedEquations:
         """Values of letters, of their rates, and of names that the document defines by them."""
         names: dict[str, Any] = {**FUNCTIONS, **self._symbols, **self._reactions, "t": TIME}
         names["ddt"] = self._rate
-        for name, one in zip(self._coordinates, self._q, strict=True):
+        for name, one in self._pairs:
             names |= {f"{name}_dot": velocity(one), f"{name}_ddot": acceleration(one)}
         for name in {*self._letters.coordinates} - {*self._coordinates}:
             del names[name]
@@ -154,6 +166,9 @@ class StatedEquations:
             T = sp.expand((v.T * inertia * v)[0, 0] / 2)
             forces = [f + inertial(T, self._q, i).xreplace(still) for i, f in enumerate(forces)]
         used = sp.Tuple(inertia, *solved, *forces).free_symbols
+        every = {self._symbols[name] for name in self._letters.coordinates}
+        if used & {s for one in every - {*self._q} for s in (one, velocity(one))}:
+            return None
         names = {p: self._symbols[p] for p in self._letters.parameters if p in self._symbols}
         own = {p: one for p, one in names.items() if one in used and p not in reactions}
         try:

@@ -6,7 +6,6 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.entries import ENTRY
 from derive.verification.documents.rules.known_values import DocumentNamespace
