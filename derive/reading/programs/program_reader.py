@@ -1,6 +1,7 @@
 """Read a program: its equations, and its method of integration."""
 
 import re
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
@@ -9,6 +10,7 @@ from derive.reading.programs import languages
 from derive.reading.programs.evaluation.context import ProgramContext
 from derive.reading.programs.findings.program_findings import Findings
 from derive.reading.programs.findings.regions import prepare, regions
+from derive.reading.programs.findings.symbolic_statements import symbolic_statements
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.syntax.statement_translation import StatementTranslator
@@ -99,4 +101,8 @@ def _read(file: str, text: str, language: Language) -> Program:
     findings = Findings(context, body)
     for region in regions(context, body):
         findings.add(region)
-    return findings.program(file, language.name)
+    program = findings.program(file, language.name)
+    if not program.functions and language.name == "Python" and "sympy" in text:
+        stated = symbolic_statements(language.prepared(text))
+        return replace(program, functions=(stated,)) if stated else program
+    return program
