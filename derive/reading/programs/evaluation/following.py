@@ -156,6 +156,11 @@ class Follower(Calls):
         return [Opaque(value.line, "the values of several names are not followed")] * count
 
     def _branch(self, one: Conditional) -> None:
+        values = [self.variables.get(name) for name in one.different]
+        indices = [None if value is None else number(value) for value in values]
+        if None not in indices:
+            self.run(one.body if indices[0] != indices[1] else one.otherwise)
+            return
         branches = [self._copy(), self._copy()]
         count = len(self.steps)
         for branch, body in zip(branches, (one.body, one.otherwise), strict=True):

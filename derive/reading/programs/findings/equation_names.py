@@ -1,5 +1,6 @@
 """Names of a program as names in its equations."""
 
+import re
 from collections.abc import Iterable
 
 from derive.reading.programs.evaluation.calls import VariableValue
@@ -8,6 +9,8 @@ from derive.reading.programs.syntax.trees import Expression, Name
 
 #: Objects that stand for the program's own values.
 OWN = ("self.", "this.")
+#: A member of one of several bodies, such as b[0].x.
+BODY = re.compile(r"\w+\[(\d+)\]\.(\w+)")
 
 
 class Names:
@@ -38,6 +41,8 @@ class Names:
             for prefix in OWN:
                 short = short.removeprefix(prefix)
             last = short.rpartition(".")[2]
+            if of_body := BODY.fullmatch(short):
+                last = f"{of_body[2]}_{of_body[1]}"
             choices = [cleaned(one) for one in (last, short, path)]
             choices += [f"{choices[-1]}_{i}" for i in range(2, 1000)]
             used = set(self.given.values())

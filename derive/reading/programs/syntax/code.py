@@ -45,11 +45,12 @@ class ExpressionStatement:
 
 @dataclass(frozen=True)
 class Conditional:
-    """A conditional statement."""
+    """A conditional statement; the body is that of two `different` indices if these are known."""
 
     line: int
     body: tuple[Statement, ...]
     otherwise: tuple[Statement, ...]
+    different: tuple[str, str] = ("", "")
 
 
 @dataclass(frozen=True)

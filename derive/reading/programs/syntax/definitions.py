@@ -139,8 +139,9 @@ def _with_return(statements: tuple[Statement, ...]) -> tuple[Statement, ...]:
     match statements:
         case (*rest, ExpressionStatement(line=number, value=value)):
             return (*rest, Return(number, value))
-        case (*rest, Conditional(line=number, body=body, otherwise=otherwise)):
-            return (*rest, Conditional(number, _with_return(body), _with_return(otherwise)))
+        case (*rest, Conditional(number, body, otherwise, different)):
+            arms = _with_return(body), _with_return(otherwise)
+            return (*rest, Conditional(number, *arms, different))
     return statements
 
 

@@ -34,6 +34,14 @@ from derive.reading.programs.syntax.trees import (
 if TYPE_CHECKING:
     from tree_sitter import Node
 
+#: What ends a round of a loop, and the statement that stands for it.
+JUMPS = {"continue", "cycle", "CYCLE"}
+JUMP = ExpressionStatement(0, Name(0, "continue"))
+#: A condition that two indices are equal or different.
+INDICES = re.compile(
+    r"\(?\s*(\w+)\s*([!=~/]==?|≠|==|\.(?:ne|eq)\.|is not)\s*(\w+)\s*\)?", re.IGNORECASE
+)
+UNEQUAL, MAX_CONDITION = ("!=", "!==", "~=", "/=", "≠", ".ne.", ".NE.", "is not"), 100
 #: Levels of blocks in blocks.
 MAX_BLOCKS = 60
 #: Variables that a text assigns, and characters of the text in which they are searched.
@@ -57,10 +65,26 @@ class StatementTranslator(DefinitionTranslator):
 
     def statements(self, nodes: Sequence["Node"]) -> tuple[Statement, ...]:
         """The statements at nodes, with those of blocks among them in one row."""
-        return tuple(one for node in nodes for one in self._statement(node))
+        result: list[Statement] = []
+        for number, node in enumerate(nodes):
+            own = [*self._statement(node)]
+            result += own
+            match own:
+                case [Conditional() as last] if (JUMP in last.body) != (JUMP in last.otherwise):
+                    # if (i == j) continue: what follows is for the others
+                    rest = self.statements(nodes[number + 1 :])
+                    body, others = (
+                        () if JUMP in arm else rest for arm in (last.body, last.otherwise)
+                    )
+                    result[-1] = Conditional(last.line, body, others, last.different)
+                    break
+        return tuple(result)
 
     def _statement(self, node: "Node") -> Iterator[Statement]:
         role = self.role(node)
+        if node.end_byte - node.start_byte < 12 and text(node).strip(" ;") in JUMPS:
+            yield JUMP
+            return
         if role == "skip":
             return
         method: Callable[[Node], Iterator[Statement]] | None
@@ -225,10 +249,15 @@ class StatementTranslator(DefinitionTranslator):
         yield Return(line(node), values[0] if len(values) == 1 else value)
 
     def _branch_statements(self, node: "Node") -> Iterator[Statement]:
-        _condition, *rest = self.children(node)
+        condition, *rest = self.children(node)
         body = self.statements([one for one in rest if self.role(one) != "otherwise"])
-        others = [one for one in rest if self.role(one) == "otherwise"]
-        yield Conditional(line(node), body, self._otherwise(others))
+        others = self._otherwise([one for one in rest if self.role(one) == "otherwise"])
+        if indices := INDICES.fullmatch(text(condition)[:MAX_CONDITION]):
+            first, relation, second = indices.groups()
+            arms = (body, others) if relation in UNEQUAL else (others, body)
+            yield Conditional(line(node), *arms, (first, second))
+        else:
+            yield Conditional(line(node), body, others)
 
     def _otherwise(self, nodes: list["Node"]) -> tuple[Statement, ...]:
         if not nodes:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import islice, permutations, product
+from itertools import combinations, islice, permutations, product
 from math import pi
 from typing import Any, Literal, TypeAlias
 
@@ -152,7 +152,10 @@ def candidates(
         letters = replace(letters, parameters=tuple(others))
     choices = _likeliest(
         [*_conventions(system, letters)],
-        [*letters.orders([one.unit == "rad" for one in system.coordinates])],
+        sorted(
+            letters.orders([one.unit == "rad" for one in system.coordinates]),
+            key=lambda order: _mixed([one.symbol.name for one in system.coordinates], order),
+        ),
         [*islice(_parameters(system, letters), MAX_CHOICES)],
         loads(letters, "force", n),
         frictions(letters, n),
@@ -165,6 +168,12 @@ def candidates(
         if numbers is None or stated:
             one = SystemCandidate(system, order, signs, offsets, mapping, forces, friction, stated)
             yield from constrained(one, letters)
+
+
+def _mixed(names: Sequence[str], letters: Sequence[str]) -> int:
+    """How many pairs of coordinates are of one body in the system alone, or in letters alone."""
+    pairs = combinations(zip(map(_index, names), map(_index, letters), strict=True), 2)
+    return sum((a == c) != (b == d) for (a, b), (c, d) in pairs)
 
 
 def constrained(candidate: SystemCandidate, letters: Letters) -> Iterator[SystemCandidate]:

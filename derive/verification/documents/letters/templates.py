@@ -31,7 +31,7 @@ FREE = frozenset("polar_mass mass_in_space body_in_plane body_on_plane body_by_p
 #: Systems that are tried where no energy is stated, as in programs.
 OF_EQUATIONS = frozenset(
     "forced_pendulum scaled_forced_pendulum attracted_mass attracted_unit_mass "
-    "cubic_potential".split()
+    "cubic_potential two_bodies".split()
 )
 
 
@@ -174,6 +174,14 @@ def _others() -> Iterator[System]:
             name, title, _coordinates((x1, "m"), (x2, "m")), constants,
             [PointMass(m, (x1, x2))], potential=potential,
         )  # fmt: skip
+    y1, y2 = symbols("y1 y2", real=True)
+    yield System(
+        "two_bodies", "Two masses in a plane that attract each other",
+        _coordinates(*((one, "m") for one in (x1, y1, x2, y2))),
+        _parameters(m1="kg", m2="kg", G="m^3/(kg s^2)"),
+        [PointMass(m1, (x1, y1)), PointMass(m2, (x2, y2))],
+        potential=-G * m1 * m2 / sp.sqrt((x2 - x1)**2 + (y2 - y1)**2),
+    )  # fmt: skip
     a = sp.Symbol("a", real=True)
     yield System(
         "pushed_rod", "Uniform rod on a hinge with a given acceleration",

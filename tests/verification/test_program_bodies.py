@@ -1,0 +1,61 @@
+"""Loops over pairs of different bodies."""
+
+import pytest
+
+from derive.reading.programs.program_reader import read_program
+from derive.verification.documents.program_judgement import judge_program
+
+C = """
+typedef struct { double m, x, y, vx, vy; } Body;
+void step(Body *b, int n, double dt, double G) {
+    double ax[n], ay[n];
+    for (int i = 0; i < n; i++) {
+        ax[i] = 0.0; ay[i] = 0.0;
+        for (int j = 0; j < n; j++) {
+            CONDITION
+            double dx = b[j].x - b[i].x;
+            double dy = b[j].y - b[i].y;
+            double r = sqrt(dx*dx + dy*dy);
+            ax[i] += G * b[j].m * dx / (r*r*r);
+            ay[i] += G * b[j].m * dy / (r*r*r);
+            END
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        b[i].vx += ax[i]*dt; b[i].vy += ay[i]*dt;
+        b[i].x += b[i].vx*dt; b[i].y += b[i].vy*dt;
+    }
+}
+"""
+SPRINGS = """
+def rhs(t, y, m, k):
+    n = len(m)
+    x, v = y[:n], y[n:]
+    a = np.zeros(n)
+    for i in range(n):
+        for j in range(n):
+            if i == j:
+                continue
+            a[i] += k*(x[j] - x[i])
+        a[i] /= m[i]
+    return np.concatenate([v, a])
+"""
+
+
+def verdicts(text: str, language: str) -> list[str]:
+    formulas = judge_program(read_program(text, language)).formulas
+    return [one.verdict for one in formulas if one.latex != "method of integration"]
+
+
+@pytest.mark.parametrize(("condition", "end"), [
+    ("if (i == j) continue;", ""), ("if (j != i) {", "}"),
+])  # fmt: skip
+def test_bodies_attract_others_alone(condition: str, end: str) -> None:
+    text = C.replace("CONDITION", condition).replace("END", end)
+    assert verdicts(text, "C") == ["verified"] * 4
+    slip = text.replace("b[j].m * dy / (r*r*r)", "b[j].m * dy / (r*r)")
+    assert verdicts(slip, "C") == ["verified", "verified", "wrong", "wrong"]
+
+
+def test_what_follows_a_jump_is_for_the_others() -> None:
+    assert verdicts(SPRINGS, "Python") == ["verified"] * 2
