@@ -15,8 +15,9 @@ from derive.verification.documents.letters.stated_constraints import StatedConst
 from derive.verification.documents.statements import WORD
 from derive.verification.system_names import FACTORS
 
-#: The names of systems that documents state by positions or energies, and by equations.
-STATED, BY_EQUATIONS = "stated", "stated_equations"
+#: The names of systems that documents state by positions or energies, and by equations of motion:
+#: by those with a potential energy, and by others.
+STATED, BY_POTENTIAL, BY_EQUATIONS = "stated", "stated_potential", "stated_equations"
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
 #: The same of one with constraints, before those of the signs of multipliers.
@@ -101,6 +102,11 @@ class SystemCandidate:
         if self.stating:
             return "equations" if self.system.name == BY_EQUATIONS else "energies"
         return "positions" if self.system.name == STATED else "catalogue"
+
+    @property
+    def is_of_equations(self) -> bool:
+        """Whether equations of motion of the document state the system."""
+        return self.system.name in (BY_POTENTIAL, BY_EQUATIONS)
 
     @property
     def letters(self) -> frozenset[str]:

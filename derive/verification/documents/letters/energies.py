@@ -19,7 +19,6 @@ from derive.verification.documents.letters.candidates import STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.implied_energies import (
     Energies,
-    energies_of_equations,
     energies_of_hamiltonians,
 )
 from derive.verification.documents.letters.letters import Letters
@@ -152,7 +151,6 @@ def stated_energies(
             V = sign * value.xreplace(at_rest)
             yield sp.expand(value - sign * V), V, frozenset({number})
     yield from energies_of_hamiltonians(letters, formulas, names)
-    yield from energies_of_equations(letters, formulas, names)
     if not potential:
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
 

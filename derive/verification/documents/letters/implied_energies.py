@@ -1,8 +1,7 @@
-"""Energies that follow from a Hamiltonian, or from equations of motion, which a document states."""
+"""Energies that follow from a Hamiltonian that a document states, and potentials of forces."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from itertools import islice, permutations
 
 import sympy as sp
 from sympy.integrals.manualintegrate import manualintegrate
@@ -46,44 +45,6 @@ def energies_of_hamiltonians(
                 yield T, V, frozenset({number})
 
 
-def energies_of_equations(
-    letters: Letters, formulas: Sequence[DocumentFormula], names: Mapping[str, Value]
-) -> Iterator[Energies]:
-    """Yield the energies of which equations of motion of the document are those of Lagrange.
-
-    These are as many as coordinates, the first ones with a symmetric mass matrix.
-    """
-    q = [names[one] for one in letters.accelerated]
-    n = len(q)
-    if not 0 < n <= MAX_COORDINATES or n < len(letters.coordinates) or len(formulas) <= n:
-        return
-    a = [acceleration(one) for one in q]
-    scope = {**names, **{f"{one}_ddot": acceleration(names[one]) for one in letters.accelerated}}
-    rows: list[tuple[sp.Expr, int]] = []
-    for number, formula in enumerate(formulas):
-        if len(formula.sides) == 2 and formula.relations == ("=",):
-            with suppress(ExpressionError, NotImplementedError, TypeError):
-                value = parse(formula.sides[0].text, scope) - parse(formula.sides[1].text, scope)
-                if not isinstance(value, sp.MatrixBase) and value.has(*a):
-                    rows.append((value, number))
-    for order in islice(permutations(rows[: 2 * n], n), 30):
-        matrix = sp.ImmutableDenseMatrix([one for one, _ in order]).jacobian(a)
-        if matrix.free_symbols & {*a} or max(map(sp.count_ops, matrix)) > MAX_OPERATIONS:
-            continue
-        signs = [-1 if matrix[i, i].could_extract_minus_sign() else 1 for i in range(n)]
-        matrix = sp.diag(*signs) * matrix
-        if sp.expand(matrix - matrix.T) != sp.zeros(n) or not all(matrix.diagonal()):
-            continue
-        v = sp.Matrix([velocity(one) for one in q])
-        T = sp.expand((v.T * matrix * v)[0, 0] / 2)
-        terms = zip(signs, order, strict=True)
-        forces = [s * one - inertial(T, q, i) for i, (s, (one, _)) in enumerate(terms)]
-        V = _potential([sp.expand(one) for one in forces], q)
-        if V is not None:
-            yield T, V, frozenset(number for _, number in order)
-            return
-
-
 def inertial(kinetic: sp.Expr, q: Sequence[sp.Symbol], index: int) -> sp.Expr:
     """The terms of Lagrange's equation of a coordinate without a potential."""
     p = kinetic.diff(velocity(q[index]))
@@ -92,7 +53,7 @@ def inertial(kinetic: sp.Expr, q: Sequence[sp.Symbol], index: int) -> sp.Expr:
     return rate - kinetic.diff(q[index])
 
 
-def _potential(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr | None:
+def potential_of(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr | None:
     """A function with a gradient; None if there is none, or it is not found quickly."""
     rates = {s for one in q for s in (velocity(one), acceleration(one))}
     V = sp.S.Zero

@@ -66,6 +66,8 @@ def letters_of(
     # a function K that is differentiated by a momentum is a Hamiltonian of other coordinates
     transformed = {one for one, by in derivatives.values() if any(map(MOMENTUM.match, by))}
     subjects = {formula.subject for formula in formulas}
+    # no energy has accelerations, as a force does in H = m*x_ddot
+    forces = {one.subject for one in formulas if any(map(_is_of_second_order, one.sides[1:]))}
     subjects |= {match[1] for one in formulas if (match := MULTIPLE.fullmatch(one.sides[0].text))}
     quantities = {
         one: kind
@@ -74,6 +76,7 @@ def letters_of(
         and (one in subjects or one in operands or one in combined)
         and not (kind == "kinetic_energy" and _is_constant(one, formulas))
         and not (kind == "kinetic_energy" and one in transformed)
+        and one not in forces
         and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }
     written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
@@ -339,6 +342,10 @@ def _mechanical(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) 
     """Names in formulas with letters that move."""
     words = [{stem(word) for word in formula.words} - OPERATORS for formula in formulas]
     return {name for one in words if any(orders.get(word) for word in one) for name in one}
+
+
+def _is_of_second_order(side: FormulaText) -> bool:
+    return "ddt(ddt(" in side.text or any(order(word) == 2 for word in _words(side.text))
 
 
 def _words(text: str) -> list[str]:

@@ -19,10 +19,14 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.letters.candidates import BY_EQUATIONS, SystemCandidate
-from derive.verification.documents.letters.document_system import derivation, is_length
+from derive.verification.documents.letters.candidates import (
+    BY_EQUATIONS,
+    BY_POTENTIAL,
+    SystemCandidate,
+)
+from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.energies import StatedInertia, letter_symbols
-from derive.verification.documents.letters.implied_energies import inertial
+from derive.verification.documents.letters.implied_energies import inertial, potential_of
 from derive.verification.documents.letters.letters import MATRICES, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
 
@@ -54,18 +58,20 @@ class StatedEquations:
         self._q = [self._symbols[name] for name in self._coordinates]
         words = dict.fromkeys(word for one in formulas for word in one.words)
         known = {*letters.quantities, *letters.coordinates}
+        energies = {*letters.quantities.values()} - {*MATRICES.values()}
+        self._has_energies = bool(energies or letters.momenta)
         self._reactions = {
-            name: self._symbols.get(name, sp.Symbol(name, real=True))
+            name: self._symbols.get(name, sp.Symbol(valid_name(name), real=True))
             for name in words
-            if REACTION.match(name) and name not in known
+            if name in letters.multipliers
+            or (REACTION.match(name) and name not in known and not name.endswith("_column"))
         }
         self._names = self._namespace()
         self._leave_out_others()
 
     def candidates(self) -> Iterator[SystemCandidate]:
         """Yield the systems of the first equations that suffice, and of those without one each."""
-        energies = {*self._letters.quantities.values()} - {*MATRICES.values()}
-        if energies or self._letters.momenta or self._letters.constraints or not self._q:
+        if self._letters.constraints or not self._q:
             return
         for reactions in self._choices_of_reactions():
             unknown = (*map(acceleration, self._q), *reactions.values())
@@ -73,15 +79,17 @@ class StatedEquations:
             chosen = _independent(rows, len(unknown))
             if chosen is None or len(unknown) > MAX_UNKNOWN:
                 continue
-            seen: set[frozenset[int]] = set()
+            seen, has_system = set[frozenset[int]](), False
             for left_out in (-1, *(one.number for one in chosen)):
                 part = _independent([one for one in rows if one.number != left_out], len(unknown))
                 numbers = frozenset(one.number for one in part or ())
                 if part and numbers not in seen:
                     seen.add(numbers)
                     if candidate := self._candidate(part, reactions, numbers):
+                        has_system = True
                         yield candidate
-            return
+            if has_system:
+                return
 
     def _leave_out_others(self) -> None:
         """Leave out coordinates of which no equation has an acceleration."""
@@ -95,11 +103,16 @@ class StatedEquations:
         return [*zip(self._coordinates, self._q, strict=True)]
 
     def _choices_of_reactions(self) -> Iterator[Mapping[str, sp.Symbol]]:
-        """All letters of reactions, those in several statements, or none."""
+        """All letters of reactions, those but multipliers, those in several statements, none."""
         counts = {r: sum(r in one.words for one in self._formulas) for r in self._reactions}
-        yield self._reactions
-        yield {r: one for r, one in self._reactions.items() if counts[r] > 1}
-        yield {}
+        multipliers = {*self._letters.multipliers}
+        for least in (0, 1, 2, len(self._formulas) + 1):
+            excluded = multipliers if least else set()
+            yield {
+                r: one
+                for r, one in self._reactions.items()
+                if counts[r] >= least and r not in excluded
+            }
 
     def _namespace(self) -> dict[str, Any]:
         """Values of letters, of their rates, and of names that the document defines by them."""
@@ -156,29 +169,36 @@ class StatedEquations:
         point = _point(sp.Tuple(matrix, rest))
         try:
             solved = matrix.LUsolve(rest, iszerofunc=lambda one: _is_zero(one, point))
-        except (ValueError, sp.matrices.exceptions.NonInvertibleMatrixError):
+            solved = solved.applyfunc(sp.cancel)  # without pivots that vanish at rest
+        except (ValueError, sp.PolynomialError, sp.matrices.exceptions.NonInvertibleMatrixError):
             return None
-        n = len(self._q)
-        inertia, forces = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n])
+        n, name = len(self._q), BY_EQUATIONS
+        inertia, forces, V = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n]), None
         if not reactions and (symmetric := _symmetric(matrix, rest)):
             inertia, forces = symmetric
             v = sp.Matrix([velocity(one) for one in self._q])
             T = sp.expand((v.T * inertia * v)[0, 0] / 2)
             forces = [f + inertial(T, self._q, i).xreplace(still) for i, f in enumerate(forces)]
-        used = sp.Tuple(inertia, *solved, *forces).free_symbols
+            V = potential_of([sp.expand(-force) for force in forces], self._q)
+        if V is not None:
+            name, forces = BY_POTENTIAL, []
+        elif self._has_energies:  # which are not those of these equations
+            return None
+        used = sp.Tuple(inertia, *solved, V or 0).free_symbols
         every = {self._symbols[name] for name in self._letters.coordinates}
         if used & {s for one in every - {*self._q} for s in (one, velocity(one))}:
             return None
-        names = {p: self._symbols[p] for p in self._letters.parameters if p in self._symbols}
+        symbols = {**self._symbols, **self._reactions}
+        names = {p: symbols[p] for p in self._letters.parameters}
         own = {p: one for p, one in names.items() if one in used and p not in reactions}
         try:
             system = System(
-                BY_EQUATIONS, "The system of the stated equations",
+                name, "The system of the stated equations",
                 [Coordinate(one, "m", "a coordinate") for one in self._q],
                 [Parameter(one, "m" if is_length(p) else "1", 1.0, "a parameter")
                  for p, one in own.items()],
                 [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), inertia)],
-                potential=sp.S.Zero, gravity=(sp.S.Zero, sp.S.Zero), forces=forces,
+                potential=V or sp.S.Zero, gravity=(sp.S.Zero, sp.S.Zero), forces=forces,
             )  # fmt: skip
             derivation(system)
         except (SystemDefinitionError, ValueError):

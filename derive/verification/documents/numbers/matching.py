@@ -59,8 +59,7 @@ class Match:
     @property
     def is_circular(self) -> bool:
         """Whether only the equations hold that state the system."""
-        one = self.candidate
-        return one.basis == "equations" and self.holding <= len(one.stating)
+        return self.candidate.is_of_equations and self.holding <= len(self.candidate.stating)
 
     @property
     def is_stated_by_positions(self) -> bool:

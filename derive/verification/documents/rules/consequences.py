@@ -21,6 +21,8 @@ from derive.verification.documents.text import order, stem
 from derive.verification.engine import joined
 from derive.verification.reference_system import time_derivative
 
+#: Kinds of formulas that no other case of the system gives.
+OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
 #: The note on a formula that follows correctly from a wrong one.
 FOLLOWS = "it follows from line"
 #: Energies from which others follow.
@@ -165,7 +167,7 @@ def weighed(
     decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = is_known and holding < 2 and candidate.is_turned
     follows = [FOLLOWS in one.note for one in wrong]
-    is_tie = candidate.basis == "equations" and (
+    is_tie = candidate.is_of_equations and (
         len(wrong) - sum(follows) != 1 or holding < 2 or misfits > 0
     )
     given = _lines(lines[k] for k in candidate.stating)
@@ -179,7 +181,11 @@ def weighed(
             result = plain("context", formula, note)
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
-        elif verdict.verdict == "wrong" and (is_tie or _adds_letters(formula, result, candidate)):
+        elif (
+            verdict.verdict == "wrong"
+            and result.kind not in OF_ENERGIES
+            and (is_tie or _adds_letters(formula, result, candidate))
+        ):
             result = plain("context", formula, f"it differs from {given or 'others'}: {OTHER_CASE}")
         elif verdict.verdict == "wrong" and given:
             note = joined(verdict.note, f"given {given}")
@@ -196,7 +202,7 @@ def _adds_letters(
     """
     added = {w for one in result.verdict.corrections for w in WORD.findall(one.correct)}
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
-    return bool((added - {*formula.words}) & (added if candidate.basis == "equations" else loads))
+    return bool((added - {*formula.words}) & (added if candidate.is_of_equations else loads))
 
 
 def _unnamed(candidate: SystemCandidate) -> Iterator[str]:

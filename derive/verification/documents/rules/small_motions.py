@@ -7,6 +7,7 @@ import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
+from derive.verification.documents.letters.letters import KINDS
 from derive.verification.reference_system import ReferenceSystem
 
 #: Coordinates of the largest systems whose accelerations are solved for.
@@ -151,6 +152,13 @@ class SmallMotions:
         applied = sp.Tuple(*system.applied)
         elsewhere = sp.Tuple(d.lagrangian).free_symbols | {*system.q, *system.qdot}
         alone = applied.free_symbols - elsewhere
-        return {
-            s for s in alone if any(one.diff(s).is_number and one.diff(s) for one in system.applied)
-        }
+        at_rest = dict.fromkeys((*system.q, *system.qdot), sp.S.Zero)
+
+        def is_input(symbol: sp.Symbol) -> bool:
+            slopes = [one.diff(symbol) for one in system.applied]
+            if any(one.is_number and one for one in slopes):
+                return True
+            is_named = symbol.name.partition("_")[0] in KINDS["force"]
+            return is_named and any(one.xreplace(at_rest) for one in slopes if one)
+
+        return {*filter(is_input, alone)}
