@@ -60,11 +60,13 @@ class DerivedMatrices:
 
     def _compared(self, name: str) -> Required | None:
         """The entries in which a value differs from the likeliest matrix of the system."""
-        value, least = self._namespace.names[name], None
-        known = self._of_shape(value.shape) if isinstance(value, sp.MatrixBase) else []
-        if known and name not in self._namespace.letters.quantities:  # such as G of M q̈ + C q̇ = G
-            known = [*known, *self._parts(value.shape)]
-        for derived in known:
+        value = self._namespace.names[name]
+        least: Required | None = None
+        if not isinstance(value, sp.MatrixBase):
+            return None
+        if self._namespace.letters.quantities.get(name) == "coriolis_matrix":
+            return self._coriolis(value)
+        for derived in (*self._of_shape(value.shape), *self._parts(value.shape)):
             if value.rows == len(self._rows) and has_scaled_rows(self._namespace, value, derived):
                 return [None] * len(value)
             entries = [
@@ -118,6 +120,23 @@ class DerivedMatrices:
         forces = sp.Matrix([d.forcing[i] - d.system.applied[i] for i in self._rows])
         at_rest = forces.xreplace(dict.fromkeys(d.system.qdot, sp.S.Zero))
         yield from (at_rest, -at_rest, forces - at_rest, at_rest - forces)
+
+    def _coriolis(self, value: sp.MatrixBase) -> Required | None:
+        """C is not unique: C q̇ must be the forces of inertia that are quadratic in q̇."""
+        d, system, n = self._namespace.derivation, self._namespace.derivation.system, value.rows
+        speeds = sp.Matrix([system.qdot[i] for i in self._rows])
+        if value.shape != (len(speeds), len(speeds)) or not value.free_symbols & {*speeds}:
+            return None
+        entries: list[sp.Expr | None] = []
+        for row, i in enumerate(self._rows):
+            force = system.applied[i] - d.potential_energy.diff(system.q[i]) - d.forcing[i]
+            lacking = force - (value.row(row) * speeds)[0]
+            is_right = _agree(self._namespace, lacking, sp.S.Zero)
+            rests = [None if is_right else sp.cancel(lacking / speed) for speed in speeds]
+            entries += [
+                r if r is None else value[row, k] + r for k, r in zip(range(n), rests, strict=True)
+            ]
+        return entries
 
     def _of_states(self, shape: tuple[int, int], rows: Sequence[int]) -> Iterator[sp.Matrix]:
         """A and B of ẋ = A x + B F for all orders of the state."""

@@ -17,7 +17,6 @@ from derive.verification.documents.rules.applied_forces import without_unknown_t
 from derive.verification.documents.rules.consequences import Consequences
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.rules.manipulator import Manipulator
 from derive.verification.documents.rules.mass_positions import MassPositions
 from derive.verification.documents.rules.partial_energies import PartialEnergies
 from derive.verification.documents.rules.roles import Roles
@@ -67,7 +66,6 @@ class Judge:
         self._namespace, self._model = namespace, namespace.model
         self._roles = Roles(namespace, linear)
         self._comparison = SideComparison(namespace, linear, self._roles)
-        self._manipulator = Manipulator(namespace)
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
@@ -262,7 +260,7 @@ class Judge:
         name, entries = formula.subject, side.entries
         if (value := self._abbreviations.required(name)) is not None:
             return self._roles.value(side, name, value)
-        required = self._manipulator.required(name) or self._matrices.required(name)
+        required = self._matrices.required(name)
         if required is None:
             required, entries = self._matrices.entry(name), (side,)
         if required is None:
