@@ -24,25 +24,23 @@ class _UnreadError(Exception):
 
 
 def symbolic_statements(text: str) -> RateFunction | None:
-    """The statements of a SymPy script; None if it has no functions of time or no statements."""
+    """The statements of a SymPy script; None if it has no equations in functions of time."""
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return None
-    reader = _Reader()
-    equations = tuple(reader.read(tree))
-    has_statements = reader.coordinates and any(one.kind == "implicit" for one in equations)
-    return RateFunction("", 1, equations) if has_statements else None
+    equations = tuple(_Reader().read(tree))
+    has_equations = any(one.kind == "implicit" for one in equations)
+    return RateFunction("", 1, equations) if has_equations else None
 
 
 class _Reader:
     """Follows the assignments of a script from the first to the last."""
 
     def __init__(self) -> None:
-        self.coordinates: set[str] = set()
+        self._coordinates, self._modules = set[str](), set[str]()
         #: Names with other formulas than themselves, such as rates.
         self._values: dict[str, str] = {}
-        self._modules: set[str] = set()
 
     def read(self, tree: ast.Module) -> Iterator[ProgramEquation]:
         """Yield the definitions and equations."""
@@ -51,39 +49,35 @@ class _Reader:
         for node in tree.body:
             for call in ast.walk(node):
                 if isinstance(call, ast.Call) and _name(call.func) in ("Eq", "Equality"):
-                    yield from self._equation(call)
+                    sides = [self._plain(one) for one in call.args[:2]]
+                    text = " = ".join(sides)
+                    if all(sides) and len(sides) == 2 and ("_ddot" in text or "ddt(" in text):
+                        yield ProgramEquation(call.lineno, "implicit", "", "", text)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 yield from self._assigned(node.targets[0], node.value)
 
-    def _equation(self, call: ast.Call) -> Iterator[ProgramEquation]:
-        try:
-            left, right = (_plain(self._text(one)) for one in call.args[:2])
-        except (_UnreadError, ValueError):
-            return
-        if "_ddot" in left + right or "ddt(" in left + right:
-            yield ProgramEquation(call.lineno, "implicit", "", "", f"{left} = {right}")
-
     def _assigned(self, target: ast.expr, value: ast.expr) -> Iterator[ProgramEquation]:
-        names = [one.id for one in _items(target) if isinstance(one, ast.Name)]
+        is_row = isinstance(target, ast.Tuple | ast.List)
+        names = [_name(one) for one in (target.elts if is_row else [target])]  # type: ignore[attr-defined]
         made = value.func if isinstance(value, ast.Call) else None
-        inner = made.func if isinstance(made, ast.Call) else made  # Function('x')(t)
-        if _name(inner) in MOVING:
-            self.coordinates.update(names)
-        elif _name(inner) not in LETTERS:
-            values = [*_items(value)] if isinstance(target, ast.Tuple) else [value]
+        made = made.func if isinstance(made, ast.Call) else made  # Function('x')(t)
+        if _name(made) in MOVING:
+            self._coordinates.update(names)
+        elif _name(made) not in LETTERS:
+            values = value.elts if is_row and isinstance(value, ast.Tuple) else [value]
             for name, one in zip(names, values, strict=False):
-                yield from self._defined(name, one)
+                text = self._plain(one)
+                if not text or text.isidentifier():  # a rate, or another name
+                    self._values[name] = text
+                elif not text.replace(".", "").isdigit():
+                    yield ProgramEquation(one.lineno, "rate", name, "", f"{name} = {text}")
 
-    def _defined(self, name: str, value: ast.expr) -> Iterator[ProgramEquation]:
+    def _plain(self, node: ast.expr) -> str:
+        """A formula without needless brackets; empty if it cannot be read."""
         try:
-            text = _plain(self._text(value))
+            return ast.unparse(ast.parse(self._text(node), mode="eval"))
         except _UnreadError:
-            self._values[name] = ""
-            return
-        if text.isidentifier():  # a rate, or another name
-            self._values[name] = text
-        elif not text.replace(".", "").isdigit():
-            yield ProgramEquation(value.lineno, "rate", name, "", f"{name} = {text}")
+            return ""
 
     def _text(self, node: ast.expr) -> str:
         match node:
@@ -97,12 +91,10 @@ class _Reader:
                 return f"(-{self._text(operand)})"
             case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
                 return f"({self._text(left)} {OPERATORS[type(op)]} {self._text(right)})"
-            case ast.Call(func=ast.Attribute(value=operand, attr="diff"), args=variables) if (
+            case ast.Call(func=ast.Attribute(value=operand, attr=name), args=arguments) if (
                 _name(operand) not in self._modules
             ):
-                return self._derivative(operand, variables)
-            case ast.Call(func=ast.Attribute(value=operand, attr="simplify" | "expand")):
-                return self._text(operand)
+                return self._called(name, operand, arguments)
             case ast.Call(func=function, args=[first, *rest]):
                 return self._called(_name(function), first, rest)
         raise _UnreadError
@@ -116,7 +108,7 @@ class _Reader:
             return self._text(first)
         if name in FUNCTIONS and not rest:
             return f"{name}({self._text(first)})"
-        if name in self.coordinates:  # theta(t)
+        if name in self._coordinates:  # theta(t)
             return name
         raise _UnreadError
 
@@ -136,23 +128,12 @@ class _Reader:
             raise _UnreadError
         order = next(k for k in (2, 1, 0) if text.endswith(RATES[k]))
         if text.isidentifier() and order + times < len(RATES):
-            return text.removesuffix(RATES[order]) + RATES[order + times] if times else text
-        for _ in range(times):
-            text = f"ddt({text})"
-        return text
-
-
-def _plain(text: str) -> str:
-    """A formula without needless brackets."""
-    return ast.unparse(ast.parse(text, mode="eval"))
-
-
-def _items(node: ast.expr) -> list[ast.expr]:
-    return list(node.elts) if isinstance(node, ast.Tuple | ast.List) else [node]
+            return text.removesuffix(RATES[order]) + RATES[order + times]
+        return "ddt(" * times + text + ")" * times
 
 
 def _name(node: ast.expr | None) -> str:
-    """The name of a function, with or without its module."""
+    """The name of a function or a letter, with or without its module."""
     if isinstance(node, ast.Attribute):
         return node.attr
     return node.id if isinstance(node, ast.Name) else ""

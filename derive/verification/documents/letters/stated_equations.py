@@ -103,16 +103,11 @@ class StatedEquations:
         return [*zip(self._coordinates, self._q, strict=True)]
 
     def _choices_of_reactions(self) -> Iterator[Mapping[str, sp.Symbol]]:
-        """All letters of reactions, those but multipliers, those in several statements, none."""
-        counts = {r: sum(r in one.words for one in self._formulas) for r in self._reactions}
+        """All letters of reactions, those but multipliers, or none."""
         multipliers = {*self._letters.multipliers}
-        for least in (0, 1, 2, len(self._formulas) + 1):
-            excluded = multipliers if least else set()
-            yield {
-                r: one
-                for r, one in self._reactions.items()
-                if counts[r] >= least and r not in excluded
-            }
+        yield self._reactions
+        yield {r: one for r, one in self._reactions.items() if r not in multipliers}
+        yield {}
 
     def _namespace(self) -> dict[str, Any]:
         """Values of letters, of their rates, and of names that the document defines by them."""
