@@ -329,7 +329,9 @@ def alternatives(
         pairs = _rejudged(statements, result, rival, results)
         own = sum(one.verdict.verdict not in CORRECT for _, one, _ in pairs)
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
-        opposes = _opposes(rival.candidate, result.match.candidate, pairs)
+        one, own_one = rival.candidate, result.match.candidate
+        is_odd = own_one.is_usual and one.is_turned
+        opposes = {one.basis, own_one.basis} == {"catalogue"} and not is_odd
         changed = tuple(_differences(pairs, written, opposes))
         kinds = tuple((one.line, one.latex, one.verdict) for one in changed)
         is_usual = rival.candidate.is_usual and not result.match.candidate.is_usual
@@ -349,25 +351,6 @@ def _rejudged(
     judge = judge_of(statements, found.letters, rival.candidate)
     pairs = ((k, *pair) for k, pair in enumerate(results) if k in failed)
     return [(formula, result, judge.verdict(formula)) for _, formula, result in pairs]
-
-
-def _opposes(
-    rival: SystemCandidate,
-    own: SystemCandidate,
-    pairs: Sequence[tuple[DocumentFormula, SideVerdict, SideVerdict]],
-) -> bool:
-    """Whether a meaning of letters explains the formulas with as few wrong terms as that taken."""
-    if {rival.basis, own.basis} != {"catalogue"} or (own.is_usual and rival.is_turned):
-        return False
-    first = sum(_wrong_terms(one) for _, one, _ in pairs)
-    second = sum(_wrong_terms(other) for *_, other in pairs)
-    return second <= first
-
-
-def _wrong_terms(result: SideVerdict) -> int:
-    """How many terms of a formula are wrong; more than two if none of its terms is."""
-    one = result.verdict
-    return (len(one.corrections) or 3) if one.verdict == "wrong" else 0
 
 
 def _differences(
