@@ -10,8 +10,15 @@ from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
 
-#: Formulas that must agree on the value of a name.
+#: Formulas that must agree on the value of a name that differs by several terms.
 AGREEING = 2
+
+
+def _differs_by_one_term(own: sp.Expr, value: sp.Expr) -> bool:
+    """Whether two sums have the same terms but one, as those of a slip in the first have."""
+    terms = [sp.expand(one).as_coefficients_dict() for one in (own, value)]
+    same = [terms[0][key] == terms[1][key] for key in {*terms[0], *terms[1]}]
+    return any(same) and same.count(False) == 1
 
 
 class Abbreviations:
@@ -25,8 +32,9 @@ class Abbreviations:
             own = namespace.names[name]
             if not isinstance(own, sp.MatrixBase):
                 values = [*self._values(name, formulas)]
-                if len(values) >= AGREEING and self._are_equal(values):
-                    shortest = min(values, key=sp.count_ops)
+                shortest = min(values, key=sp.count_ops, default=own)
+                is_shown = len(values) >= AGREEING or _differs_by_one_term(own, shortest)
+                if is_shown and self._are_equal([shortest, *values]):
                     if not self._are_equal([own, shortest]):
                         self._required[name] = shortest
         if self._required:
