@@ -76,3 +76,8 @@ def test_the_formula_with_the_slip_is_blamed(
 ) -> None:
     formulas = judged(tmp_path, BEAD.replace(old, new)).formulas
     assert [one.wrong_term for one in formulas if one.verdict == "wrong"] == [term]
+
+
+def test_an_arrow_before_a_statement_is_no_relation(tmp_path: Path) -> None:
+    text = r"$$m\ddot x + k x = 0$$ $$\longrightarrow \ddot x = -\frac km x$$"
+    assert verdicts(tmp_path, text)[-1] == "verified"

@@ -119,8 +119,10 @@ def _sides(tokens: list[Token]) -> tuple[list[list[Token]], list[str]]:
     while at < len(tokens):
         end = max(at, partner.get(at, at))
         is_repeated = relations[-1:] == [tokens[at].text] and not _is_visible(sides[-1])
+        is_leading = tokens[at].text == "->" and not relations and not _is_visible(sides[0])
         if tokens[at].kind == "relation":
-            if not is_repeated:  # at the end of a row and at the start of the next one
+            # at the end of a row and at the start of the next one, or an arrow from the one before
+            if not is_repeated and not is_leading:
                 relations.append(tokens[at].text)
                 sides.append([])
         else:
