@@ -7,13 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
-from derive.system.symbols import TIME, velocity
+from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
@@ -141,7 +142,7 @@ def stated_energies(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> Iterator[Energies]:
     """Yield kinetic and potential energies that the document states, or that follow from others."""
-    stated, names = _stated(letters, formulas, symbols)
+    stated, names = stated_values(letters, formulas, symbols)
     kinetic, potential = (stated.get(f"{kind}_energy", ()) for kind in ("kinetic", "potential"))
     for (T, first), (V, second) in product(kinetic, potential):
         yield T, V, frozenset({first, second})
@@ -155,12 +156,26 @@ def stated_energies(
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
 
 
-def _stated(
+def stated_values(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> tuple[Stated, Mapping[str, Value]]:
-    """The energies that formulas state, and the values of letters and names with definitions."""
-    namespace: dict[str, Value] = {**FUNCTIONS, **symbols, "t": TIME}
-    namespace |= {f"{q}_dot": velocity(symbols[q]) for q in letters.coordinates}
+    """The energies that formulas state, and the values of letters and names with definitions.
+
+    Coordinates without a symbol are such names.
+    """
+    moving = [symbols[q] for q in letters.coordinates if q in symbols]
+
+    def rate(value: sp.Expr) -> sp.Expr:
+        if value.has(*map(acceleration, moving)):
+            raise ValueError("a third derivative")
+        pairs = [(one, velocity(one)) for one in moving]
+        pairs += [(v, acceleration(one)) for one, v in pairs]
+        return sp.Add(*(value.diff(one) * v for one, v in pairs), value.diff(TIME))
+
+    namespace: dict[str, Any] = {**FUNCTIONS, **symbols, "t": TIME, "ddt": rate}
+    for q in {*letters.coordinates} & {*symbols}:
+        one = symbols[q]
+        namespace |= {f"{q}_dot": velocity(one), f"{q}_ddot": acceleration(one)}
     for name, (function, angles) in letters.abbreviations.items():
         with suppress(ExpressionError):
             namespace[name] = parse(f"{function}({' + '.join(angles)})", namespace)
@@ -173,9 +188,12 @@ def _stated(
                     continue
                 try:
                     value = parse(text, namespace)
-                except (ExpressionError, NotImplementedError):
+                except (ExpressionError, NotImplementedError, TypeError, ValueError):
                     continue
                 namespace.setdefault(name, value)
+                with suppress(ValueError, AttributeError):
+                    namespace.setdefault(f"{name}_dot", rate(value))
+                    namespace.setdefault(f"{name}_ddot", rate(namespace[f"{name}_dot"]))
                 values = result.setdefault(kind, [])
                 is_new = not any(value == one for one, _ in values)
                 if kind and is_new and len(values) < MOST and not isinstance(value, sp.MatrixBase):

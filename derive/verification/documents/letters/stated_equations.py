@@ -9,15 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
-from derive.system.symbols import TIME, acceleration, velocity
+from derive.system.symbols import acceleration, velocity
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import (
     BY_EQUATIONS,
@@ -25,15 +24,19 @@ from derive.verification.documents.letters.candidates import (
     SystemCandidate,
 )
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
-from derive.verification.documents.letters.energies import StatedInertia, letter_symbols
+from derive.verification.documents.letters.energies import (
+    StatedInertia,
+    letter_symbols,
+    stated_values,
+)
 from derive.verification.documents.letters.implied_energies import inertial, potential_of
 from derive.verification.documents.letters.letters import MATRICES, Letters
-from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.statements import DocumentFormula
 
 #: Letters of reactions.
 REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSR]\w*|tension|normal)(?:_\w+)?\Z")
-#: Most unknown accelerations and reactions, operations of an equation, and rounds of definitions.
-MAX_UNKNOWN, MAX_OPERATIONS, ROUNDS = 6, 120, 3
+#: Most unknown accelerations and reactions, and operations of an equation.
+MAX_UNKNOWN, MAX_OPERATIONS = 6, 120
 #: Most coordinates whose equations are sought in an order with a symmetric mass matrix.
 MAX_ORDERED = 4
 
@@ -66,8 +69,14 @@ class StatedEquations:
             if name in letters.multipliers
             or (REACTION.match(name) and name not in known and not name.endswith("_column"))
         }
-        self._names = self._namespace()
-        self._leave_out_others()
+        left_out = {*letters.coordinates} - {*self._coordinates}
+        symbols = {name: one for name, one in self._symbols.items() if name not in left_out}
+        _, self._names = stated_values(letters, formulas, {**symbols, **self._reactions})
+        # coordinates of which no equation has an acceleration
+        rows = [*self._equations([*map(acceleration, self._q)])]
+        used = [k for k in range(len(self._q)) if any(one.coefficients[k] for one in rows)]
+        self._coordinates = [self._coordinates[k] for k in used]
+        self._q = [self._q[k] for k in used]
 
     def candidates(self) -> Iterator[SystemCandidate]:
         """Yield the systems of the first equations that suffice, and of those without one each."""
@@ -91,52 +100,12 @@ class StatedEquations:
             if has_system:
                 return
 
-    def _leave_out_others(self) -> None:
-        """Leave out coordinates of which no equation has an acceleration."""
-        rows = [*self._equations([*map(acceleration, self._q)])]
-        used = [any(one.coefficients[k] for one in rows) for k in range(len(self._q))]
-        pairs = [pair for pair, is_used in zip(self._pairs, used, strict=True) if is_used]
-        self._coordinates, self._q = [name for name, _ in pairs], [one for _, one in pairs]
-
-    @property
-    def _pairs(self) -> list[tuple[str, sp.Symbol]]:
-        return [*zip(self._coordinates, self._q, strict=True)]
-
     def _choices_of_reactions(self) -> Iterator[Mapping[str, sp.Symbol]]:
         """All letters of reactions, those but multipliers, or none."""
         multipliers = {*self._letters.multipliers}
         yield self._reactions
         yield {r: one for r, one in self._reactions.items() if r not in multipliers}
         yield {}
-
-    def _namespace(self) -> dict[str, Any]:
-        """Values of letters, of their rates, and of names that the document defines by them."""
-        names: dict[str, Any] = {**FUNCTIONS, **self._symbols, **self._reactions, "t": TIME}
-        names["ddt"] = self._rate
-        for name, one in self._pairs:
-            names |= {f"{name}_dot": velocity(one), f"{name}_ddot": acceleration(one)}
-        for name in {*self._letters.coordinates} - {*self._coordinates}:
-            del names[name]
-        for _ in range(ROUNDS):
-            for formula in self._formulas:
-                for name, text in definitions(formula):
-                    if name in names or not name.isidentifier():
-                        continue
-                    with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-                        value = parse(text, names)
-                        if not isinstance(value, sp.MatrixBase):
-                            names[name] = value
-                            names[f"{name}_dot"] = self._rate(value)
-                            names[f"{name}_ddot"] = self._rate(names[f"{name}_dot"])
-        return names
-
-    def _rate(self, value: sp.Expr) -> sp.Expr:
-        """The rate of a value without accelerations."""
-        if value.has(*map(acceleration, self._q)):
-            raise ValueError("a third derivative")
-        pairs = [(one, velocity(one)) for one in self._q]
-        pairs += [(v, acceleration(one)) for one, v in pairs]
-        return sp.Add(*(value.diff(one) * rate for one, rate in pairs), value.diff(TIME))
 
     def _equations(self, unknown: Sequence[sp.Symbol]) -> Iterator[_Equation]:
         """The equations between neighbouring sides that are linear in unknowns."""

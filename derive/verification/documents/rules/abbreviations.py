@@ -34,9 +34,9 @@ class Abbreviations:
                 values = [*self._values(name, formulas)]
                 shortest = min(values, key=sp.count_ops, default=own)
                 is_shown = len(values) >= AGREEING or _differs_by_one_term(own, shortest)
-                if is_shown and self._are_equal([shortest, *values]):
-                    if not self._are_equal([own, shortest]):
-                        self._required[name] = shortest
+                is_agreed = is_shown and self._are_equal([shortest, *values])
+                if is_agreed and not self._are_equal([own, shortest]):
+                    self._required[name] = shortest
         if self._required:
             namespace.correct(self._required)
 

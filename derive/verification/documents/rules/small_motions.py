@@ -155,10 +155,8 @@ class SmallMotions:
         at_rest = dict.fromkeys((*system.q, *system.qdot), sp.S.Zero)
 
         def is_input(symbol: sp.Symbol) -> bool:
-            slopes = [one.diff(symbol) for one in system.applied]
-            if any(one.is_number and one for one in slopes):
-                return True
             is_named = symbol.name.partition("_")[0] in KINDS["force"]
-            return is_named and any(one.xreplace(at_rest) for one in slopes if one)
+            slopes = (one.diff(symbol) for one in system.applied)
+            return any((is_named or one.is_number) and one.xreplace(at_rest) for one in slopes)
 
         return {*filter(is_input, alone)}
