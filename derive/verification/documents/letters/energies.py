@@ -69,21 +69,35 @@ def systems_of_energies(
         if pair in known:
             continue
         known.add(pair)
-        used = T.free_symbols | V.free_symbols
-        parameters = [
-            Parameter(one, "m" if is_length(name) else "1", 1.0, "a parameter")
-            for name, one in symbols.items()
-            if one in used and name in letters.parameters
-        ]
-        with suppress(SystemDefinitionError, ValueError):
-            system = System(
-                STATED, "The system of the stated energies",
-                [Coordinate(one, "m", "a coordinate") for one in moving], parameters,
-                [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
-                potential=V - rest, gravity=(sp.S.Zero, sp.S.Zero),
-            )  # fmt: skip
-            derivation(system)
+        title = "The system of the stated energies"
+        if system := stated_system(STATED, title, letters, moving, matrix, V - rest):
             yield system, numbers
+
+
+def stated_system(
+    name: str,
+    title: str,
+    letters: Letters,
+    q: Sequence[sp.Symbol],
+    matrix: sp.ImmutableDenseMatrix,
+    potential: sp.Expr,
+    forces: Sequence[sp.Expr] = (),
+) -> System | None:
+    """A system of a document by its mass matrix; None if it cannot be one."""
+    used = sp.Tuple(matrix, potential, *forces).free_symbols
+    names = {valid_name(one): one for one in letters.parameters}
+    own = sorted((s for s in used if s.name in names and s not in q), key=str)
+    with suppress(SystemDefinitionError, ValueError):
+        system = System(
+            name, title, [Coordinate(one, "m", "a coordinate") for one in q],
+            [Parameter(s, "m" if is_length(names[s.name]) else "1", 1.0, "a parameter")
+             for s in own],
+            [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
+            potential=potential, gravity=(sp.S.Zero, sp.S.Zero), forces=[*forces],
+        )  # fmt: skip
+        derivation(system)
+        return system
+    return None
 
 
 def _quadratic_form(

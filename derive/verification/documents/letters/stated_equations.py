@@ -7,7 +7,7 @@ and normal forces: as many as there are of both determine them, and others are j
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations
 
 import numpy as np
@@ -15,22 +15,21 @@ import sympy as sp
 
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError
-from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import acceleration, velocity
-from derive.system.system import System
 from derive.verification.documents.letters.candidates import (
     BY_EQUATIONS,
     BY_POTENTIAL,
     SystemCandidate,
 )
-from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
+from derive.verification.documents.letters.document_system import valid_name
 from derive.verification.documents.letters.energies import (
-    StatedInertia,
     letter_symbols,
+    stated_system,
     stated_values,
 )
 from derive.verification.documents.letters.implied_energies import inertial, potential_of
 from derive.verification.documents.letters.letters import MATRICES, Letters
+from derive.verification.documents.letters.positions import stated_candidates
 from derive.verification.documents.statements import DocumentFormula
 
 #: Letters of reactions.
@@ -152,27 +151,13 @@ class StatedEquations:
         every = {self._symbols[name] for name in self._letters.coordinates}
         if used & {s for one in every - {*self._q} for s in (one, velocity(one))}:
             return None
-        symbols = {**self._symbols, **self._reactions}
-        names = {p: symbols[p] for p in self._letters.parameters}
-        own = {p: one for p, one in names.items() if one in used and p not in reactions}
-        try:
-            system = System(
-                name, "The system of the stated equations",
-                [Coordinate(one, "m", "a coordinate") for one in self._q],
-                [Parameter(one, "m" if is_length(p) else "1", 1.0, "a parameter")
-                 for p, one in own.items()],
-                [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), inertia)],
-                potential=V or sp.S.Zero, gravity=(sp.S.Zero, sp.S.Zero), forces=forces,
-            )  # fmt: skip
-            derivation(system)
-        except (SystemDefinitionError, ValueError):
+        title = "The system of the stated equations"
+        system = stated_system(name, title, self._letters, self._q, inertia, V or sp.S.Zero, forces)
+        if system is None:
             return None
-        return SystemCandidate(
-            system, tuple(self._coordinates),
-            tuple(tuple(int(i == j) for j in range(n)) for i in range(n)), (0,) * n,
-            {one.name: p for p, one in own.items()}, stating=numbers,
-            reactions=dict(zip(reactions, solved[n:], strict=True)),
-        )  # fmt: skip
+        values = dict(zip(reactions, solved[n:], strict=True))
+        one = next(stated_candidates(system, self._letters))
+        return replace(one, stating=numbers, reactions=values)
 
 
 def _independent(rows: Sequence[_Equation], count: int) -> list[_Equation] | None:
