@@ -1,5 +1,6 @@
 """Stroboscopic sections and transients agree with closed forms and with SciPy."""
 
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
+import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.duffing as duffing
 import generated.henon_heiles as hh
@@ -15,6 +17,7 @@ import generated.single_pendulum as sp
 from solvers import Extremes, Final, Grid, Lyapunov, Samples, Section, Sweep, sweep
 from solvers.app.modules import load as load_module
 from solvers.io.quantity import QuantityError, formula
+from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import worker
 from solvers.sweeps.maps.stroboscopic import Stroboscopic
@@ -194,3 +197,18 @@ def test_formulas_are_values_of_names_and_nothing_is_executed() -> None:
     for text in ("__import__('os')", "a.real", "c", "a if b else a", "(" * 90, "9" * 200):
         with pytest.raises(QuantityError):
             formula(text, names)
+
+
+def test_a_period_is_the_one_product_of_powers_that_is_a_time() -> None:
+    """Against exponents: kg^i m^j (m/s^2)^k is s for i = 0, j = 1/2 and k = -1/2 alone."""
+
+    def is_time(i: int, j: int, k: int) -> bool:
+        sampling = Sampling(f"m1**{i}*l1**{j / 2}*g**{k / 2}", 1)
+        try:
+            sampling.check(dp)
+        except ValueError:
+            return False
+        return True
+
+    powers = product(range(-2, 3), range(-5, 6), range(-2, 3))
+    assert [one for one in powers if is_time(*one)] == [(0, 1, -1)]
