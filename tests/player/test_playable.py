@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import generated.double_pendulum as dp
 import generated.duffing as duffing
@@ -124,6 +125,11 @@ def test_motions_side_by_side_are_named_by_their_starts(motion: Solution, tmp_pa
 @pytest.mark.parametrize("suffix", [".svg", ".png"])
 def test_pictures_of_a_motion_are_written(motion: Solution, suffix: str, tmp_path: Path) -> None:
     assert motion.save(tmp_path / f"a{suffix}").stat().st_size > 5000
+
+
+def test_a_film_lasts_as_long_as_its_motion_by_default(tmp_path: Path) -> None:
+    with Image.open(integrate(dp, (0, 0.05), START, {}).save(tmp_path / "a.gif")) as film:
+        assert film.n_frames == 2  # type: ignore[attr-defined]  # 0 and 1/25 s
 
 
 def test_a_figure_has_the_coordinates_over_the_whole_time(motion: Solution) -> None:
