@@ -7,9 +7,11 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from importlib.util import cache_from_source
 from pathlib import Path
 from py_compile import compile as write_bytecode
+from stat import S_IFDIR
 
 import pytest
 from folders import ROOT
@@ -186,6 +188,51 @@ def test_a_cache_of_another_user_is_not_used(
     monkeypatch.setattr(os, "getuid", lambda: user + 1)
     with pytest.raises(OSError, match="belongs to another user"):
         cache_folder()
+
+
+@pytest.mark.parametrize(("own", "above", "reason"), [
+    ((1000, 0o700), (1000, 0o755), None),
+    ((1000, 0o755), (0, 0o755), None),
+    ((1000, 0o700), (0, 0o1777), None),  # as /tmp
+    ((1000, 0o700), (65534, 0o755), None),  # as root in a container, which owns "/"
+    ((0, 0o700), (0, 0o755), "another user"),  # even of root, which is above it
+    ((7, 0o700), (0, 0o755), "another user"),
+    ((1000, 0o700), (7, 0o755), "another user"),
+    ((1000, 0o700), (7, 0o1777), "another user"),
+    ((1000, 0o720), (0, 0o755), "others can write"),
+    ((1000, 0o1702), (0, 0o755), "others can write"),  # the sticky bit admits new files
+    ((1000, 0o700), (0, 0o775), "others can write"),
+    ((1000, 0o700), (1000, 0o757), "others can write"),
+])  # fmt: skip
+def test_a_cache_is_private_by_owners_and_modes(
+    own: tuple[int, int], above: tuple[int, int], reason: str | None,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """Against the rule for a user 1000: who else could write to it, or put another in its place."""
+    states = {"cache": own, "above": above, "": (65534, 0o755)}
+
+    def state(path: str | Path) -> os.stat_result:
+        user, mode = states[Path(path).name]
+        return os.stat_result((S_IFDIR | mode, 0, 0, 2, user, 0, 0, 0, 0, 0))
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "getuid", lambda: 1000)
+        patched.setattr(os, "stat", state)
+        patched.setattr(Path, "lstat", state)
+        with nullcontext() if reason is None else pytest.raises(PermissionError, match=reason):
+            build_cache._check_private(Path("/above/cache"))
+
+
+@pytest.mark.parametrize(("age", "is_valid"), [
+    (0.0, True), (0.9, True), (1.1, False), (-0.9, True), (-1.1, False),
+])  # fmt: skip
+def test_a_note_is_valid_for_a_time_and_not_from_the_future(
+    age: float, tmp_path: Path, *, is_valid: bool
+) -> None:
+    build_cache.leave_note(tmp_path, "note", "text")
+    os.utime(tmp_path / "note", (time.time() - age * build_cache.VALID,) * 2)
+    assert build_cache.note(tmp_path, "note") == ("text" if is_valid else None)
+    assert (tmp_path / "note").exists() == is_valid
 
 
 def test_folders_above_the_cache_are_private_under_any_umask(
