@@ -46,6 +46,8 @@ def chain(rule: str, length: int = 40) -> str:
     ("exp(-exp(exp(100)))*x", "is out of range"),
     ("exp(1000)*x", r"exp\(1000\) is out of range: .*choose other units"),
     ("exp(10**30)*x", "is out of range"),
+    ("exp(-1000)*x", "is out of range"),
+    ("exp(-(10**30))*x", "is out of range"),
     ("exp(500)*x*exp(500)", r"exp\(1000\) is out of range"),
     ("exp(600)/exp(-600)*x", "is out of range"),
     ("exp(100)**100*x", "is out of range"),
