@@ -129,6 +129,13 @@ def test_redundant_constraints_are_left_out(system: System, left_out: list[str])
     assert kept == [name for name in every if name not in left_out]
 
 
+def test_the_warning_of_redundancy_is_of_the_line_that_derives() -> None:
+    system = in_plane(CIRCLE, 3 * CIRCLE)
+    with pytest.warns(RedundancyWarning) as caught:
+        Derivation(system)
+    assert [one.filename for one in caught] == [__file__]
+
+
 @pytest.mark.parametrize("system", [
     in_plane(CIRCLE),
     in_plane(x - sp.sin(TIME)),
