@@ -8,7 +8,6 @@ Lifshitz, Mechanics, § 5 and § 40; C. Lanczos, The Variational Principles of
 Mechanics, chapter VI, for time as a coordinate).
 """
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -31,7 +30,7 @@ from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
 from derive.system.prescribed import prescribed_symbols
 from derive.system.system import System, as_system
-from solvers.io.suggestion import did_you_mean
+from solvers.io.suggestion import did_you_mean, warn_caller
 
 if TYPE_CHECKING:
     from derive.mechanics.identifiability import Identifiability
@@ -52,11 +51,10 @@ def _with_conditions(mass: PointMass, kept: Sequence[Constraint]) -> PointMass:
 def warn_of_redundancy(system: System, redundant: Sequence[Constraint]) -> None:
     """Warn that constraints are left out."""
     names = ", ".join(one.name for one in redundant)
-    warnings.warn(
+    warn_caller(
         f"constraints of system {system.name!r} are redundant and left out: {names}; they follow "
         "from the others, so that their reactions are not determined",
         RedundancyWarning,
-        stacklevel=5,
     )
 
 

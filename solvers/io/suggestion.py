@@ -44,6 +44,7 @@ def shortened(value: object) -> str:
 def warn_caller(message: Warning | str, category: type[Warning] = UserWarning) -> None:
     """Warn at the first line outside of this project that led here."""
     level, frame = 1, sys._getframe(1)
-    while frame.f_back and frame.f_globals.get("__name__", "").startswith(("solvers.", "derive.")):
+    own = ("solvers.", "derive.", "functools")  # the last one calls cached properties
+    while frame.f_back and frame.f_globals.get("__name__", "").startswith(own):
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level + 1)

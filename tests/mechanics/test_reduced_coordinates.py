@@ -235,8 +235,9 @@ def test_a_constraint_is_eliminated_once(monkeypatch: pytest.MonkeyPatch) -> Non
     # a constraint that follows from others is omitted, one that contradicts them is refused
     first = system.conditions[0]
     again = replace(first, formula=2 * first.formula, name="again")
-    with pytest.warns(RedundancyWarning, match="left out: again"):
+    with pytest.warns(RedundancyWarning, match="left out: again") as caught:
         assert reduced(replace(system, constraints=[*system.conditions, again])) == reduced(system)
+    assert caught[0].filename == __file__
     other = again.with_formula(first.formula - 1)
     with pytest.raises(SystemDefinitionError, match=r"again .* contradicts pin_1_x, .* -1 = 0"):
         reduced(replace(system, constraints=[*system.conditions, other]))
