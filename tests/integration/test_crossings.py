@@ -2,6 +2,8 @@
 
 import shutil
 import subprocess
+from collections.abc import Callable, Sequence
+from math import comb, fsum
 from pathlib import Path
 from types import ModuleType
 
@@ -262,19 +264,69 @@ ROOTS = """
 #include "roots.h"
 int main(void)
 {
-    const double x = 0x1p-26, coefficients[] = {x*x, x*x - x, (1 - x)*(1 - x)};
-    double roots[MAX_ROOTS];
-    const int count = isolate_roots(2, coefficients, roots);
-    printf("%d %a %a", count, roots[0], roots[1]);
+    int degree;
+    while (scanf("%d", &degree) == 1) {
+        double coefficients[EXTENSION_DEGREE + 1], roots[MAX_ROOTS];
+        for (int k = 0; k <= degree; k++) {
+            if (scanf("%la", &coefficients[k]) != 1) {
+                return 1;
+            }
+        }
+        const int count = isolate_roots(degree, coefficients, roots);
+        for (int k = 0; k < count; k++) {
+            printf("%a ", roots[k]);
+        }
+        printf("\\n");
+    }
     return 0;
 }
 """
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
-def test_a_double_root_at_the_start_of_a_step_is_found_within_the_stack(tmp_path: Path) -> None:
-    (tmp_path / "roots.c").write_text(ROOTS)
+@pytest.fixture(scope="module")
+def roots_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., list[list[float]]]:
+    """Roots in (0, 1) of polynomials with given Bernstein coefficients, by the compiled code."""
+    if shutil.which("cc") is None:
+        pytest.skip("needs a C compiler")
+    folder = tmp_path_factory.mktemp("roots")
+    (folder / "roots.c").write_text(ROOTS)
     options = ["-std=gnu11", *CHECKS.split(), f"-I{SOURCES}"]
-    subprocess.run(["cc", *options, "roots.c", "-o", "roots", "-lm"], cwd=tmp_path, check=True)
-    found = subprocess.run([tmp_path / "roots"], capture_output=True, text=True, check=True)
-    assert [float.fromhex(number) for number in found.stdout.split()] == [2, 0, 2.0**-24]
+    subprocess.run(["cc", *options, "roots.c", "-o", "roots", "-lm"], cwd=folder, check=True)
+
+    def found(polynomials: Sequence[Sequence[float]]) -> list[list[float]]:
+        lines = (f"{len(one) - 1} {' '.join(float(b).hex() for b in one)}\n" for one in polynomials)
+        program, text = folder / "roots", "".join(lines)
+        out = subprocess.run([program], input=text, capture_output=True, text=True, check=True)
+        return [[float.fromhex(x) for x in line.split()] for line in out.stdout.splitlines()]
+
+    return found
+
+
+def test_a_double_root_at_the_start_of_a_step_is_found_within_the_stack(
+    roots_of: Callable[..., list[list[float]]],
+) -> None:
+    x = 2.0**-26
+    assert roots_of([[x * x, x * x - x, (1 - x) * (1 - x)]]) == [[0.0, 2.0**-24]]
+
+
+def test_all_roots_of_polynomials_within_a_step_are_found_in_order(
+    roots_of: Callable[..., list[list[float]]],
+) -> None:
+    """Against the roots that products of linear factors are built from."""
+    random = np.random.default_rng(8)
+    chosen = [
+        [0.5],
+        [0.25, 0.5, 0.75],
+        [0.46875, 0.5],
+        [0.1, 0.1001, 0.9],
+        [-0.5, 1.5],
+        [-1.0, 0.3],
+    ]
+    chosen += [(random.permutation(60)[: 1 + k % 8] / 40 - 0.24).tolist() for k in range(200)]
+    polynomials = []
+    for roots in chosen:
+        powers, n = np.polynomial.Polynomial.fromroots(roots).coef, len(roots)
+        terms = [[comb(k, j) / comb(n, j) * powers[j] for j in range(k + 1)] for k in range(n + 1)]
+        polynomials.append([fsum(one) for one in terms])
+    for roots, found in zip(chosen, roots_of(polynomials), strict=True):
+        assert found == pytest.approx(sorted(x for x in roots if 0 < x < 1), abs=1e-7)
