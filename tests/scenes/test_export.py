@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from matplotlib.animation import FFMpegWriter
 from matplotlib.figure import Figure
+from numpy.testing import assert_allclose
 from PIL import Image
 
 from solvers import SceneResult, load_scene, run_scene
@@ -95,6 +96,35 @@ def test_pictures_for_slides(suffix: str, swing: SceneResult, tmp_path: Path) ->
         assert "<image" not in text
         rods = re.findall(r"<path [^>]*stroke: #4a5259", text)
         assert len(rods) >= 2 * film.INSTANTS
+
+
+@pytest.mark.parametrize("speed", [0.1, 0.3])
+def test_a_film_shows_the_path_of_its_last_two_seconds(
+    swing: SceneResult, speed: float, tmp_path: Path
+) -> None:
+    """Against the positions of the bob at the times of the samples and of each frame."""
+
+    class Frames:
+        """The longest line of each frame, instead of a file."""
+
+        def __init__(self) -> None:
+            self.paths: list[np.ndarray] = []
+
+        def setup(self, figure: Figure, *_: object) -> None:
+            self.axes = figure.axes[0]
+
+        def grab_frame(self) -> None:
+            self.paths.append(max((line.get_xydata() for line in self.axes.lines), key=len))
+
+        def finish(self) -> None:
+            pass
+
+    writer, times = Frames(), np.array([0.1, 0.4, 0.85])
+    film._write_film(writer, tmp_path, swing.sampled_motions(), times, speed)  # type: ignore[arg-type]
+    for time, path in zip(times, writer.paths, strict=True):
+        shown = (swing.t >= time - 2 * speed) & (swing.t <= time)
+        angle = np.append(swing.y[0, shown], np.interp(time, swing.t, swing.y[0]))
+        assert_allclose(path, 2 * np.transpose([np.sin(angle), -np.cos(angle)]), atol=1e-3)
 
 
 def test_an_absent_mass_is_left_out() -> None:
