@@ -19,7 +19,7 @@ from derive import Simulation, load
 from derive.codegen.export.targets.fmu import TRIVIAL, UNSUPPORTED
 from solvers import Event, integrate
 from solvers.app.cli import main
-from solvers.app.mockup_unit import write_unit
+from solvers.app.mockup_unit import _description, write_unit
 from solvers.runge_kutta import method_catalogue
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
@@ -189,6 +189,40 @@ def test_all_functions_of_the_standard_are_there_and_references_match(path: Path
     assert all(hasattr(unit.functions, f"fmi3{name}") for name in (*UNSUPPORTED, *TRIVIAL))
     assert unit.values("time", *dp.PARAMETERS) == [0.0, *dp.DEFAULTS]
     assert sorted(unit.references.values()) == [*range(len(unit.references))]
+
+
+@pytest.mark.parametrize("event", [None, ("theta1", 0.5)])
+def test_the_structure_refers_to_its_variables_as_the_standard_requires(
+    event: tuple[str, float] | None,
+) -> None:
+    """Against the rules of FMI 3.0 (2.4.8) for each list, by causality, derivative and initial."""
+    of = Simulation(METHOD, arm.DEFAULTS, START, 2.5, rtol=1e-9, atol=1e-9, event=event)
+    root = ElementTree.fromstring(_description(load("two_link_arm"), of, "arm", "source"))
+    variables = [one.attrib for one in root.findall("ModelVariables/*")]
+    names = {one["valueReference"]: one["name"] for one in variables}
+    assert len(names) == len(variables)
+
+    def listed(kind: str) -> list[str]:
+        return [
+            names[one.attrib["valueReference"]] for one in root.findall(f"ModelStructure/{kind}")
+        ]
+
+    rates = {one["name"]: names[one["derivative"]] for one in variables if "derivative" in one}
+    outputs = [one["name"] for one in variables if one.get("causality") == "output"]
+    calculated = [one["name"] for one in variables if one.get("initial") == "calculated"]
+    assert listed("Output") == outputs == [*arm.STATE, "energy"]
+    assert listed("ContinuousStateDerivative") == [*rates]
+    assert rates == {f"der({name})": name for name in arm.STATE}
+    assert listed("InitialUnknown") == calculated
+    assert listed("EventIndicator") == ["event"] * (event is not None)
+    starts = {one["name"]: float(one["start"]) for one in variables if "start" in one}
+    assert starts == dict(zip((*arm.STATE, *arm.PARAMETERS), (*START, *arm.DEFAULTS), strict=True))
+    for one in variables:
+        assert (one.get("causality") == "input") == (one["name"] in arm.INPUTS)
+        assert (one.get("causality") == "parameter") == (
+            one["name"] in {*arm.PARAMETERS} - {*arm.INPUTS}
+        )
+    assert root.find("DefaultExperiment").attrib == {"startTime": "0", "stopTime": "2.5"}
 
 
 def test_an_importer_finds_no_problem_and_simulates(tmp_path: Path) -> None:
