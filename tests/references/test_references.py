@@ -21,7 +21,7 @@ from holonomic import Coordinate, Parameter, PointMass, System, build
 from solvers.app.modules import load as load_module
 from solvers.equations.module import ELEMENTARY
 from solvers.equations.starts.decimal_state import sine_and_cosine
-from solvers.references.elliptic import jacobi, pendulum
+from solvers.references.elliptic import jacobi, pendulum, swing
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated
 from solvers.references.power_series import PowerSeries
@@ -90,6 +90,19 @@ def test_elliptic_functions_on_the_separatrix_rise_for_ever() -> None:
     assert motion[:, 0] == pytest.approx(4 * np.arctan(np.tanh([-0.5, 0, 0.5, 5, 20])), abs=1e-15)
     assert motion[2, 1] == pytest.approx(2 / np.cosh(1.0), rel=1e-15)
     assert pendulum(9.81, 9.81, (0.0, -2 * omega), 40.0)[0] == pytest.approx(-pi, abs=1e-15)
+
+
+@pytest.mark.parametrize("start", [0.3, -1.0, 2.5, -3.1])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_motions_on_the_separatrix_start_anywhere(start: float, direction: int) -> None:
+    # sin(theta/2) = tanh(u) at u = omega t + artanh(sin(start/2)), up to the signs
+    omega, times = 1.7, np.array([-2.0, -0.1, 0.0, 0.5, 3.0])
+    sine, cosine = np.sin(start / 2), np.cos(start / 2)
+    theta, rate = swing(omega, sine, cosine, direction * cosine, times).T
+    u = direction * omega * times + np.arctanh(sine)
+    assert theta == pytest.approx(2 * np.arcsin(np.tanh(u)), abs=1e-7)
+    assert np.tan(theta / 4) == pytest.approx(np.tanh(u / 2), rel=1e-13)
+    assert rate == pytest.approx(direction * 2 * omega / np.cosh(u), rel=1e-13)
 
 
 @pytest.mark.parametrize("complement", [1.0, 0.5, 1e-3, 1e-8, 1e-20])
