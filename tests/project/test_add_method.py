@@ -24,14 +24,28 @@ from solvers.runge_kutta.tableau import Tableau
 
 tableau = Tableau.explicit("Throw-away 2(1)", rows="3/4", b="1/3 2/3", b_hat="1 0")
 '''
+#: The implicit midpoint rule twice: stages at one node, between which no polynomial interpolates.
+TWICE = '''"""A throw-away method of order 2, implicit, 2 stages.
+
+Nobody, Journal of Nothing 1 (1901) 3-4.
+"""
+
+from fractions import Fraction
+
+from solvers.runge_kutta.tableau import Tableau
+
+half = Fraction(1, 2)
+tableau = Tableau("Throw-away twice", A=((half, half * 0), (half * 0, half)), b=(half, half))
+'''
 #: Backends that this machine can run.
 BACKENDS = ["python", *(["compiled"] if shutil.which("cc") else [])]
 
 
 @pytest.fixture
 def throwaway(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """The name of a method whose file lies in a temporary folder."""
+    """The name of a method whose file lies in a temporary folder, beside another one."""
     (tmp_path / "throwaway.py").write_text(FILE)
+    (tmp_path / "twice.py").write_text(TWICE)
     monkeypatch.setattr(methods, "__path__", [*methods.__path__, str(tmp_path)])
     yield "throwaway"
     method_catalogue.load.cache_clear()
@@ -55,6 +69,19 @@ def test_it_integrates_with_fixed_and_with_controlled_steps(throwaway: str, back
     assert coarse / fine == pytest.approx(4, rel=0.05)
     controlled = integrate(sp, **run, method=throwaway, rtol=1e-6, atol=1e-6)
     assert abs(controlled.y[:, -1] - exact).max() < 1e-4
+
+
+def test_an_implicit_one_may_have_coinciding_nodes(throwaway: str) -> None:
+    """Against the rule that its stages repeat; as many iterations in compiled code as in Python."""
+    run, costs = {"t_span": (0, 4), "y0": (2.0, 0.0), "params": sp.DEFAULTS, "h": 0.1}, []
+    for backend in BACKENDS:
+        once, twice = (
+            integrate(sp, **run, method=name, backend=backend) for name in ("gauss1", "twice")
+        )
+        assert twice.y == pytest.approx(once.y, abs=1e-9)
+        assert twice.nfev < 2 * once.nfev
+        costs.append(twice.nfev)
+    assert costs == pytest.approx([costs[0]] * len(costs), abs=3)
 
 
 def test_it_is_in_the_table(throwaway: str) -> None:
