@@ -90,3 +90,20 @@ def test_one_of_two_constants_is_an_input_and_repeated_formulas_are_one() -> Non
         assert "force" in equation.text
         assert "polemass + cartmass" in equation.text
         assert "total_mass" not in equation.text
+
+
+def test_a_parameter_is_not_the_variable_of_its_name_in_another_function() -> None:
+    text = """
+def reduced(length):
+    l = 2 * length
+    return l
+
+def rhs(t, y, l):
+    theta, omega = y
+    return [omega, -g / l * sin(theta)]
+"""
+    shown = {given: [one.latex for one in judged(text.replace("y, l", given)).formulas]
+             for given in ("y, l", "y")}  # fmt: skip
+    assert shown["y, l"] == ["theta_ddot = -g/l*sin(theta)"]
+    # without the parameter it is that variable, as of an object or a program that assigns it once
+    assert shown["y"] == ["theta_ddot = -g/(2*length)*sin(theta)"]
