@@ -53,7 +53,7 @@ def test_accelerations_agree_with_sympys_own_lagranges_method(derivation: Deriva
     assert all(vanishes(entry) for entry in residuals)
 
 
-def test_newtons_law_with_rod_tensions_gives_the_same_accelerations(double: Derivation) -> None:
+def test_newtons_law_gives_the_same_accelerations_and_rod_tensions(double: Derivation) -> None:
     # the report's (15) and (16) as they are printed, solved for accelerations and tensions
     system = double.system
     m1, m2, l1, l2, g = system.params
@@ -73,8 +73,10 @@ def test_newtons_law_with_rod_tensions_gives_the_same_accelerations(double: Deri
     for seed in range(5):
         state = {s: sp.Rational(7 * k + seed + 2, 3 * k + 5) for k, s in enumerate(symbols)}
         solution = matrix.evalf(50, subs=state).LUsolve(right.evalf(50, subs=state))
-        for solved, derived in zip(solution[:2], double.accelerations, strict=True):
-            assert abs(solved - derived.evalf(50, subs=state)) < 1e-40
+        state |= dict(zip(system.qddot, solution[:2], strict=True))
+        derived = [*double.accelerations, *double.reactions]
+        for value, formula in zip(solution, derived, strict=True):
+            assert abs(value - formula.evalf(50, subs=state)) < 1e-40
 
 
 def test_the_lagrangian_is_kinetic_minus_potential_energy_of_the_masses(
