@@ -182,6 +182,22 @@ def test_step_control_is_that_of_the_package_without_its_memory() -> None:
     assert module.combined(0.0, 0.0) == 0.0
 
 
+@pytest.mark.parametrize(
+    ("name", "values"), [("double_pendulum", {"l1": 0.7}), ("driven_pendulum", {"Omega": 3.0})]
+)
+def test_fixed_steps_between_samples_are_those_of_the_package(
+    name: str, values: dict[str, float]
+) -> None:
+    module = load_module(name)
+    start, params = [1.0, 0.5, 0.0, 0.3][: len(module.STATE)], tuple(module.params(**values))
+    given = {"params": params, "y0": tuple(start), "duration": 2.0, "samples": 4, "steps": 25}
+    _, result = run(program(load(name), replace(FIXED, **given)))
+    t = np.linspace(0, 2, 5)
+    same = integrate(module, (0, 2), start, params, method="rk4", h=0.02, t_eval=t)
+    rows = np.array(result)[:, : 1 + len(start)]
+    assert rows == pytest.approx(np.column_stack([t, same.y.T]), abs=1e-10)
+
+
 def test_halved_steps_of_a_method_of_order_four_have_a_sixteenth_of_the_error() -> None:
     reference, errors = exact(1).y[:, -1], []
     for steps in (200, 400, 800):
