@@ -6,6 +6,8 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+import sympy as sp
+from sympy.physics import units as si
 
 import generated
 import generated.free_body as free_body
@@ -17,7 +19,7 @@ from solvers.app.cli import main
 from solvers.equations.module import has_constraints, inputs
 from solvers.io.figure_names import axis_label
 from solvers.io.quantity import QuantityError, quantity
-from solvers.io.units import dimension, with_unit
+from solvers.io.units import UNITS, dimension, with_unit
 from solvers.scenes.scene_summary import summary
 from solvers.sweeps.definition import map_kinds
 
@@ -55,6 +57,26 @@ def test_every_unit_of_a_system_file_is_read(tmp_path: Path) -> None:
 def test_units_of_a_quantity_have_its_dimension(units: str) -> None:
     first, *others = units.split()
     assert {dimension(unit)[1] for unit in others} == {dimension(first)[1]}
+
+
+BASE, RADIAN = [si.meter, si.kilogram, si.second], sp.Symbol("rad")
+DEFINITIONS = {
+    "1": sp.S.One, "m": si.meter, "cm": si.centimeter, "mm": si.millimeter, "km": si.kilometer,
+    "kg": si.kilogram, "g": si.gram, "s": si.second, "ms": si.millisecond, "us": si.microsecond,
+    "μs": si.microsecond, "min": si.minute, "h": si.hour, "rad": RADIAN,
+    "deg": RADIAN * sp.pi / 180, "turn": 2 * sp.pi * RADIAN, "rpm": 2 * sp.pi * RADIAN / si.minute,
+    "N": si.newton, "kN": si.kilo * si.newton, "J": si.joule, "kJ": si.kilo * si.joule,
+    "W": si.watt, "kW": si.kilo * si.watt,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_units_have_the_sizes_and_dimensions_of_another_program(name: str) -> None:
+    """Against `sympy.physics.units`."""
+    in_base = sp.sympify(si.convert_to(DEFINITIONS[name], BASE)).as_powers_dict()
+    size, powers = dimension(name)
+    assert powers == tuple(in_base.pop(unit, 0) for unit in (*BASE, RADIAN))
+    assert size == pytest.approx(float(sp.Mul(*(x**n for x, n in in_base.items()))), rel=1e-15)
 
 
 @pytest.mark.parametrize(("text", "unit", "value"), [
