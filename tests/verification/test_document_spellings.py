@@ -138,6 +138,20 @@ def test_statements_about_all_coordinates_name_no_further_one(tmp_path: Path) ->
     assert {*letters.coordinates} == {"x_1", "y_1"}
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("index", ["i", "j"])
+def test_a_statement_with_an_index_is_one_about_each_coordinate(
+    count: int, index: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "notes.md"
+    rates = "".join(rf" + \dot\theta_{k}^2" for k in range(1, count + 1))
+    general = rf"$$x_{index} = l_{index} \sin\theta_{index}$$ $$g = 9.81$$"
+    file.write_text(rf"{general} $$T = {rates[3:]}$$", encoding="utf-8")
+    statements = read_statements(read_document(file)).formulas
+    each = [f"x_{k} = l_{k}*sin(theta_{k})" for k in range(1, count + 1)]
+    assert [one.text for one in statements[:-1]] == [*each, "g = 9.81"]
+
+
 def test_general_momenta_beside_named_coordinates_are_judged(tmp_path: Path) -> None:
     text = r"""$$\dot q_i = \frac{\partial H}{\partial p_i}, \quad T = \frac m2 l^2\dot\phi_1^2,
     \quad V = -m g l\cos\phi_1$$"""
