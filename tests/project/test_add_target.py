@@ -75,6 +75,12 @@ def test_the_targets_that_ship_are_files_of_at_most_150_lines() -> None:
     assert max(len(path.read_text().splitlines()) for path in files.values()) <= 150
 
 
+def test_it_is_listed_among_the_others_by_name(perl: str) -> None:
+    found = [*find_targets()]
+    assert perl in found
+    assert found == sorted(found)
+
+
 @pytest.mark.skipif(shutil.which("perl") is None, reason="needs Perl")
 def test_its_simulation_has_the_bits_of_other_targets(perl: str, tmp_path: Path) -> None:
     method = method_catalogue.load("verner853")
