@@ -138,6 +138,15 @@ def test_statements_about_all_coordinates_name_no_further_one(tmp_path: Path) ->
     assert {*letters.coordinates} == {"x_1", "y_1"}
 
 
+def test_coordinates_and_rates_may_be_given_as_functions_of_time(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m R^2(\dot\theta^2 + \dot\phi^2\sin^2\theta), \quad
+    V = -m g R\cos\theta$$
+    $$\dot\phi = \sqrt{g/R}$$ $$\theta = \frac gR t^2 + \frac\pi2$$ $$\theta = \dot\theta t$$
+    $$\dot\theta = \sin\theta$$"""
+    given = ["context"] * 3
+    assert verdicts(tmp_path, text) == ["verified", "verified", *given, "wrong"]
+
+
 @pytest.mark.parametrize("count", [1, 2, 3])
 @pytest.mark.parametrize("index", ["i", "j"])
 def test_a_statement_with_an_index_is_one_about_each_coordinate(
