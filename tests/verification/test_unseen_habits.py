@@ -63,7 +63,8 @@ def test_an_index_plus_continues_no_display(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-BEAD = r"""$$x = s, \quad y = a s^2$$ $$K = 1 + 4 a^2 s^2$$ $$T = \frac12 m K\dot s^2$$ $$V = m g y$$
+BEAD = r"""$$x = s, \quad y = a s^2$$ $$K = 1 + 4 a^2 s^2$$ $$T = \frac12 m K\dot s^2$$
+$$V = m g y$$
 $$(1 + 4 a^2 s^2)\ddot s + 4 a^2 s\dot s^2 + 2 g a s = 0$$"""
 
 
@@ -71,9 +72,7 @@ $$(1 + 4 a^2 s^2)\ddot s + 4 a^2 s\dot s^2 + 2 g a s = 0$$"""
     ("K = 1 + 4", "K = 1 + 2", "2 a^2 s^2"), ("K = 1 + 4", "K = 1 - 4", "- 4 a^2 s^2"),
     (r"\frac12 m K", "m K", r"m K\dot s^2"),
 ])  # fmt: skip
-def test_the_formula_with_the_slip_is_blamed(
-    old: str, new: str, term: str, tmp_path: Path
-) -> None:
+def test_the_formula_with_the_slip_is_blamed(old: str, new: str, term: str, tmp_path: Path) -> None:
     formulas = judged(tmp_path, BEAD.replace(old, new)).formulas
     assert [one.wrong_term for one in formulas if one.verdict == "wrong"] == [term]
 
