@@ -86,7 +86,7 @@ $$ L = \frac12 I_1 \dot\alpha^2 + \frac12 I_2 \dot\beta^2 + \frac12 I_3 \dot\gam
 """
 #: Each with slips: a sign, a lost term, a wrong function.
 DOCUMENTS = {
-    "pendulum": (PENDULUM, [("= 2 \\lambda x", "= -2 \\lambda x"), ("-m g + 2", "m g + 2"),
+    "pendulum": (PENDULUM, [("= 2 \\lambda x", "= -2 \\lambda x"), ("-m g + 2", "-2 m g + 2"),
                             ("-m g + 2 \\lambda", "2 \\lambda"), ("+ 2 \\lambda y", "")]),
     "augmented": (AUGMENTED, [("g y + \\lambda (x", "g y - \\lambda (x"),
                               ("m \\ddot x - 2", "m \\ddot x + 2"), ("(g y -", "(g x -")]),
