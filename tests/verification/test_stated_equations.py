@@ -99,3 +99,9 @@ def test_a_wrong_sign_in_a_body_frame_is_found(tmp_path: Path) -> None:
     assert [one.latex for one in formulas if one.verdict == "wrong"] == [
         r"\dot\omega_1 = \Omega\omega_2"
     ]
+
+
+def test_reactions_can_have_letters_of_their_own(tmp_path: Path) -> None:
+    text = r"""$$N - m g\cos\theta = 0$$ $$m g\sin\theta - F_s = m a$$ $$F_s r = \frac12 m r a$$
+$$a = \frac23 g\sin\theta, \quad N = m g\cos\theta$$"""
+    assert verdicts(tmp_path, text)[-2:] == ["verified"] * 2

@@ -63,8 +63,8 @@ def test_an_index_plus_continues_no_display(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-BEAD = r"""$$x = s, \quad y = a s^2$$ $$K = 1 + 4 a^2 s^2$$ $$T = \frac12 m K\dot s^2$$
-$$V = m g y$$
+BEAD = r"""$$x = s, \quad y = a s^2$$
+$$K = 1 + 4 a^2 s^2$$ $$T = \frac12 m K\dot s^2, \quad V = m g y$$
 $$(1 + 4 a^2 s^2)\ddot s + 4 a^2 s\dot s^2 + 2 g a s = 0$$"""
 
 

@@ -82,9 +82,10 @@ def stated_system(
     matrix: sp.ImmutableDenseMatrix,
     potential: sp.Expr,
     forces: Sequence[sp.Expr] = (),
+    others: Sequence[sp.Expr] = (),
 ) -> System | None:
-    """A system of a document by its mass matrix; None if it cannot be one."""
-    used = sp.Tuple(matrix, potential, *forces).free_symbols
+    """A system by its mass matrix, with the parameters of other values; None if it is none."""
+    used = sp.Tuple(matrix, potential, *forces, *others).free_symbols
     names = {valid_name(one): one for one in letters.parameters}
     own = sorted((s for s in used if s.name in names and s not in q), key=str)
     with suppress(SystemDefinitionError, ValueError):

@@ -33,7 +33,7 @@ from derive.verification.documents.letters.positions import stated_candidates
 from derive.verification.documents.statements import DocumentFormula
 
 #: Letters of reactions.
-REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSR]\w*|tension|normal)(?:_\w+)?\Z")
+REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSRtnsrf]\w*|tension|normal)(?:_\w+)?\Z")
 #: Most unknown accelerations and reactions, and operations of an equation.
 MAX_UNKNOWN, MAX_OPERATIONS = 6, 120
 #: Most coordinates whose equations are sought in an order with a symmetric mass matrix.
@@ -152,10 +152,13 @@ class StatedEquations:
         if used & {s for one in every - {*self._q} for s in (one, velocity(one))}:
             return None
         title = "The system of the stated equations"
-        system = stated_system(name, title, self._letters, self._q, inertia, V or sp.S.Zero, forces)
+        values = dict(zip(reactions, solved[n:], strict=True))
+        potential, others = V or sp.S.Zero, [*values.values()]
+        system = stated_system(
+            name, title, self._letters, self._q, inertia, potential, forces, others
+        )
         if system is None:
             return None
-        values = dict(zip(reactions, solved[n:], strict=True))
         one = next(stated_candidates(system, self._letters))
         return replace(one, stating=numbers, reactions=values)
 
