@@ -313,8 +313,8 @@ def _with_order(statements: Translated, letters: Letters, candidate: SystemCandi
 #: Most meanings that are judged beside the one that is taken.
 MAX_ALTERNATIVES = 3
 JUDGED = (*CORRECT, "wrong")
-#: The reason of a verdict on a formula that other meanings of the letters do not refute alike.
-OPPOSED = "it is wrong with these meanings of the letters, but not alike with others that fit too"
+#: The reason of a verdict on a formula that another meaning of the letters does not refute.
+OPPOSED = "it is wrong with these meanings of the letters, but holds with others that fit too"
 
 Results = Sequence[tuple[DocumentFormula, SideVerdict]]
 
@@ -358,15 +358,14 @@ def _differences(
     written: Mapping[str, str],
     opposes: bool,
 ) -> Iterator[VerdictDifference]:
-    """Yield what changes; with `opposes`, formulas that are not refuted alike are `context`."""
+    """Yield what changes; with `opposes`, formulas that hold with one meaning are `context`."""
     for formula, own, other in pairs:
         names = [one.verdict.verdict for one in (own, other)]
         if any(name not in JUDGED for name in names):
             continue
         first, second = (corrected(formula, one, written) for one in (own, other))
         has_other = (names[0] == "wrong") != (names[1] == "wrong")
-        is_alike = not has_other and first.wrong_term == second.wrong_term
-        is_opposed = opposes and names[0] == "wrong" and not is_alike
+        is_opposed = opposes and has_other and names[0] == "wrong"
         if has_other or first.correction != second.correction:
             place, verdict = formula.occurrence, "context" if is_opposed else names[0]
             yield VerdictDifference(
@@ -378,10 +377,7 @@ def _differences(
 def unopposed(
     results: Results, others: Sequence[Alternative]
 ) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
-    """Yield the verdicts, with `context` for a formula that not every meaning refutes alike.
-
-    Another meaning opposes a refutation if the formula holds with it, or another term is wrong.
-    """
+    """Yield the verdicts, with `context` for a wrong formula that holds with another meaning."""
     opposed = {
         (one.line, one.display, one.latex, one.cell)
         for other in others
