@@ -1,5 +1,6 @@
 """Failure modes: each study's numbers, and that it would notice if nothing failed."""
 
+import re
 from dataclasses import replace
 from math import log, pi, sqrt
 from types import SimpleNamespace
@@ -17,7 +18,7 @@ from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, ChaosResults, statistics
 from solvers.studies.failure_modes.conservation import Conservation, cost
-from solvers.studies.failure_modes.drift import CASES, EnergyDrift
+from solvers.studies.failure_modes.drift import CASES, Drift, EnergyDrift
 from solvers.studies.failure_modes.horizon import OFFSET, horizon, reference_motion, separation
 from solvers.studies.failure_modes.largest_exponent import INDEPENDENT, Mean, lyapunov
 from solvers.studies.failure_modes.study import studies
@@ -364,3 +365,63 @@ def test_a_trajectory_is_lost_from_the_first_sample_with_a_large_error() -> None
     assert (kept.measured, lost.measured) == (np.inf, t[6])
     assert kept.predicted == lost.predicted == pytest.approx(20 * log(10), rel=1e-15)
     assert kept.energy_error == lost.energy_error < 1e-10
+
+
+#: Results of studies, and the points (x, y) that their plots must have.
+SENSITIVITIES = [separatrix.Sensitivity(10.0**-k, 2e3 * k, 3e3 * k, 1e-9) for k in (1, 2)]
+LOSSES = [singular.AccuracyLoss(10.0**-k, 3e5 * k, *(n * 1e-9 * k for n in (2, 3, 5, 7)))
+          for k in (1, 2)]  # fmt: skip
+GROWTHS = [oscillation.Growth(method, 10.0 * k, 0.2 * k, 0.3 * k)
+           for k, method in enumerate(("rk1", "midpoint", "rk1"), 1)]  # fmt: skip
+COSTS = [stiffness.Cost("one", method, ratio, 7, 9, ratio * seconds, 1e-4)
+         for ratio in (10.0, 1000.0)
+         for method, seconds in (("rk4", 2e-6), ("gauss2", 3e-6))]  # fmt: skip
+DRIFT = Drift("rk4", "lagrangian", 60, np.array([0.0, 1.0, 2.0, 3.0]),
+    np.array([0.0, 2e-6, -5e-6, 3e-6]), *(0.5,) * 6)  # fmt: skip
+PLOTS = {
+    "separatrix": (
+        separatrix.Separatrix(),
+        separatrix.SeparatrixResults(SENSITIVITIES, [], separatrix.Upright(1e-16, 17.0, 17.0)),
+        {(0.1, 2e3), (0.01, 4e3), (0.1, 3e3), (0.01, 6e3)},
+    ),
+    "singular": (
+        singular.SingularMassMatrix(),
+        LOSSES,
+        {(row.m1, n * 1e-9 * k) for k, row in enumerate(LOSSES, 1) for n in (2, 3, 5, 7)}
+        | {(row.m1, 2.0**-52 * row.condition) for row in LOSSES},
+    ),
+    "oscillation": (
+        oscillation.Oscillation(),
+        GROWTHS,
+        {(10.0 * k, factor * k) for k in (1, 2, 3) for factor in (0.2, 0.3)},
+    ),
+    "stiffness": (
+        stiffness.Stiffness(),
+        COSTS,
+        {(10.0, 0.02), (1000.0, 2.0), (10.0, 0.03), (1000.0, 3.0)},
+    ),
+    "drift": (EnergyDrift(), [DRIFT], {(1.0, 2e-6), (2.0, 5e-6), (3.0, 5e-6)}),
+}
+
+
+@pytest.mark.parametrize("name", PLOTS)
+def test_plots_of_studies_have_the_points_of_their_results(name: str) -> None:
+    study, results, expected = PLOTS[name]
+    lines = [line for axes in study.plot(results).axes for line in axes.lines]
+    drawn = np.unique(np.concatenate([line.get_xydata() for line in lines]), axis=0)
+    assert drawn == pytest.approx(np.array(sorted(expected)), rel=1e-12)
+
+
+def test_costs_of_stiff_scenes_are_those_of_their_methods() -> None:
+    (panel,) = stiffness.Stiffness().plot(COSTS).axes
+    milliseconds = {line.get_label(): line.get_ydata() for line in panel.lines}
+    assert milliseconds["rk4"] == pytest.approx([0.02, 2.0])
+    assert milliseconds["gauss2"] == pytest.approx([0.03, 3.0])
+
+
+def test_the_summary_of_stiff_scenes_names_the_cheapest_of_each_kind() -> None:
+    slower = [replace(one, method="verner853", work_seconds=2 * one.work_seconds) for one in COSTS]
+    lines = "\n".join(stiffness.Stiffness().summary([*slower[::2], *COSTS]))
+    assert re.search(r"one +10 +7 steps, 20 µs, rk4 +7 steps, 30 µs, gauss2\n", lines)
+    assert re.search(r"one +1000 +7 steps, 2000 µs, rk4 +7 steps, 3000 µs, gauss2\n", lines)
+    assert lines.endswith("one: implicit methods do not become cheaper")
