@@ -27,7 +27,7 @@ from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability import critical_step as critical_step_module
 from solvers.studies.stability import scene_stability
 from solvers.studies.stability.critical_step import CriticalStep, critical_step, limit
-from solvers.studies.stability.stability_plots import boundaries
+from solvers.studies.stability.stability_plots import boundaries, regions
 
 F = Fraction
 RUNGE_KUTTA = [name for name in names() if not load(name).is_splitting]
@@ -283,3 +283,27 @@ def test_boundaries_are_where_nothing_grows_or_fades() -> None:
     assert np.abs(size - 1).max() < 0.02
     axes = [[*zip(*line.get_data(), strict=True)] for line in panel.lines]
     assert sorted(axes) == [[(0, 0), (0, 1)], [(0, 0), (1, 0)]]  # through the origin
+
+
+def test_regions_have_modes_and_motions_in_units_of_the_critical_step() -> None:
+    """Against the interval of rk4 on the imaginary axis, and |R| at the edge of its region."""
+    frequencies, eigenvalues = np.array([1.0, 4.0]), np.array([-1 + 2j, 3j])
+    limits = {"rk4": sqrt(8) / 4, "rk4_38": sqrt(8) / 4, "rk1": 0.0}
+    functions = {name: StabilityFunction.of(load(name)) for name in limits}
+    rest = (0.0, 0.0, 1.0, 0.0, 0.0)
+    steps = [CriticalStep(k, "", 1, 1, functions[k], h, *rest) for k, h in limits.items()]
+    figure = regions("title", steps, frequencies, eigenvalues)
+    panels = {panel.get_title(): panel for panel in figure.axes if panel.lines}
+    # methods with one function share a panel; without a stable step h is 1/frequency
+    expected = {"rk4, rk4_38\nh ≤ 0.707 s": sqrt(8) / 4, "rk1\nno step is stable": 1 / 4}
+    assert [*panels] == [*expected]
+    for panel, h in zip(panels.values(), expected.values(), strict=True):
+        dots = {line.get_marker(): line.get_xydata() @ [1, 1j] for line in panel.lines}
+        assert dots["."] == pytest.approx(h * eigenvalues)
+        assert dots["o"] == pytest.approx(h * np.array([1j, 4j, -1j, -4j]))
+    first = next(iter(panels.values()))
+    filled, edge = (one for one in first.collections if isinstance(one, ContourSet))
+    (area,) = filled.get_paths()
+    assert area.contains_points([(-1, 0), (-2.7, 0), (-2.9, 0), (1, 0)]).tolist() == [1, 1, 0, 0]
+    points = np.concatenate([path.vertices for path in edge.get_paths()])
+    assert np.abs(np.abs(functions["rk4"](points @ [1, 1j])) - 1).max() < 0.02
