@@ -80,3 +80,15 @@ def test_the_formula_with_the_slip_is_blamed(old: str, new: str, term: str, tmp_
 def test_an_arrow_before_a_statement_is_no_relation(tmp_path: Path) -> None:
     text = r"$$m\ddot x + k x = 0$$ $$\longrightarrow \ddot x = -\frac km x$$"
     assert verdicts(tmp_path, text)[-1] == "verified"
+
+
+def test_a_tension_called_t_is_no_kinetic_energy(tmp_path: Path) -> None:
+    text = r"""$$m l\ddot\theta = -m g\sin\theta$$ $$\ddot\theta = -\frac gl \sin\theta$$
+$$\frac{d}{dt}(m l^2\dot\theta) = -m g l\sin\theta$$ $$T = m g\cos\theta + m l\dot\theta^2$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_a_right_tension_beside_another_system_is_not_accused(tmp_path: Path) -> None:
+    text = r"""$$m\ddot y = m g - k y$$ With $$z = y - m g/k$$ $$m\ddot z = -k z$$
+$$T = m g\cos\theta + m l\dot\theta^2$$ $$m l\ddot\theta = -m g\sin\theta$$"""
+    assert "wrong" not in verdicts(tmp_path, text)

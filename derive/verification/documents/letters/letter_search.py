@@ -45,6 +45,8 @@ PARTNERS = {"K": "P", "T": "Pi"}
 MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: Letters of accelerations of documents without any rate, and of velocities.
 ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
+#: The letter of gravity.
+GRAVITY = "g"
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -68,6 +70,10 @@ def letters_of(
     subjects = {formula.subject for formula in formulas}
     # no energy has accelerations, as a force does in H = m*x_ddot
     forces = {one.subject for one in formulas if any(map(_is_of_second_order, one.sides[1:]))}
+    # nor a kinetic energy a weight, as the tension T = m*g*cos(theta) + m*l*theta_dot**2 has
+    weights = {
+        one.subject for one in formulas for side in one.sides[1:] if GRAVITY in _words(side.text)
+    }
     subjects |= {match[1] for one in formulas if (match := MULTIPLE.fullmatch(one.sides[0].text))}
     quantities = {
         one: kind
@@ -75,7 +81,7 @@ def letters_of(
         if (kind := combined.get(one) or _quantity(one))
         and (one in subjects or one in operands or one in combined)
         and not (kind == "kinetic_energy" and _is_constant(one, formulas))
-        and not (kind == "kinetic_energy" and one in transformed)
+        and not (kind == "kinetic_energy" and one in {*transformed, *weights})
         and one not in forces
         and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }

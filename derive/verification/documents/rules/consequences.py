@@ -183,7 +183,7 @@ def weighed(
             result = plain("context", formula, UNSUPPORTED)
         elif (
             verdict.verdict == "wrong"
-            and result.kind not in OF_ENERGIES
+            and (result.kind not in OF_ENERGIES or len(verdict.corrections) != 1)
             and (is_tie or _adds_letters(formula, result, candidate))
         ):
             result = plain("context", formula, f"it differs from {given or 'others'}: {OTHER_CASE}")
