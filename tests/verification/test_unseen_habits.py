@@ -92,3 +92,12 @@ def test_a_right_tension_beside_another_system_is_not_accused(tmp_path: Path) ->
     text = r"""$$m\ddot y = m g - k y$$ With $$z = y - m g/k$$ $$m\ddot z = -k z$$
 $$T = m g\cos\theta + m l\dot\theta^2$$ $$m l\ddot\theta = -m g\sin\theta$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_a_derivative_by_an_angle_is_that_along_the_orbit(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m(\dot r^2 + r^2\dot\theta^2) + \frac{k}{r}$$
+$$\ell = m r^2\dot\theta$$
+$$m\ddot r = \frac{\ell^2}{m r^3} - \frac{k}{r^2}$$ With $$u = \frac1r$$
+$$\frac{d^2u}{d\theta^2} + u = \frac{m k}{\ell^2}$$"""
+    assert verdicts(tmp_path, text)[-1] == "verified"
+    assert verdicts(tmp_path, text.replace(r"\frac{m k}", r"\frac{2 m k}"))[-1] == "wrong"

@@ -234,9 +234,11 @@ class DocumentNamespace:
         if operand not in namespace or any(one not in namespace for one in variables):
             return None
         value, constants = self._operand(operand)
-        kind = self.letters.quantities.get(operand)
+        kind, is_along = self.letters.quantities.get(operand), False
         for one in variables:
             variable = namespace[one]
+            # the derivative of u = 1/r by an angle is that along the motion
+            is_along |= kind is None and self._moves_without(value, variable)
             if isinstance(variable, sp.MatrixBase) and not isinstance(value, sp.MatrixBase):
                 if not all(entry.is_Symbol for entry in variable):
                     return None
@@ -245,11 +247,18 @@ class DocumentNamespace:
                 value = self._system.qdot[self._system.p.index(variable)]
             elif kind == "hamiltonian" and variable in self._system.q:
                 value = -self.derivation.lagrangian.diff(variable)
-            elif isinstance(variable, sp.Symbol):
+            elif is_along and not depends_on(value, self._system.qddot):
+                value = time_derivative(self._system, value) / velocity(variable)
+            elif isinstance(variable, sp.Symbol) and not is_along:
                 value = value.diff(variable)
             else:
                 return None
         return value.xreplace(constants)
+
+    def _moves_without(self, value: Value, variable: Value) -> bool:
+        """Whether a value depends on coordinates, but not on one of them."""
+        is_coordinate = variable in self._system.q and not isinstance(value, sp.MatrixBase)
+        return is_coordinate and not value.has(variable) and depends_on(value, self._system.q)
 
     def _operand(self, name: str) -> tuple[Value, dict[sp.Dummy, sp.Expr]]:
         """The value of a name with dummies for conserved momenta in its definition, and these.
