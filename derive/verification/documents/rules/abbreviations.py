@@ -10,15 +10,15 @@ from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
 
-#: Formulas that must agree on the value of a name that differs by several terms.
+#: Formulas that must agree on the value of a name, unless its slip is one of a factor.
 AGREEING = 2
 
 
-def _differs_by_one_term(own: sp.Expr, value: sp.Expr) -> bool:
-    """Whether two sums have the same terms but one, as those of a slip in the first have."""
+def _differs_by_one_factor(own: sp.Expr, value: sp.Expr) -> bool:
+    """Whether two sums have the same terms, one of them with another factor, as of a slip."""
     terms = [sp.expand(one).as_coefficients_dict() for one in (own, value)]
-    same = [terms[0][key] == terms[1][key] for key in {*terms[0], *terms[1]}]
-    return any(same) and same.count(False) == 1
+    same = [terms[0][key] == terms[1][key] for key in terms[0]]
+    return {*terms[0]} == {*terms[1]} and any(same) and same.count(False) == 1
 
 
 class Abbreviations:
@@ -33,7 +33,10 @@ class Abbreviations:
             if not isinstance(own, sp.MatrixBase):
                 values = [*self._values(name, formulas)]
                 shortest = min(values, key=sp.count_ops, default=own)
-                is_shown = len(values) >= AGREEING or _differs_by_one_term(own, shortest)
+                others = {*namespace.defining} - {name}
+                is_alone = not any(name in one.words and others & {*one.words} for one in formulas)
+                is_slip = is_alone and _differs_by_one_factor(own, shortest)
+                is_shown = len(values) >= AGREEING or is_slip
                 is_agreed = is_shown and self._are_equal([shortest, *values])
                 if is_agreed and not self._are_equal([own, shortest]):
                     self._required[name] = shortest
