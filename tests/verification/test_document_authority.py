@@ -233,6 +233,12 @@ RIGHT = {
         $$ \begin{aligned} E &= T + V = \\ &= \frac12 m\dot x^2 + \frac12 k x^2 \end{aligned} $$""",
         1,
     ),
+    "a prescribed rate with its number": (
+        r"""$$ T = \frac12 m (\dot r^2 + r^2\dot\phi^2), \qquad V = m g r $$
+        $$ m\ddot r - m r\dot\phi^2 + m g = 0 $$
+        $$ \dot\phi = \omega = 3 $$""",
+        1,
+    ),
     "a potential energy P beside K": (
         r"""$$ K = \frac12 m L^2\dot q^2, \qquad P = -g L m\cos q $$
         $$ m L^2\ddot q + g L m\sin q = 0 $$""",

@@ -186,18 +186,26 @@ class Judge:
         return bool(DECIMAL.search(side.text)) and (not words or bool(self._unknown([side])))
 
     def _prescribes(self, formula: DocumentFormula) -> bool:
-        """Whether a formula states a coordinate or its rate as a function of time, as φ = ω t."""
+        """Whether a formula states a coordinate or its rate as a function of time, as φ = ω t.
+
+        Further sides are other forms of the function, as its number in φ̇ = ω = 3.
+        """
         system, names = self._namespace.derivation.system, self._namespace.all_names
-        if len(formula.sides) != 2 or formula.relations != ("=",):
+        first, *others = formula.sides
+        if not others or {*formula.relations} != {"="}:
             return False
-        first, last = formula.sides
         if names.get(first.text) not in (*system.q, *system.qdot):
             return False
         with suppress(ExpressionError):
-            value = self._namespace.value(last.text)
             moving = (*system.q, *system.qdot, *system.qddot, *system.p)
-            is_given = TIME in value.free_symbols or not depends_on(value, moving)
-            return not isinstance(value, sp.MatrixBase) and is_given
+            # letters without a meaning, such as ω, are constants
+            constants = dict.fromkeys(self._unknown(others), sp.S.One)
+            values = [parse(side.text, {**names, **constants}) for side in others]
+            return all(
+                not isinstance(value, sp.MatrixBase)
+                and (TIME in value.free_symbols or not depends_on(value, moving))
+                for value in values
+            )
         return False
 
     def _constant_of_motion(self, formula: DocumentFormula) -> str:
