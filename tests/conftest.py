@@ -23,7 +23,7 @@ from sharing import Shared
 from derive import Derivation, load
 from derive.formulas.expression import Namespace
 from derive.verification import hand
-from derive.verification.reference_system import ReferenceSystem
+from derive.verification.judging.reference_system import ReferenceSystem
 from solvers.app.modules import load as load_module
 from solvers.integration.checks import predictability
 from solvers.scenes.scene_reading import find

@@ -15,8 +15,8 @@ from derive.verification.documents.pages.verdict_table import document_lines, do
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.files import judge_file
 from derive.verification.hand import HandDerivation, judge
+from derive.verification.judging.verdict import VerdictName, table_width, verdict_rows, wrapped
 from derive.verification.report.report_judgement import OrderOf
-from derive.verification.verdict import VerdictName, table_width, verdict_rows, wrapped
 from solvers.io.text_table import text_table
 from solvers.io.toml_input import InputError
 

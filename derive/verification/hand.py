@@ -13,18 +13,18 @@ from derive.system.files.system_catalogue import load, published
 from derive.system.files.tables import TomlTable, read
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
-from derive.verification.derived import QUANTITIES
-from derive.verification.motion_verdicts import judge_set
-from derive.verification.quantity_verdicts import judge_formula
-from derive.verification.reference_system import ReferenceSystem
-from derive.verification.system_names import (
+from derive.verification.judging.derived import QUANTITIES
+from derive.verification.judging.motion_verdicts import judge_set
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.judging.system_names import (
     meanings,
     names_of_coordinates,
     normalised,
     parsed,
     with_multipliers,
 )
-from derive.verification.verdict import Verdict
+from derive.verification.judging.verdict import Verdict
+from derive.verification.quantity_verdicts import judge_formula
 from solvers.io.toml_input import InputError
 
 #: Quantities with one formula for each coordinate.

@@ -8,15 +8,15 @@ from functools import partial
 from derive.formulas.expression import number
 from derive.formulas.syntax import ExpressionError
 from derive.verification.corrections.advice import advised
-from derive.verification.derived import QUANTITIES, foreign_symbols
-from derive.verification.engine import UNDECIDED, joined
-from derive.verification.equivalence import TOTAL_ENERGY, equivalence
-from derive.verification.motion_verdicts import judge_equation
-from derive.verification.reference_system import ReferenceSystem
-from derive.verification.routhians import eliminated_names, without_legendre_term
-from derive.verification.substitution import substituted_constraints
-from derive.verification.terms import difference
-from derive.verification.verdict import Verdict
+from derive.verification.judging.derived import QUANTITIES, foreign_symbols
+from derive.verification.judging.engine import UNDECIDED, joined
+from derive.verification.judging.equivalence import TOTAL_ENERGY, equivalence
+from derive.verification.judging.motion_verdicts import judge_equation
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.judging.routhians import eliminated_names, without_legendre_term
+from derive.verification.judging.substitution import substituted_constraints
+from derive.verification.judging.terms import difference
+from derive.verification.judging.verdict import Verdict
 
 #: Quantities that follow from a Lagrangian and differ between equivalent ones.
 ENERGIES = ("kinetic_energy", "potential_energy", "energy")

@@ -8,9 +8,9 @@ import sympy as sp
 from derive import Derivation, load, names
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.typeset.typesetting import Formula
+from derive.verification.judging.verdict import Verdict
 from derive.verification.report.derivation_beside_report import EQUATIONS_OF_STEP, compare_steps
 from derive.verification.report.report_judgement import EQUATIONS
-from derive.verification.verdict import Verdict
 
 
 def values_by_name(d: Derivation) -> dict[str, sp.Expr | sp.MatrixBase]:

@@ -89,8 +89,9 @@ def test_folders_have_few_files_and_floors() -> None:
     rows = [row for package in PACKAGES for row in folders(package)]
     rows = [row for row in rows if row.path.name not in UNBOUNDED]
     assert {row.path: row.files for row in rows if row.files > 15} == {}
-    assert {row.path: row.floors for row in rows if row.floors > 10} == {}
-    assert np.mean([row.floors for row in rows]) < 5
+    high = {row.path.name: row.floors for row in rows if row.floors > 7}
+    assert high == {"solvers": 8, "integration": 8}
+    assert np.mean([row.floors for row in rows]) < 4.5
 
 
 def test_no_name_of_a_class_or_file_stands_in_two_places() -> None:

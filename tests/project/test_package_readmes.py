@@ -17,7 +17,7 @@ from derive.codegen.generated_folder import GeneratedFiles
 from derive.verification.documents.pages.verdict_table import document_record
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.hand import EQUATIONS, HEADER
-from derive.verification.verdict import Verdict, VerdictName
+from derive.verification.judging.verdict import Verdict, VerdictName
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.app.readme_tables import TABLES

@@ -18,9 +18,9 @@ from derive.reading.documents import read_document
 from derive.verification.corrections.advice import MAX_LENGTH
 from derive.verification.documents.judgement import judge_document
 from derive.verification.hand import judge
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula
-from derive.verification.reference_system import ReferenceSystem
-from derive.verification.verdict import Verdict
 
 
 @cache

@@ -19,9 +19,9 @@ from derive.system.files.shipped import large_names
 from derive.system.files.system_catalogue import published
 from derive.verification import hand, quantity_verdicts
 from derive.verification.hand import EQUATIONS, HEADER, judge
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula
-from derive.verification.reference_system import ReferenceSystem
-from derive.verification.verdict import Verdict
 from solvers.app.cli import main
 from solvers.io.toml_input import InputError
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.verification.hand import judge
-from derive.verification.verdict import Verdict
+from derive.verification.judging.verdict import Verdict
 
 MASS = """
 [[masses]]

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from derive import Derivation, load
-from derive.verification.engine import IN_NUMBERS, UNDECIDED
 from derive.verification.hand import judge
+from derive.verification.judging.engine import IN_NUMBERS, UNDECIDED
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula
-from derive.verification.reference_system import ReferenceSystem
-from derive.verification.verdict import Verdict
 
 SYSTEMS = {
     # L. D. Landau, E. M. Lifshitz, Mechanics, § 5, problem 3 (a)

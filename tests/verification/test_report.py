@@ -12,7 +12,7 @@ from itertools import pairwise
 import pytest
 
 from derive.formulas.syntax import ExpressionError
-from derive.verification.engine import RELATION
+from derive.verification.judging.engine import RELATION
 from derive.verification.report.equation import ReportEquation
 from derive.verification.report.programs import programs
 from derive.verification.report.report_judgement import EQUATIONS, check, equation_by_id, verdict

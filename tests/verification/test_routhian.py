@@ -15,7 +15,7 @@ from derive.reading.documents import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints
 from derive.verification.hand import judge
-from derive.verification.verdict import Verdict
+from derive.verification.judging.verdict import Verdict
 
 r, phi, g = sp.symbols("r phi g", real=True)
 m, k = sp.symbols("m k", positive=True)

@@ -24,17 +24,17 @@ from derive.verification.corrections.replacement import (
 )
 from derive.verification.corrections.search import Search
 from derive.verification.corrections.source_names import SourceNames
-from derive.verification.derived import printed_formula
-from derive.verification.motion_verdicts import fits
-from derive.verification.reference_system import ReferenceSystem, variables
-from derive.verification.terms import (
+from derive.verification.judging.derived import printed_formula
+from derive.verification.judging.motion_verdicts import fits
+from derive.verification.judging.reference_system import ReferenceSystem, variables
+from derive.verification.judging.terms import (
     Term,
     closest_factor,
     coefficients,
     corrected_terms,
     difference,
 )
-from derive.verification.verdict import Correction, Verdict
+from derive.verification.judging.verdict import Correction, Verdict
 
 #: The number of changes of a formula that are fitted into a set of equations of motion, those
 #: that are compared in numbers, and those that are checked.

@@ -7,8 +7,8 @@ import sympy as sp
 
 from derive.formulas.budget import is_expandable
 from derive.system.symbols import TIME
-from derive.verification.derived import QUANTITIES, foreign_symbols
-from derive.verification.reference_system import ReferenceSystem, depends_on, variables
+from derive.verification.judging.derived import QUANTITIES, foreign_symbols
+from derive.verification.judging.reference_system import ReferenceSystem, depends_on, variables
 
 #: Quantities with an arbitrary constant.
 UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")

@@ -6,7 +6,7 @@ import re
 from derive.formulas.syntax import is_sum, syntax_tree
 from derive.verification.corrections.pieces import FormulaPart
 from derive.verification.corrections.search import Change
-from derive.verification.verdict import Correction
+from derive.verification.judging.verdict import Correction
 
 
 def applied(text: str, change: Change) -> tuple[tuple[Correction, ...], str]:

@@ -20,8 +20,8 @@ from derive.verification.corrections.pieces import FormulaPart, Pieces
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.corrections.state_samples import Numbers, StateSamples, quotient
 from derive.verification.corrections.vocabulary import Vocabulary
-from derive.verification.reference_system import ReferenceSystem, depends_on
-from derive.verification.terms import difference
+from derive.verification.judging.reference_system import ReferenceSystem, depends_on
+from derive.verification.judging.terms import difference
 
 #: States in all, and those at which required values are compared.
 STATES, COMPARED = 320, 64

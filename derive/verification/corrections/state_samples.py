@@ -13,8 +13,8 @@ from derive.formulas import function_table
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.constrained_motions import equations
-from derive.verification.reference_system import ReferenceSystem
+from derive.verification.judging.constrained_motions import equations
+from derive.verification.judging.reference_system import ReferenceSystem
 
 #: Numbers at all states; NaN where there is no real number.
 Numbers: TypeAlias = list[float]

@@ -9,7 +9,7 @@ import sympy as sp
 from derive.verification.corrections.monomials import Factor
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.corrections.state_samples import StateSamples
-from derive.verification.reference_system import depends_on
+from derive.verification.judging.reference_system import depends_on
 
 #: The number and the most operations of derived sums that are tried as factors.
 SUMS, SHORT = 12, 8

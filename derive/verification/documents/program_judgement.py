@@ -24,7 +24,7 @@ from derive.verification.documents.rules.corrections import inserted, source_spa
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.documents.text import FormulaText
-from derive.verification.verdict import VerdictName
+from derive.verification.judging.verdict import VerdictName
 
 #: Names, numbers and signs of an equation.
 WORD_OR_SIGN = re.compile(r"\w+|\S")

@@ -14,8 +14,8 @@ from derive.formulas import expression
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.reduction import reduced
 from derive.system.files.system_catalogue import load
-from derive.verification.engine import Context
-from derive.verification.reference_system import depends_on, time_derivative
+from derive.verification.judging.engine import Context
+from derive.verification.judging.reference_system import depends_on, time_derivative
 
 Vector: TypeAlias = sp.ImmutableDenseMatrix
 

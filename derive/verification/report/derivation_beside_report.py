@@ -7,7 +7,7 @@ from html import escape
 from derive.formulas.typeset.typesetting import Formula
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.steps import Step
-from derive.verification.verdict import Verdict
+from derive.verification.judging.verdict import Verdict
 
 #: The report's equations for each step.
 EQUATIONS_OF_STEP = {

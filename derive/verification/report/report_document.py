@@ -11,12 +11,12 @@ from derive.reading.latex.display_reader import macros_of
 from derive.reading.latex.tree import Span, Statement, Unreadable
 from derive.system.files.system_catalogue import load
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
+from derive.verification.judging.verdict import Verdict, VerdictName
 from derive.verification.report.alignment import aligned
 from derive.verification.report.differences import first_difference
 from derive.verification.report.equation import ReportEquation
 from derive.verification.report.report_judgement import EQUATIONS, OrderOf, verdict_on
 from derive.verification.report.report_latex import statements, text
-from derive.verification.verdict import Verdict, VerdictName
 
 NOTE = "recognised by its displays as the report Comparing Method in Double Pendulum"
 OTHER = "not one of the report's equations"

@@ -9,13 +9,13 @@ import sympy as sp
 
 from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError
-from derive.verification.engine import Check, Context
+from derive.verification.judging.engine import Check, Context
+from derive.verification.judging.verdict import Verdict
 from derive.verification.report import contexts
 from derive.verification.report.contexts import STRAY
 from derive.verification.report.equation import ReportEquation
 from derive.verification.report.method import STAGES, NotRungeKuttaError, coefficients
 from derive.verification.report.report_equations import equations
-from derive.verification.verdict import Verdict
 from solvers.io.suggestion import did_you_mean
 
 #: Returns the order of the Runge–Kutta method with stage matrix A and weights b.

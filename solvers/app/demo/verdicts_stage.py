@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
+from derive.verification.judging.verdict import Verdict
 from derive.verification.report.derivation_beside_report import verdict_html
-from derive.verification.verdict import Verdict
 from solvers.app.demo.stage import ReportedNumber, Stage, details, table
 from solvers.app.verdict.report import counted, report_verdicts
 

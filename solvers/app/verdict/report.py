@@ -13,11 +13,17 @@ from typing import Any
 
 import numpy as np
 
+from derive.verification.judging.verdict import (
+    Verdict,
+    table_row,
+    table_width,
+    verdict_rows,
+    wrapped,
+)
 from derive.verification.report.contexts import NUMBERS
 from derive.verification.report.programs import PROSE, programs
 from derive.verification.report.programs import ReportScene as ReportScene
 from derive.verification.report.report_judgement import verdicts
-from derive.verification.verdict import Verdict, table_row, table_width, verdict_rows, wrapped
 from solvers.app.modules import load
 from solvers.app.verdict.evidence import Evidence
 from solvers.runge_kutta.order_conditions import order

@@ -13,7 +13,7 @@ from derive.system.system import System
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.statements import WORD
-from derive.verification.system_names import FACTORS
+from derive.verification.judging.system_names import FACTORS
 
 #: The names of systems that documents state by positions or energies, and by equations of motion:
 #: by those with a potential energy, and by others.

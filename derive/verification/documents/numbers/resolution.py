@@ -10,7 +10,7 @@ from derive.verification.documents.numbers.candidate_motions import CandidateMot
 from derive.verification.documents.numbers.numbers import Numbers
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import RATES
-from derive.verification.system_names import FACTORS
+from derive.verification.judging.system_names import FACTORS
 
 #: Unknown letters of a formula that are sought at once, and comparisons that must hold.
 MAX_UNKNOWN, SUPPORT = 2, 2

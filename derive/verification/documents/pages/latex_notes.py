@@ -15,7 +15,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.verdict import VerdictName
+from derive.verification.judging.verdict import VerdictName
 
 #: A note in the margin; in the line where there is no margin, as in boxes, floats and slides.
 NOTE = r"""% Verdicts of holonomic verify

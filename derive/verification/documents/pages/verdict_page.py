@@ -19,7 +19,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
     one_line,
 )
-from derive.verification.verdict import VerdictName
+from derive.verification.judging.verdict import VerdictName
 from solvers.io.html_page import html_page
 
 #: The macros of a document in LaTeX; None for a program.

@@ -10,7 +10,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
     one_line,
 )
-from derive.verification.verdict import table_row, wrapped
+from derive.verification.judging.verdict import table_row, wrapped
 
 
 def document_lines(verdicts: DocumentVerdicts, width: int) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import Literal
 
 from derive.reading.document import Display, Kind
 from derive.reading.latex.tree import Span
-from derive.verification.verdict import VerdictName
+from derive.verification.judging.verdict import VerdictName
 
 #: Characters of the longest formula that is shown whole.
 MAX_LATEX = 2000

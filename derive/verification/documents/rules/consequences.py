@@ -18,8 +18,8 @@ from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import order, stem
-from derive.verification.engine import joined
-from derive.verification.reference_system import time_derivative
+from derive.verification.judging.engine import joined
+from derive.verification.judging.reference_system import time_derivative
 
 #: Kinds of formulas that no other case of the system gives.
 OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")

@@ -8,7 +8,7 @@ from derive.formulas.typeset.latex import latex as latex_of
 from derive.reading.latex.tree import Span
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
-from derive.verification.verdict import Correction
+from derive.verification.judging.verdict import Correction
 
 
 @dataclass(frozen=True)

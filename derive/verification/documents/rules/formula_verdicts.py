@@ -36,8 +36,8 @@ from derive.verification.documents.statements import (
     Occurrence,
 )
 from derive.verification.documents.text import FormulaText
-from derive.verification.engine import joined
-from derive.verification.reference_system import depends_on
+from derive.verification.judging.engine import joined
+from derive.verification.judging.reference_system import depends_on
 
 #: A number with a decimal point.
 DECIMAL = re.compile(r"\d\.\d")

@@ -19,13 +19,13 @@ from derive.verification.documents.letters.entries import composed
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 from derive.verification.documents.text import RATES, stem
-from derive.verification.reference_system import (
+from derive.verification.judging.reference_system import (
     ReferenceSystem,
     depends_on,
     own_names,
     time_derivative,
 )
-from derive.verification.system_names import usual_names, with_multipliers
+from derive.verification.judging.system_names import usual_names, with_multipliers
 
 #: Generalized forces, such as Q_theta.
 FORCE = re.compile(r"[QF]_(\w+)\Z")

@@ -13,7 +13,7 @@ from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.text import FormulaText
-from derive.verification.verdict import Correction, Verdict
+from derive.verification.judging.verdict import Correction, Verdict
 
 #: The name that stands for a part, and operations of the largest formula that is solved for one.
 PART, MAX_OPERATIONS = "part_of_formula", 600

@@ -15,14 +15,14 @@ from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import WORD
 from derive.verification.documents.text import FormulaText, order, stem
-from derive.verification.engine import joined
-from derive.verification.quantity_verdicts import judge_formula
-from derive.verification.reference_system import (
+from derive.verification.judging.engine import joined
+from derive.verification.judging.reference_system import (
     LARGEST_INVERSE,
     ReferenceSystem,
     depends_on,
 )
-from derive.verification.verdict import Correction, Verdict
+from derive.verification.judging.verdict import Correction, Verdict
+from derive.verification.quantity_verdicts import judge_formula
 
 #: The index of a name with one, and the ending of its rate behind it.
 INDEX = re.compile(r"_\d+(?=_d+ot\Z|\Z)")

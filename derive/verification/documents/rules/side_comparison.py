@@ -16,9 +16,9 @@ from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdic
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.documents.text import FormulaText
-from derive.verification.engine import UNDECIDED
-from derive.verification.reference_system import depends_on
-from derive.verification.verdict import Correction
+from derive.verification.judging.engine import UNDECIDED
+from derive.verification.judging.reference_system import depends_on
+from derive.verification.judging.verdict import Correction
 
 #: The largest denominator of a factor that is looked for.
 MAX_DENOMINATOR = 100

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import FormulaText
-from derive.verification.verdict import Verdict
+from derive.verification.judging.verdict import Verdict
 
 #: Verdicts on formulas that are correct.
 CORRECT = ("verified", "equivalent", "definition")

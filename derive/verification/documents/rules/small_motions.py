@@ -8,7 +8,7 @@ import sympy as sp
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.verification.documents.letters.letters import KINDS
-from derive.verification.reference_system import ReferenceSystem
+from derive.verification.judging.reference_system import ReferenceSystem
 
 #: Coordinates of the largest systems whose accelerations are solved for.
 MAX_INVERSE = 3

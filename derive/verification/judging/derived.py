@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable
 import sympy as sp
 
 from derive.system.symbols import TIME
-from derive.verification.reference_system import ReferenceSystem, time_derivative
-from derive.verification.routhians import routhian, value_of
+from derive.verification.judging.reference_system import ReferenceSystem, time_derivative
+from derive.verification.judging.routhians import routhian, value_of
 
 
 def _acceleration(model: ReferenceSystem, name: str) -> sp.Expr:

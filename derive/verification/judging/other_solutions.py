@@ -7,8 +7,8 @@ import sympy as sp
 
 from derive.formulas.evaluation.generic_values import changes_of_sign
 from derive.formulas.evaluation.numeric import mp
-from derive.verification.engine import State
-from derive.verification.reference_system import ReferenceSystem, depends_on
+from derive.verification.judging.engine import State
+from derive.verification.judging.reference_system import ReferenceSystem, depends_on
 
 #: States at which solutions are computed, and the largest relative value that counts as zero.
 STATES, TINY = 3, 1e-15

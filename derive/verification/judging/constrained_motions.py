@@ -8,7 +8,7 @@ import sympy as sp
 from derive.formulas.evaluation.numeric import Approximation, Evaluator, mp
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
-from derive.verification.engine import State
+from derive.verification.judging.engine import State
 
 #: Steps of Newton's method from each of several states, and the residual before the last one.
 MOST_STEPS, MOST_STATES, TINY = 60, 20, mp.mpf("1e-60")

@@ -17,8 +17,8 @@ from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.constrained_motions import motion
-from derive.verification.engine import UNDECIDED, Context, State
+from derive.verification.judging.constrained_motions import motion
+from derive.verification.judging.engine import UNDECIDED, Context, State
 
 #: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted in
 #: formulas: with four, this takes a minute. Accelerations of larger ones are judged in numbers.

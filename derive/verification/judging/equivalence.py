@@ -7,9 +7,9 @@ import sympy as sp
 from derive.formulas.budget import is_expandable
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.engine import joined
-from derive.verification.reference_system import ReferenceSystem, depends_on, euler_lagrange
-from derive.verification.routhians import equivalents
+from derive.verification.judging.engine import joined
+from derive.verification.judging.reference_system import ReferenceSystem, depends_on, euler_lagrange
+from derive.verification.judging.routhians import equivalents
 
 Differences = tuple[sp.Expr, ...]
 

@@ -8,7 +8,11 @@ from derive.formulas.expression import number
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.routhian import Routhian
 from derive.system.system import System
-from derive.verification.reference_system import ReferenceSystem, depends_on, time_derivative
+from derive.verification.judging.reference_system import (
+    ReferenceSystem,
+    depends_on,
+    time_derivative,
+)
 
 
 def eliminated(model: ReferenceSystem, value: sp.Expr) -> tuple[int, ...]:

@@ -11,14 +11,14 @@ from derive.formulas.expression import Namespace, Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.system.system import System
-from derive.verification.engine import Context
-from derive.verification.reference_system import (
+from derive.verification.judging.engine import Context
+from derive.verification.judging.reference_system import (
     ReferenceSystem,
     depends_on,
     own_names,
     time_derivative,
 )
-from derive.verification.terms import difference
+from derive.verification.judging.terms import difference
 from solvers.io.toml_input import InputError
 
 

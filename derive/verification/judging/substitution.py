@@ -5,7 +5,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.verification.reference_system import ReferenceSystem, time_derivative
+from derive.verification.judging.reference_system import ReferenceSystem, time_derivative
 
 Removed = dict[sp.Symbol, sp.Expr]
 

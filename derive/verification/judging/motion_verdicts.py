@@ -10,12 +10,12 @@ import sympy as sp
 from derive.formulas.budget import is_expandable
 from derive.formulas.evaluation.numeric import independent, solved
 from derive.formulas.syntax import ExpressionError
-from derive.verification.constrained_motions import equations
-from derive.verification.engine import joined
-from derive.verification.other_solutions import has_other_solutions, without_outer_function
-from derive.verification.reference_system import ReferenceSystem, depends_on
-from derive.verification.terms import difference
-from derive.verification.verdict import Verdict
+from derive.verification.judging.constrained_motions import equations
+from derive.verification.judging.engine import joined
+from derive.verification.judging.other_solutions import has_other_solutions, without_outer_function
+from derive.verification.judging.reference_system import ReferenceSystem, depends_on
+from derive.verification.judging.terms import difference
+from derive.verification.judging.verdict import Verdict
 
 #: Largest ratio of factors that counts as zero.
 TINY = sp.Float("1e-30")

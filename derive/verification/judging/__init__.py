@@ -1,0 +1,1 @@
+"""The judging engine: formulas and equations of motion compared with those of a derivation."""
