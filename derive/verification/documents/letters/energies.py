@@ -199,7 +199,8 @@ def stated_values(
         for number, formula in enumerate(formulas):
             for name, text in definitions(formula):
                 kind = letters.quantities.get(name, "")
-                if name in symbols or (name in namespace and not kind):
+                is_derivative = name.startswith("d") and "_d" in name  # dL_dx_dot is no rate
+                if name in symbols or is_derivative or (name in namespace and not kind):
                     continue
                 try:
                     value = parse(text, namespace)
