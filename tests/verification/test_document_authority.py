@@ -290,3 +290,12 @@ def test_slips_beside_them_are_found_or_left_open(tmp_path: Path, name: str) -> 
     changed = [one for one, own in zip(formulas, before, strict=True) if one.verdict != own.verdict]
     assert changed
     assert all(slip.split()[-1] in one.latex for one in wrong(formulas))
+
+
+def test_a_lagrangian_is_blamed_where_its_derivative_and_equation_agree(tmp_path: Path) -> None:
+    text = r"""$$ L = \frac12 m\dot x^2 - \frac12 k x^2 - a g m\cos x $$
+    $$ \frac{\partial L}{\partial x} = a\alpha g m\sin(\alpha x) - k x $$
+    $$ m\ddot x - a\alpha g m\sin(\alpha x) + k x = 0 $$"""
+    formulas = judged(tmp_path, text)
+    assert [one.verdict for one in formulas] == ["wrong", "verified", "definition"]
+    assert formulas[0].wrong_term == r"- a g m\cos x"

@@ -61,7 +61,10 @@ def potential_of(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr
         rest = sp.expand(slope - V.diff(one))
         if rest.free_symbols & rates or sp.count_ops(rest) > MAX_OPERATIONS:
             return None
-        V += manualintegrate(rest, one)
+        # positive constants, of which none is a case of its own as 0 in sin(a*x)
+        positive = {s: sp.Dummy(s.name, positive=True) for s in rest.free_symbols - {one}}
+        constants = {dummy: s for s, dummy in positive.items()}
+        V += manualintegrate(rest.xreplace(positive), one).xreplace(constants)
     exact = not V.has(sp.Integral) and all(
         sp.expand(V.diff(one) - slope) == 0 for one, slope in zip(q, gradient, strict=True)
     )
