@@ -36,6 +36,8 @@ from derive.verification.documents.statements import DocumentFormula
 REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSRtnsrf]\w*|tension|normal)(?:_\w+)?\Z")
 #: Most unknown accelerations and reactions, and operations of an equation.
 MAX_UNKNOWN, MAX_OPERATIONS = 6, 120
+#: Most equations that are solved by determinants.
+MOST_BY_CRAMER = 4
 #: Most coordinates whose equations are sought in an order with a symmetric mass matrix.
 MAX_ORDERED = 4
 
@@ -129,11 +131,8 @@ class StatedEquations:
         still = dict.fromkeys(unknown, sp.S.Zero)
         matrix = sp.Matrix([one.coefficients for one in rows])
         rest = sp.Matrix([-one.value.xreplace(still) for one in rows])
-        point = _point(sp.Tuple(matrix, rest))
-        try:
-            solved = matrix.LUsolve(rest, iszerofunc=lambda one: _is_zero(one, point))
-            solved = solved.applyfunc(sp.cancel)  # without pivots that vanish at rest
-        except (ValueError, sp.PolynomialError, sp.matrices.exceptions.NonInvertibleMatrixError):
+        solved = _solved(matrix, rest)
+        if solved is None:
             return None
         n, name = len(self._q), BY_EQUATIONS
         inertia, forces, V = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n]), None
@@ -161,6 +160,18 @@ class StatedEquations:
             return None
         one = next(stated_candidates(system, self._letters))
         return replace(one, stating=numbers, reactions=values)
+
+
+def _solved(matrix: sp.Matrix, rest: sp.Matrix) -> sp.Matrix | None:
+    """The solution of linear equations; of few ones without pivots, which can vanish at rest."""
+    point = _point(sp.Tuple(matrix, rest))
+    if matrix.rows <= MOST_BY_CRAMER:
+        determinant = matrix.det(method="berkowitz")
+        return None if _is_zero(determinant, point) else matrix.adjugate() * rest / determinant
+    try:
+        return matrix.LUsolve(rest, iszerofunc=lambda one: _is_zero(one, point))
+    except (ValueError, sp.matrices.exceptions.NonInvertibleMatrixError):
+        return None
 
 
 def _independent(rows: Sequence[_Equation], count: int) -> list[_Equation] | None:
