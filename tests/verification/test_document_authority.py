@@ -299,3 +299,15 @@ def test_a_lagrangian_is_blamed_where_its_derivative_and_equation_agree(tmp_path
     formulas = judged(tmp_path, text)
     assert [one.verdict for one in formulas] == ["wrong", "verified", "definition"]
     assert formulas[0].wrong_term == r"- a g m\cos x"
+
+
+def test_a_rate_is_not_accused_by_a_position_that_nothing_confirms(tmp_path: Path) -> None:
+    text = r"""$$ x = \sin\theta, \qquad y = -R\cos\theta $$ $$ \dot x = R\dot\theta\cos\theta $$
+    $$ T = \frac12 m R^2\dot\theta^2 $$
+    $$ V = -m g R\cos\theta - \frac12 m\Omega^2 R^2\sin^2\theta $$
+    $$ R\ddot\theta + g\sin\theta - \Omega^2 R\sin\theta\cos\theta = 0 $$"""
+    formulas = judged(tmp_path, text)
+    assert wrong(formulas) == []
+    (rate,) = [one for one in formulas if one.latex.startswith(r"\dot x")]
+    assert rate.verdict == "context"
+    assert "it contradicts line 1" in rate.note

@@ -146,7 +146,8 @@ def weighed(
 
     A formula is wrong by a system that the user states, or that follows from positions or energies
     in the document. It is not if other formulas of the document, which `doubts` has for its number,
-    fit the rest as well and agree with it. A system that is known from elsewhere must have a letter
+    fit the rest as well and agree with it, nor if it is the rate of a position that a system of
+    energies or equations does not contain. A system that is known from elsewhere must have a letter
     for each of its parameters, unless that is a factor of the Lagrangian, such as the mass of a
     single body, and the accelerations as written have no potential of their own; and more formulas
     that hold than such with more than one wrong term.
@@ -171,6 +172,12 @@ def weighed(
         len(wrong) - sum(follows) != 1 or holding < 2 or misfits > 0
     )
     given = _lines(lines[k] for k in candidate.stating)
+    # rates of positions of which nothing in a system of energies or equations shows that they hold
+    unused = {
+        f"{formula.subject}_dot": lines[k]
+        for k, (formula, one) in enumerate(results)
+        if candidate.stating and one.verdict.verdict == "definition" and k not in candidate.stating
+    }
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
         if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
@@ -178,6 +185,9 @@ def weighed(
         elif verdict.verdict == "wrong" and number in doubts and not decides:
             other = _lines(lines[k] for k in doubts[number])
             note = f"it contradicts {given or 'the system'} and agrees with {other}: {UNDECIDED}"
+            result = plain("context", formula, note)
+        elif verdict.verdict == "wrong" and formula.subject in unused:
+            note = f"it contradicts line {unused[formula.subject]}: {UNDECIDED}"
             result = plain("context", formula, note)
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
