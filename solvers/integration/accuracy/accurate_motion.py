@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike
 from solvers.equations.module import GeneratedModule, has_perturbation, inputs
 from solvers.equations.number_checks import Values, positive
 from solvers.integration.accuracy.checked_motion import Array, Motion
-from solvers.integration.accuracy.checked_run import FINEST, RESERVE, CheckedRun
+from solvers.integration.accuracy.checked_run import FINEST, RESERVE, CheckedRun, compile_checks
 from solvers.integration.accuracy.integration_run import FINE, SMOOTH, IntegrationRun
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest, usual_form
 from solvers.integration.accuracy.sufficient_run import sufficient_run
 from solvers.integration.checks.predictability import ignore_predictability
+from solvers.integration.loops.compiled_loop import compile_ahead
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, Options, Problem
@@ -49,6 +50,8 @@ def accurate_motion(
     choice = _choice(motion, options, accuracy, is_named=is_named)
     if any(getattr(event, "terminal", False) for event in problem.events):
         motion = _up_to_event(motion, options, accuracy)
+    compile_ahead(module, choice.form, choice.method)
+    compile_checks(IntegrationRun(motion, choice, FINE), motion)
     times = motion.times or IntegrationRun(motion, FINE_CHOICE, FINE).step_times()
     run, _ = sufficient_run(motion, choice, accuracy, motion.ordered([*times, motion.span[1]]))
     if run.computed is None:

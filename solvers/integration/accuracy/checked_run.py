@@ -99,8 +99,7 @@ def estimated_error(run: IntegrationRun, checked: Motion) -> float:
     `EndsEarlyError` where the motion itself does not.
     """
     checks = _checks(run, checked)
-    for check in checks if checked.inputs is None else ():  # while the run's loop is compiled
-        compile_ahead(checked.module, check.method_choice.form, check.method_choice.method)
+    compile_checks(run, checked)
     try:
         times = check_times(run)
         states = run.states(times)
@@ -111,6 +110,12 @@ def estimated_error(run: IntegrationRun, checked: Motion) -> float:
     # a check's own error counts where the run is more accurate than its tolerance
     rest = checks[0].setting * float(np.abs(references[0]).max())
     return max(difference(run.motion, states, reference) for reference in references) + rest
+
+
+def compile_checks(run: IntegrationRun, checked: Motion) -> None:
+    """Start to compile the loops of the checks of a run, while that of the run is compiled."""
+    for check in _checks(run, checked) if checked.inputs is None else ():
+        compile_ahead(checked.module, check.method_choice.form, check.method_choice.method)
 
 
 def _checks(run: IntegrationRun, checked: Motion) -> list[IntegrationRun]:
