@@ -311,3 +311,9 @@ def test_a_rate_is_not_accused_by_a_position_that_nothing_confirms(tmp_path: Pat
     (rate,) = [one for one in formulas if one.latex.startswith(r"\dot x")]
     assert rate.verdict == "context"
     assert "it contradicts line 1" in rate.note
+
+
+def test_a_known_system_that_fits_one_of_three_formulas_accuses_none(tmp_path: Path) -> None:
+    text = r"""$$ E = \frac12 c r^2 + \frac12 M\dot\phi^2 r^2 $$
+    $$ M\ddot r = -c r + M\dot\phi^2 r $$ $$ M\ddot\phi r^2 = -2 M\dot\phi r\dot r $$"""
+    assert wrong(judged(tmp_path, text)) == []

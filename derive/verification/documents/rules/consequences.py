@@ -150,7 +150,7 @@ def weighed(
     energies or equations does not contain. A system that is known from elsewhere must have a letter
     for each of its parameters, unless that is a factor of the Lagrangian, such as the mass of a
     single body, and the accelerations as written have no potential of their own; and more formulas
-    that hold than such with more than one wrong term.
+    that hold than such with more than one wrong term, and than slips if one is in an energy.
     With a partial search for it, none is wrong.
     If it is complete, and several formulas hold and one does not, it decides that this is wrong.
     """
@@ -164,7 +164,17 @@ def weighed(
         and {*_unnamed(candidate)} == {*_scales(candidate)}
         and not _is_conservative([formula for formula, _ in results])
     )
-    is_weak = is_known and (is_partial or not has_all or misfits > max(1, holding))
+    # an energy and an equation that contradict the system alike speak against the system
+    terms = {
+        tuple(term.wrong for term in one.verdict.corrections)
+        for _, one in results
+        if one.verdict.verdict == "wrong" and FOLLOWS not in one.verdict.note
+    }
+    has_energy = any(
+        one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES for _, one in results
+    )
+    slips = max(misfits, len(terms) if has_energy else 0)
+    is_weak = is_known and (is_partial or not has_all or slips > max(1, holding))
     decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = is_known and holding < 2 and candidate.is_turned
     follows = [FOLLOWS in one.note for one in wrong]
