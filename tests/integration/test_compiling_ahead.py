@@ -8,10 +8,15 @@ from pathlib import Path
 import pytest
 from folders import ROOT
 
-RUN = """
+MOTION = """
 import generated.double_pendulum as dp
 from solvers import integrate
-print(integrate(dp, (0, 1), (1.0, 0.5, 0.0, 0.0), {}ARGUMENTS).run)
+print(integrate(dp, (0, 1), (1.0, 0.5, 0.0, 0.0), {}).run)
+"""
+SCENE = """
+from solvers.app.cli import main
+main(["run", "report", "--output", "{folder}"])
+print("compiled by the scene")
 """
 #: A compiler that waits until another one runs, for the time of 100 short pauses at most.
 WAITING = """#!/bin/sh
@@ -23,6 +28,7 @@ for i in $(seq 100); do
     sleep 0.1
 done
 rm {folder}/running-$$
+[ -e {folder}/together ] || touch {folder}/alone
 exec '{cc}' "$@"
 """
 
@@ -32,14 +38,14 @@ pytestmark = [
 ]
 
 
-def run(folder: Path, script: str, arguments: str = "") -> subprocess.CompletedProcess[str]:
+def run(folder: Path, script: str, code: str = MOTION) -> subprocess.CompletedProcess[str]:
     """A process that integrates a motion with an empty cache and this compiler."""
     (folder / "bin").mkdir()
     compiler = folder / "bin" / "cc"
     compiler.write_text(script.format(cc=shutil.which("cc"), folder=folder))
     compiler.chmod(0o755)
     return subprocess.run(
-        [sys.executable, "-c", RUN.replace("ARGUMENTS", arguments)],
+        [sys.executable, "-c", code.replace("{folder}", str(folder))],
         cwd=ROOT,
         env={"PATH": f"{compiler.parent}:/usr/bin:/bin", "XDG_CACHE_HOME": str(folder / "cache")},
         capture_output=True,
@@ -48,12 +54,13 @@ def run(folder: Path, script: str, arguments: str = "") -> subprocess.CompletedP
     )
 
 
-@pytest.mark.parametrize("arguments", ["", ", accuracy=1e-6"])
-def test_loops_are_compiled_at_the_same_time(arguments: str, tmp_path: Path) -> None:
-    process = run(tmp_path, WAITING, arguments)
+@pytest.mark.parametrize("code", [MOTION, MOTION.replace("{})", "{}, accuracy=1e-6)"), SCENE])
+def test_loops_are_compiled_at_the_same_time(code: str, tmp_path: Path) -> None:
+    process = run(tmp_path, WAITING, code)
     assert "compiled by" in process.stdout
     assert process.stderr == ""
     assert (tmp_path / "together").exists()
+    assert not (tmp_path / "alone").exists()  # no compiler waited for another one in vain
 
 
 def test_a_broken_compiler_is_reported_once(tmp_path: Path) -> None:

@@ -329,12 +329,12 @@ def alternatives(
         pairs = _rejudged(statements, result, rival, results)
         own = sum(one.verdict.verdict not in CORRECT for _, one, _ in pairs)
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
-        one, own_one = rival.candidate, result.match.candidate
-        is_odd = own_one.is_usual and one.is_turned
-        opposes = {one.basis, own_one.basis} == {"catalogue"} and not is_odd
+        taken, rival_one = result.match.candidate, rival.candidate
+        is_odd = taken.is_usual and rival_one.is_turned
+        opposes = {taken.basis, rival_one.basis} == {"catalogue"} and not is_odd
         changed = tuple(_differences(pairs, written, opposes))
         kinds = tuple((one.line, one.latex, one.verdict) for one in changed)
-        is_usual = rival.candidate.is_usual and not result.match.candidate.is_usual
+        is_usual = rival_one.is_usual and not taken.is_usual
         if changed and kinds not in seen and (other <= own or is_usual):
             seen.add(kinds)
             yield _alternative(result.match, rival, changed)

@@ -50,7 +50,7 @@ def accurate_motion(
     choice = _choice(motion, options, accuracy, is_named=is_named)
     if any(getattr(event, "terminal", False) for event in problem.events):
         motion = _up_to_event(motion, options, accuracy)
-    compile_ahead(module, choice.form, choice.method)
+    compile_ahead(module, choice.form, choice.method, compensated=choice.compensated)
     compile_checks(IntegrationRun(motion, choice, FINE), motion)
     times = motion.times or IntegrationRun(motion, FINE_CHOICE, FINE).step_times()
     run, _ = sufficient_run(motion, choice, accuracy, motion.ordered([*times, motion.span[1]]))

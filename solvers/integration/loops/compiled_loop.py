@@ -90,9 +90,11 @@ def loop(problem: Problem, *, lanes: bool = False) -> Kernel:
     return kernel(*arguments)
 
 
-def compile_ahead(module: GeneratedModule, form: str, method: str) -> None:
+def compile_ahead(
+    module: GeneratedModule, form: str, method: str, *, compensated: bool = False
+) -> None:
     """Start to compile a loop in another thread, for which `loop` waits."""
-    arguments = module, form, method, False, False
+    arguments = module, form, method, False, compensated
 
     def compile_loop() -> None:
         is_ahead.set(True)

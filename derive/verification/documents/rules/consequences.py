@@ -165,11 +165,7 @@ def weighed(
         and not _is_conservative([formula for formula, _ in results])
     )
     # an energy and an equation that contradict the system alike speak against the system
-    terms = {
-        tuple(term.wrong for term in one.verdict.corrections)
-        for _, one in results
-        if one.verdict.verdict == "wrong" and FOLLOWS not in one.verdict.note
-    }
+    terms = {tuple(t.wrong for t in one.corrections) for one in wrong if FOLLOWS not in one.note}
     has_energy = any(
         one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES for _, one in results
     )
@@ -177,10 +173,8 @@ def weighed(
     is_weak = is_known and (is_partial or not has_all or slips > max(1, holding))
     decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = is_known and holding < 2 and candidate.is_turned
-    follows = [FOLLOWS in one.note for one in wrong]
-    is_tie = candidate.is_of_equations and (
-        len(wrong) - sum(follows) != 1 or holding < 2 or misfits > 0
-    )
+    independent = sum(FOLLOWS not in one.note for one in wrong)
+    is_tie = candidate.is_of_equations and (independent != 1 or holding < 2 or misfits > 0)
     given = _lines(lines[k] for k in candidate.stating)
     # rates of positions of which nothing in a system of energies or equations shows that they hold
     unused = {
