@@ -14,7 +14,6 @@ from solvers.equations.linearisation.linear_system import linearise as linearise
 from solvers.equations.starts.consistent_start import consistent_start as consistent_start
 from solvers.integration.ensemble import ensemble as ensemble
 from solvers.integration.integrate import integrate as integrate
-from solvers.integration.loops.stop_flag import StopFlag as StopFlag
 from solvers.integration.ode_solver import ode_solver as ode_solver
 from solvers.integration.orbits.normal_mode import backbone_slope as backbone_slope
 from solvers.integration.orbits.normal_mode import normal_mode_orbit as normal_mode_orbit
@@ -25,6 +24,7 @@ from solvers.integration.problem.events import Event as Event
 from solvers.integration.problem.events import Extremum as Extremum
 from solvers.integration.problem.inputs import Held as Held
 from solvers.integration.problem.status import Status as Status
+from solvers.integration.problem.status import StopFlag as StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble as Ensemble
 from solvers.integration.results.solution import Solution as Solution
 from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum as lyapunov_spectrum

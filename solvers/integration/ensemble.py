@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import Values
 from solvers.equations.signature_checks import known_names
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.many_motions import many_motions
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, Options
+from solvers.integration.problem.status import StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble
 
 

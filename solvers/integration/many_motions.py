@@ -24,11 +24,10 @@ from solvers.integration.checks.singularity import SingularityWarning, singulari
 from solvers.integration.checks.step_stability import StepWarning, mark_unstable
 from solvers.integration.loops import compiled_loop
 from solvers.integration.loops.ensemble_loop import EnsembleRun
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.problem import memory, validation
 from solvers.integration.problem.events import Extremum
 from solvers.integration.problem.problem import EventFunction, Options, Problem
-from solvers.integration.problem.status import Status
+from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble, EnsembleTimes
 from solvers.integration.results.solution import Interrupted, Solution
 from solvers.integration.single_motion import single_motion

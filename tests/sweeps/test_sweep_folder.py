@@ -24,7 +24,7 @@ from sweep_file import FILE, write_sweep
 import generated.double_pendulum as dp
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
-from solvers.integration.loops.stop_flag import StopFlag
+from solvers.integration.problem.status import StopFlag
 from solvers.sweeps.definition.axes import Grid, Random
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.definition.sweep_reading import find

@@ -11,11 +11,10 @@ from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import python_loop
 from solvers.integration.loops.passage import rerun
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.problem.events import Extremum
 from solvers.integration.problem.inputs import History
 from solvers.integration.problem.problem import EventFunction, Problem
-from solvers.integration.problem.status import Status
+from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble, EnsembleTimes
 from solvers.integration.results.outcome import Outcome
 from solvers.runge_kutta.stepper import Array

@@ -15,10 +15,9 @@ from solvers.integration.loops.attempts import (
     StepAttempts,
     TimedState,
 )
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.loops.switching import first_part, is_coarse, next_part
 from solvers.integration.problem.problem import Problem, shortest_step
-from solvers.integration.problem.status import Status
+from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.outcome import Outcome
 from solvers.integration.results.recorder import Recorder
 from solvers.runge_kutta.order_choice import OrderChoice

@@ -9,10 +9,9 @@ import scipy
 
 from solvers.equations.forms import Form
 from solvers.equations.number_checks import NotFiniteNumberError
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.loops.switching import first_part, next_part
 from solvers.integration.problem.problem import Problem
-from solvers.integration.problem.status import Status
+from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.outcome import Outcome
 from solvers.integration.results.recorder import Recorder
 from solvers.integration.results.step_states import Curve

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.equations.signature_checks import checked
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.problem import validation
+from solvers.integration.problem.status import StopFlag
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.process_arithmetic import first_motions, run_equal_chunk

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.integration.loops import compiled_loop
-from solvers.integration.loops.stop_flag import StopFlag
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
+from solvers.integration.problem.status import StopFlag
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.worker import computed, mean_evaluations, run_chunk

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from solvers.equations.singularities.mass_matrix import checked_before
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
-from solvers.integration.loops.stop_flag import StopFlag
-from solvers.integration.problem.status import Status
+from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep
