@@ -26,7 +26,7 @@ from solvers.integration.problem import validation
 from solvers.integration.problem.memory import limit_steps
 from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.integration.results.solution import Interrupted, Solution, SolvedEquations
 from solvers.io.suggestion import warn_caller
 from solvers.runge_kutta.stepper import Array

@@ -14,7 +14,7 @@ from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.stepper import Array
 
 #: Largest number of steps of a timed run.

@@ -16,7 +16,7 @@ from solvers.integration.loops import python_loop
 from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.problem.validation import problem
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start
 from solvers.runge_kutta.order_choice import FAST, SLOW, OrderChoice

@@ -8,7 +8,7 @@ from solvers.equations.forms import fastest_form
 from solvers.equations.module import has_perturbation
 from solvers.integration.loops import compiled_loop, passage
 from solvers.integration.problem.problem import Problem
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stepper import Array
 

@@ -13,7 +13,7 @@ from solvers.integration.loops.passage import rerun
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.stepper import Array
 from solvers.runge_kutta.tableau import Tableau

@@ -13,7 +13,7 @@ from solvers.integration.compiled.memory_layout import MAX_EVENTS, STATUSES
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.io.suggestion import warn_caller
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.tableau import Tableau

@@ -16,7 +16,7 @@ from solvers.integration.problem.inputs import History
 from solvers.integration.problem.problem import EventFunction, Problem
 from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble, EnsembleTimes
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.stepper import Array
 
 #: Rows whose states are computed at once.

@@ -24,8 +24,7 @@ from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.loops import compiled_loop, passage, python_loop
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
-from solvers.integration.results.recorder import Recorder
+from solvers.integration.results.recorder import Outcome, Recorder
 from solvers.integration.results.step_states import Curve
 from solvers.runge_kutta.stepper import Array
 

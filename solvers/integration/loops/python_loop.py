@@ -18,8 +18,7 @@ from solvers.integration.loops.attempts import (
 from solvers.integration.loops.switching import first_part, is_coarse, next_part
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status, StopFlag
-from solvers.integration.results.outcome import Outcome
-from solvers.integration.results.recorder import Recorder
+from solvers.integration.results.recorder import Outcome, Recorder
 from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.step_control import Controller
 from solvers.runge_kutta.stepper import NotFiniteError, Stepper

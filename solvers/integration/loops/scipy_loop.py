@@ -12,8 +12,7 @@ from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.integration.loops.switching import first_part, next_part
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status, StopFlag
-from solvers.integration.results.outcome import Outcome
-from solvers.integration.results.recorder import Recorder
+from solvers.integration.results.recorder import Outcome, Recorder
 from solvers.integration.results.step_states import Curve
 from solvers.runge_kutta.stepper import Array, NotFiniteError, Rhs, evaluated
 

@@ -19,7 +19,7 @@ from solvers.equations.sliding import is_affine
 from solvers.integration.problem.events import SwitchEvent
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.stepper import Array
 
 #: Parts between switches that are shorter than this many spacings of times, in succession, after

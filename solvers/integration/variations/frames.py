@@ -19,7 +19,7 @@ from solvers.integration.loops import compiled_loop, python_loop
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import SHORTEST, Options
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.integration.variations.tangents import METHOD
 from solvers.runge_kutta.stepper import Array
 

@@ -15,7 +15,7 @@ from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.stepper import Array
 
 METHOD = "verner98"

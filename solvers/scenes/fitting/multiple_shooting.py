@@ -18,7 +18,7 @@ from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Schedule
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
-from solvers.integration.results.outcome import Outcome
+from solvers.integration.results.recorder import Outcome
 
 #: Method, that with inputs, between changes of which steps are short, and tolerances.
 METHOD, METHOD_WITH_INPUTS, RTOL, ATOL = "verner853", "dp54", 1e-9, 1e-9
