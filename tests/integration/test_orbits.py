@@ -29,8 +29,7 @@ from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
 from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
-from solvers.integration.variations.tangents import Tangents
-from solvers.integration.variations.transition_matrix import transition_matrix
+from solvers.integration.variations.transition_matrix import Tangents, transition_matrix
 
 DAMPED = {"a": 0.3, "Omega": 6.0, "c": 0.3}
 

@@ -9,7 +9,7 @@ from solvers.equations.module import GeneratedModule, function, has_constraints
 from solvers.equations.number_checks import positive
 from solvers.equations.starts.assembly import Assembly
 from solvers.integration.orbits.symmetry import Nature, Reversal, angles, states_near
-from solvers.integration.variations.tangents import Tangents
+from solvers.integration.variations.transition_matrix import Tangents
 from solvers.runge_kutta.stepper import Array
 
 #: Relative step of differences of the energy and of the period, of which a few digits suffice.

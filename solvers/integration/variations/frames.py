@@ -20,7 +20,7 @@ from solvers.integration.problem import validation
 from solvers.integration.problem.problem import SHORTEST, Options
 from solvers.integration.problem.status import Status
 from solvers.integration.results.recorder import Outcome
-from solvers.integration.variations.tangents import METHOD
+from solvers.integration.variations.transition_matrix import METHOD
 from solvers.runge_kutta.stepper import Array
 
 NEW, FINISHED = STATUSES.index(None), STATUSES.index(Status.FINISHED)
