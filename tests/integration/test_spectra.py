@@ -14,8 +14,7 @@ from solvers.integration.loops import compiled_loop
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
-from solvers.integration.variations.frames import Frames
-from solvers.integration.variations.lyapunov_spectrum import lyapunov_spectrum
+from solvers.integration.variations.lyapunov_spectrum import Frames, lyapunov_spectrum
 from solvers.integration.variations.transition_matrix import transition_matrix
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.map_table import MapTable

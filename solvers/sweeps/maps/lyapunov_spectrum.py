@@ -10,7 +10,7 @@ import numpy as np
 from solvers.equations.module import GeneratedModule, independent_perturbations
 from solvers.equations.number_checks import positive
 from solvers.equations.signature_checks import checked
-from solvers.integration.variations.frames import Frames
+from solvers.integration.variations.lyapunov_spectrum import Frames
 from solvers.sweeps.definition.axes import Array, Axes
 from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.maps import Map, Motions
