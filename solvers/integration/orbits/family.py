@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, title
 from solvers.integration.checks.predictability import ignore_predictability
-from solvers.integration.orbits.orbit import ENERGY, PeriodicOrbit
+from solvers.integration.orbits.periodic_orbit import ENERGY, PeriodicOrbit
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
 from solvers.integration.results.solution import Solution

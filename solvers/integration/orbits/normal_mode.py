@@ -6,9 +6,9 @@ from solvers.equations.linearisation.linear_system import LinearSystem, Mode
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import real_number
 from solvers.equations.signature_checks import checked
-from solvers.integration.orbits.orbit import PeriodicOrbit
 from solvers.integration.orbits.orbit_newton import solve
 from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart
+from solvers.integration.orbits.periodic_orbit import PeriodicOrbit
 from solvers.integration.orbits.solution_curve import SolutionCurve
 from solvers.integration.orbits.symmetry import Nature, Reversal
 from solvers.runge_kutta.stepper import Array

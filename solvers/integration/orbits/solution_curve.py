@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from solvers.integration.orbits.orbit import PeriodicOrbit, reduced
 from solvers.integration.orbits.orbit_newton import bordered, solve
 from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart, Shot
+from solvers.integration.orbits.periodic_orbit import PeriodicOrbit, reduced
 from solvers.runge_kutta.stepper import Array
 
 #: Most iterations of Newton's method from a prediction, and the largest distance from it, relative
