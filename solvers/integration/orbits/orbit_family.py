@@ -10,13 +10,18 @@ from numpy.typing import ArrayLike
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import positive, real_numbers
 from solvers.equations.signature_checks import checked
+from solvers.integration.orbits.continuation import (
+    Limits,
+    Walk,
+    crossing_direction,
+    doubling_direction,
+    walk,
+)
 from solvers.integration.orbits.family import OrbitFamily, SpecialOrbit
 from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart, PeriodOf
 from solvers.integration.orbits.periodic_orbit import ENERGY, PeriodicOrbit
 from solvers.integration.orbits.solution_curve import UNIQUE, CurveNode, SolutionCurve
-from solvers.integration.orbits.special_points import crossing_direction, doubling_direction
 from solvers.integration.orbits.symmetry import Nature, Reversal, angles
-from solvers.integration.orbits.walk import Limits, Walk, walk
 from solvers.integration.problem import validation
 from solvers.io.argument_types import check_direction
 from solvers.io.suggestion import did_you_mean, shortened
