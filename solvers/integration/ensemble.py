@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import Values
 from solvers.equations.signature_checks import known_names
-from solvers.integration.many_motions import many_motions
+from solvers.integration.given_tolerances import many_motions
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, Options

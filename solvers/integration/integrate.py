@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import Values
 from solvers.equations.signature_checks import known_names
+from solvers.integration.given_tolerances import single_motion
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, EventFunction, Options
 from solvers.integration.results.solution import Solution
-from solvers.integration.single_motion import single_motion
 
 
 @known_names

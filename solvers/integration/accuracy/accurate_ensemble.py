@@ -20,7 +20,7 @@ from solvers.integration.accuracy.integration_run import (
     TooLongError,
 )
 from solvers.integration.checks.predictability import ignore_predictability
-from solvers.integration.many_motions import MotionBatch
+from solvers.integration.given_tolerances import MotionBatch
 from solvers.integration.problem.problem import Options
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.io.suggestion import counted, warn_caller

@@ -14,13 +14,13 @@ from solvers.integration.accuracy.integration_run import FINE, SMOOTH, Integrati
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest, usual_form
 from solvers.integration.accuracy.sufficient_run import sufficient_run
 from solvers.integration.checks.predictability import ignore_predictability
+from solvers.integration.given_tolerances import equations, single_motion
 from solvers.integration.loops.compiled_loop import compile_ahead
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import Controller, Held
 from solvers.integration.problem.problem import METHOD, Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.solution import Solution
-from solvers.integration.single_motion import equations, single_motion
 
 #: The choice whose steps show where a motion is fast.
 FINE_CHOICE = MethodChoice(*SMOOTH, "")

@@ -12,10 +12,10 @@ from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import ExtendedError, integrate_extended
+from solvers.integration.given_tolerances import single_motion
 from solvers.integration.prepare import no_compiler, prepare
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
-from solvers.integration.single_motion import single_motion
 from solvers.integration.timing import median_seconds
 from solvers.references.taylor import taylor
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, title
 from solvers.integration.checks.predictability import ignore_predictability
+from solvers.integration.given_tolerances import single_motion
 from solvers.integration.orbits.periodic_orbit import ENERGY, PeriodicOrbit
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
 from solvers.integration.results.solution import Solution
-from solvers.integration.single_motion import single_motion
 from solvers.io.figure_names import axis_label, symbol
 from solvers.io.suggestion import did_you_mean
 from solvers.player.playable import Playable

@@ -10,6 +10,7 @@ from solvers.equations.module import GeneratedModule, function, integrals
 from solvers.equations.number_checks import Values, positive, real_number
 from solvers.equations.signature_checks import checked
 from solvers.integration.checks.predictability import ignore_predictability
+from solvers.integration.given_tolerances import single_motion
 from solvers.integration.orbits.orbit_newton import NoPeriodicOrbitError, solve
 from solvers.integration.orbits.orbit_shooting import SMALL, TINY, OrbitConditions, OrbitStart, Shot
 from solvers.integration.orbits.symmetry import Nature, Reversal
@@ -17,7 +18,6 @@ from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
-from solvers.integration.single_motion import single_motion
 from solvers.io.suggestion import shortened
 from solvers.runge_kutta.stepper import Array
 

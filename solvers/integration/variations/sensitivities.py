@@ -16,8 +16,8 @@ from solvers.equations.starts.consistent_start import given_names
 from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.checks.singularity import SingularityWarning, singularity
+from solvers.integration.given_tolerances import many_motions
 from solvers.integration.loops.switching import started
-from solvers.integration.many_motions import many_motions
 from solvers.integration.prepare import NotFinishedError
 from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
