@@ -15,10 +15,10 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.ensemble import ensemble
-from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.method_catalogue import load
 from solvers.studies import heyoka
+from solvers.studies.work_precision.cost_curve import work_at
 
 #: Global errors at which programs are compared.
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)

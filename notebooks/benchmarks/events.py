@@ -18,9 +18,9 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
-from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
+from solvers.studies.work_precision.cost_curve import work_at
 
 #: Components of the state and their values, and all their crossings in the report's scene until
 #: `END`, by Taylor series of 28 digits.

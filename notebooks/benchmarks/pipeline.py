@@ -20,8 +20,8 @@ from scipy.integrate import solve_ivp
 from benchmarks.median_times import compile_loop
 from benchmarks.motions import END, FINAL, START
 from solvers.equations.module import GeneratedModule
+from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.prepare import prepare
-from solvers.integration.timing import median_seconds
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
 

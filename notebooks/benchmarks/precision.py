@@ -18,9 +18,9 @@ from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.starts.decimal_state import decimal_state
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended
-from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
+from solvers.studies.work_precision.cost_curve import work_at
 
 #: Final states by Taylor series of 70 decimal digits.
 FINAL = {

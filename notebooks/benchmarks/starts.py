@@ -15,9 +15,9 @@ from benchmarks.motions import Array, Curves, Runs, tolerances
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.integration.timing import work_at
 from solvers.io.text_table import text_table
 from solvers.studies import heyoka
+from solvers.studies.work_precision.cost_curve import work_at
 
 #: Systems, and the largest coordinates and velocities of their random starts.
 SYSTEMS = {

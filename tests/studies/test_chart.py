@@ -24,21 +24,20 @@ from solvers.app.cli import main
 from solvers.app.commands.chart import _measured
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form, fastest_form
-from solvers.integration.timing import TimedRun, timed_run, work_at
 from solvers.io.figures import save
 from solvers.runge_kutta.method_catalogue import SCIPY, load
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_reading import find
 from solvers.studies import heyoka
 from solvers.studies.work_precision import measured_curves, peers, work_precision_plots
-from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier
+from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier, work_at
 from solvers.studies.work_precision.curve_findings import (
     RoundingLimit,
     misleading_energy,
     rounding_limits,
     wrong_above,
 )
-from solvers.studies.work_precision.measured_curves import combinations, curves
+from solvers.studies.work_precision.measured_curves import TimedRun, combinations, curves, timed_run
 from solvers.studies.work_precision.reference import Reference
 from solvers.studies.work_precision.scene_curves import SceneCurves, record
 

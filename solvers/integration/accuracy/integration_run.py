@@ -1,5 +1,6 @@
 """One integration of a motion: method, form, and tolerance, step size or digits."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,7 +17,6 @@ from solvers.integration.given_tolerances import single_motion
 from solvers.integration.prepare import no_compiler, prepare
 from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
-from solvers.integration.timing import median_seconds
 from solvers.references.taylor import taylor
 
 #: Magnitude of a state in rad or m above which it is resolved relatively.
@@ -25,6 +25,8 @@ SMALL_STATE = 1e-3
 MAX_STEPS, MOST_INTERVALS = 3 * 10**6, 20_000
 #: Method, form and tolerance with the steps of a Taylor series.
 SMOOTH, FINE = ("verner98", "lagrangian"), 1e-12
+#: Seconds for which a short run is repeated to time it.
+SECONDS = 0.01
 #: Largest number of products of a Taylor series, which take up to half a minute.
 MAX_PRODUCTS = 1e8
 
@@ -145,3 +147,14 @@ class IntegrationRun:
         except (ValueError, NoCompilerError):  # SciPy's methods, or no compiler
             return median_seconds(lambda: self.states(np.array([end])))
         return median_seconds(lambda: run(motion.span, motion.y0))
+
+
+def median_seconds(run: Callable[[], object]) -> float:
+    """Median time of a call."""
+    times: list[float] = []
+    until = time.perf_counter() + SECONDS
+    while not times or time.perf_counter() < until:
+        before = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - before)
+    return float(np.median(times))

@@ -9,8 +9,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, depends_on_time, has_function
 from solvers.integration.accuracy.checked_motion import Array, Motion
-from solvers.integration.accuracy.integration_run import IntegrationRun
-from solvers.integration.timing import median_seconds
+from solvers.integration.accuracy.integration_run import IntegrationRun, median_seconds
 
 #: Relative rounding of a number, and roundings that a closed form is assumed to accumulate.
 EPS, ROUNDINGS = float(np.finfo(float).eps), 32

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.equations.starts.decimal_state import sine_and_cosine
-from solvers.integration.timing import timed_run
 from solvers.io.figures import COLOURS, panels
 from solvers.io.text_table import text_table
 from solvers.references.power_series import PowerSeries
 from solvers.references.taylor import taylor
 from solvers.studies.failure_modes.study import Load, Study
+from solvers.studies.work_precision.measured_curves import timed_run
 
 Array = NDArray[np.float64]
 

@@ -10,12 +10,13 @@ from matplotlib.figure import Figure
 
 from solvers.equations.linearisation.normal_modes import Modes
 from solvers.equations.module import GeneratedModule
+from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.prepare import NotFinishedError, Prepared, prepare
-from solvers.integration.timing import MOST_STEPS, median_seconds
 from solvers.io.figures import coloured, columns, legend_beside, panels
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.studies.failure_modes.study import Load, Study
+from solvers.studies.work_precision.measured_curves import MOST_STEPS
 
 #: Approximate ratios of the fast to the slow frequency.
 RATIOS = (3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)

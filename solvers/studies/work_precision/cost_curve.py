@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf, isfinite
 
-from solvers.integration.timing import work_at
+import numpy as np
+
 from solvers.io.figures import columns
 
 #: Names of a method, a form and a backend.
@@ -118,3 +120,26 @@ def _ratios(
     least = min(cheapest.values())
     ordered = sorted(cheapest.items(), key=lambda pair: pair[1])
     return {value: cost / least for value, cost in ordered if value != getattr(best, name)}
+
+
+def work_at(error: float, errors: Sequence[float], works: Sequence[float]) -> float:
+    """The work for an error, interpolated on logarithmic scales; NaN outside of the runs.
+
+    Runs are in the order of increasing work. Each counts with the largest error of it and of all
+    runs with more work: a smaller error at less work is a coincidence. Where rounding makes errors
+    grow again, the curve ends: with the pair of neighbours whose larger error is least.
+    """
+    if not errors:
+        return float("nan")
+    last = least_pair(errors) + 1
+    monotonic = np.maximum.accumulate(list(errors[:last])[::-1])
+    if not monotonic[0] <= error <= monotonic[-1]:
+        return float("nan")
+    logarithm = np.interp(np.log(error), np.log(monotonic), np.log(list(works[:last])[::-1]))
+    return float(np.exp(logarithm))
+
+
+def least_pair(errors: Sequence[float]) -> int:
+    """The later run of the pair of neighbours whose larger error is least."""
+    larger = [max(pair) for pair in pairwise(errors)]
+    return len(larger) - int(np.argmin(larger[::-1])) if larger else 0

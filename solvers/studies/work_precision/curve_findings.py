@@ -11,10 +11,9 @@ from solvers.equations.energy import ABOVE_REST, energy_error
 from solvers.equations.module import has_function
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
-from solvers.integration.timing import least_pair
 from solvers.runge_kutta.method_catalogue import load
 from solvers.scenes.scene import Scene
-from solvers.studies.work_precision.cost_curve import CostCurve, select
+from solvers.studies.work_precision.cost_curve import CostCurve, least_pair, select
 from solvers.studies.work_precision.measured_curves import REPORT_METHODS, unit_of_energy
 from solvers.studies.work_precision.reference import Reference
 

@@ -1,7 +1,9 @@
-"""Curves of combinations of method, form and backend on a scene."""
+"""Timed runs, and the curves of combinations of method, form and backend on a scene."""
 
-from collections.abc import Iterable, Iterator
+import time
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from itertools import product
 
@@ -12,8 +14,14 @@ from solvers.equations.energy import EnergyUnit, energy_unit
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.separability import coupling
+from solvers.integration.accuracy.integration_run import SECONDS, median_seconds
 from solvers.integration.compiled.compiler import NoCompilerError
-from solvers.integration.timing import timed_run
+from solvers.integration.loops import python_loop
+from solvers.integration.prepare import NotFinishedError, prepare
+from solvers.integration.problem import validation
+from solvers.integration.problem.problem import Options
+from solvers.integration.problem.status import Status
+from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.method_catalogue import SCIPY, load, names
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision.cost_curve import Combination, CostCurve, MeasuredRun
@@ -29,8 +37,83 @@ LONGEST, LONGEST_REPORT = {"compiled": 0.02, "python": 0.1, "scipy": 0.1}, 0.5
 TOLERANCES, STEPS = 10.0 ** -np.arange(1, 15), 10 * 2 ** np.arange(24)
 #: Runs with a larger error are left out.
 LARGEST_ERROR = 10.0
+#: Largest number of steps of a timed run.
+MOST_STEPS = 10**8
 #: The least relative tolerance that SciPy accepts.
 FINEST_OF_SCIPY = 3e-14
+
+
+@dataclass(frozen=True)
+class TimedRun:
+    """The cost and the end of a run."""
+
+    work_seconds: float  # without preparation; the median of several runs if it is short
+    work_rhs: int
+    steps: int
+    end: Array  # an ordinary state
+
+
+def timed_run(
+    module: GeneratedModule,
+    params: Sequence[float],
+    y0: Sequence[float],
+    duration: float,
+    *,
+    method: str,
+    form: str,
+    backend: str,
+    rtol: float = 0.0,
+    h: float | None = None,
+) -> TimedRun | None:
+    """Integrate and time a motion from time 0; None if it does not reach its end.
+
+    Parameters
+    ----------
+    module, params, y0, method, form, h
+        As in `integrate`.
+    duration : float
+        In s.
+    backend : {"compiled", "python", "scipy"}
+        The backend; the method decides between the last two.
+    rtol : float
+        Relative and absolute tolerance.
+
+    Returns
+    -------
+    TimedRun or None
+
+    Examples
+    --------
+    >>> import generated.single_pendulum as sp
+    >>> choice = dict(method="rk4", form="rational", backend="python", h=0.1)
+    >>> run = timed_run(sp, sp.DEFAULTS, (1.0, 0.0), 1.0, **choice)
+    >>> run.steps, run.work_rhs
+    (10, 40)
+    """
+    span = (0.0, duration)
+    if backend == "compiled":
+        build = partial(prepare, module, params, method=method, form=form, max_steps=MOST_STEPS)
+        run = build(rtol=rtol, atol=rtol, h=h)
+        try:
+            end = run(span, y0)
+        except NotFinishedError:
+            return None
+        return TimedRun(median_seconds(lambda: run(span, y0)), run.nfev, run.steps, np.array(end))
+    options = Options(method, form, rtol, rtol, h, t_eval=span[1:], max_steps=MOST_STEPS)
+    problem = validation.problem(module, span, y0, params, options)
+
+    def run_once() -> Outcome:
+        result = Outcome.at_start(problem)
+        python_loop.run(problem, result)
+        return result
+
+    start = time.perf_counter()
+    result = run_once()
+    first = time.perf_counter() - start
+    if result.status is not Status.FINISHED:
+        return None
+    seconds = first if first > SECONDS else median_seconds(run_once)
+    return TimedRun(seconds, result.nfev, result.steps, result.rows()[1][-1])
 
 
 def combinations(module: GeneratedModule) -> Iterator[Combination]:

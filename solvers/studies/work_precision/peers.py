@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import ELEMENTARY, with_functions
+from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.compiled.native import native_rhs
-from solvers.integration.timing import median_seconds
 from solvers.scenes.scene import Scene
 from solvers.studies.heyoka import generated, single
 from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun
