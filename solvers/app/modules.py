@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from solvers.equations.lazy_module import LazyModule
-from solvers.equations.module import GeneratedModule
+from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
 from solvers.equations.module_cache import (
     cached_module,
-    projection_functions,
-    required_functions,
     specialised_module,
 )
 from solvers.equations.signature_checks import checked
 from solvers.integration.accuracy.method_choice import MethodChoice
+from solvers.runge_kutta.method_catalogue import SCIPY
+from solvers.runge_kutta.method_catalogue import load as load_method
 
 if TYPE_CHECKING:
     from derive import System
@@ -205,3 +205,21 @@ def generator_text() -> str:
                 waiting += [file.with_suffix(".py") for file in files]
                 waiting += [file / "__init__.py" for file in files]
     return "".join(texts[path] for path in sorted(texts))
+
+
+def required_functions(method: str, form: str) -> tuple[str, ...]:
+    """Names of the functions that a method requires; implicit methods require a Jacobian."""
+    conversions = ("hamiltonian_state", "lagrangian_state") if form == "hamiltonian" else ()
+    needs_jacobian = method not in SCIPY and load_method(method).needs_jacobian
+    jacobian = (named("jacobian", form),) if needs_jacobian else ()
+    return (named("rhs", form), *conversions, *jacobian)
+
+
+def projection_functions(module: GeneratedModule, form: str) -> tuple[str, ...]:
+    """Names of the functions that find and keep states on the constraints."""
+    if not has_constraints(module):
+        return ()
+    of_form = (named(name, form) for name in ("correction", "integrals"))
+    of_state = ("constraints", "constraints_jacobian", "redundant_constraints", "integrals")
+    names = (*of_state, *of_form, "mass_matrix")
+    return tuple(name for name in dict.fromkeys(names) if has_function(module, name))

@@ -7,10 +7,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import cast
 
-from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
+from solvers.equations.module import GeneratedModule
 from solvers.io.build_cache import NoPlaceError, built_folder
 from solvers.io.suggestion import warn_caller
-from solvers.runge_kutta.method_catalogue import SCIPY, load
 
 
 def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -> GeneratedModule:
@@ -41,24 +40,6 @@ def cached_module(name: str, key: str, texts: Callable[[], Mapping[str, str]]) -
 
 #: Maps a system's name, values of its parameters and names of functions to texts by file name.
 Generator = Callable[[str, Mapping[str, float], Sequence[str]], Mapping[str, str]]
-
-
-def required_functions(method: str, form: str) -> tuple[str, ...]:
-    """Names of the functions that a method requires; implicit methods require a Jacobian."""
-    conversions = ("hamiltonian_state", "lagrangian_state") if form == "hamiltonian" else ()
-    needs_jacobian = method not in SCIPY and load(method).needs_jacobian
-    jacobian = (named("jacobian", form),) if needs_jacobian else ()
-    return (named("rhs", form), *conversions, *jacobian)
-
-
-def projection_functions(module: GeneratedModule, form: str) -> tuple[str, ...]:
-    """Names of the functions that find and keep states on the constraints."""
-    if not has_constraints(module):
-        return ()
-    of_form = (named(name, form) for name in ("correction", "integrals"))
-    of_state = ("constraints", "constraints_jacobian", "redundant_constraints", "integrals")
-    names = (*of_state, *of_form, "mass_matrix")
-    return tuple(name for name in dict.fromkeys(names) if has_function(module, name))
 
 
 def specialised_module(
