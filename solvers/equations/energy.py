@@ -1,4 +1,7 @@
-"""Energy errors, relative to the energy of a motion above that of the system at rest."""
+"""Energy: whether a system keeps it and whether it separates; units, errors and supplied energy.
+
+Errors are relative to the energy of a motion above that of the system at rest.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,8 +15,12 @@ from solvers.equations.module import (
     GeneratedModule,
     depends_on_time,
     function,
+    has_constraints,
     has_function,
+    part,
+    switching_functions,
 )
+from solvers.io.suggestion import listed
 
 Array = NDArray[np.float64]
 
@@ -151,3 +158,22 @@ def equilibrium_state(module: GeneratedModule, params: Sequence[Any]) -> NDArray
     name = "equilibrium_many" if any(map(np.ndim, params)) else "equilibrium"
     q = np.asarray(function(module, name)(params))
     return np.concatenate([q, np.zeros_like(q)])
+
+
+def coupling(module: GeneratedModule) -> str:
+    """The reason why accelerations do not depend on positions and time alone; empty if they do."""
+    if has_constraints(module):
+        return f"the system {module.SYSTEM} has constraints, whose forces depend on velocities"
+    if switching_functions(module):
+        return f"forces of the system {module.SYSTEM} have kinks or jumps, at which steps end"
+    positions = module.COORDINATES
+    names = part(module, "rhs").VARIABLES["accelerations"]
+    velocities = [name for name in names if name not in positions]
+    if not velocities:
+        return ""
+    of_masses: tuple[str, ...] = ()
+    if has_function(module, "mass_matrix"):
+        of_masses = part(module, "mass_matrix").VARIABLES["mass_matrix"]
+    if of_masses:
+        return f"the mass matrix of the system {module.SYSTEM} depends on {listed(of_masses)}"
+    return f"accelerations of the system {module.SYSTEM} depend on {listed(velocities)}"

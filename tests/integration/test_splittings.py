@@ -20,8 +20,8 @@ import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 from derive import Coordinate, Input, Parameter, PointMass, System
 from solvers import Event, Held, build, ensemble, integrate, prepare
+from solvers.equations.energy import coupling
 from solvers.equations.module import GeneratedModule
-from solvers.equations.separability import coupling
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.runge_kutta.method_catalogue import load, names
 

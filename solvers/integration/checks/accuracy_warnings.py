@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solvers.equations.energy import conserves_energy
-from solvers.equations.separability import coupling
+from solvers.equations.energy import conserves_energy, coupling
 from solvers.equations.singularities.mass_matrix import examined
 from solvers.integration.checks.energy_change import (
     LONG,

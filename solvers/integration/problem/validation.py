@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.energy import coupling
 from solvers.equations.forms import Form
 from solvers.equations.module import (
     GeneratedModule,
@@ -24,7 +25,6 @@ from solvers.equations.number_checks import (
     real_numbers,
     without_texts,
 )
-from solvers.equations.separability import coupling
 from solvers.equations.signature_checks import check_module
 from solvers.equations.starts.assembly import Assembly
 from solvers.equations.starts.consistent_start import consistent, given_names, guesses

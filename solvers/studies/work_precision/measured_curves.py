@@ -10,10 +10,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.energy import EnergyUnit, energy_unit
+from solvers.equations.energy import EnergyUnit, coupling, energy_unit
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.equations.separability import coupling
 from solvers.integration.accuracy.integration_run import SECONDS, median_seconds
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.loops import python_loop
