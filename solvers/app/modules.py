@@ -7,8 +7,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from solvers.equations.lazy_module import LazyModule
-from solvers.equations.module import GeneratedModule, has_constraints, has_function, named
+from solvers.equations.module import (
+    GeneratedModule,
+    LazyModule,
+    has_constraints,
+    has_function,
+    named,
+)
 from solvers.equations.module_cache import (
     cached_module,
     specialised_module,
