@@ -161,7 +161,12 @@ def equilibrium_state(module: GeneratedModule, params: Sequence[Any]) -> NDArray
 
 
 def coupling(module: GeneratedModule) -> str:
-    """The reason why accelerations do not depend on positions and time alone; empty if they do."""
+    """The reason why accelerations do not depend on positions and time alone; empty if they do.
+
+    Where kinetic energy depends on velocities alone, and potential energy on positions, kicks of
+    velocities and drifts of positions, in turn, are motions of parts of the system. Generated
+    modules state the variables of their functions.
+    """
     if has_constraints(module):
         return f"the system {module.SYSTEM} has constraints, whose forces depend on velocities"
     if switching_functions(module):

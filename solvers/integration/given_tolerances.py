@@ -14,7 +14,7 @@ from solvers.equations.module import GeneratedModule, has_perturbation
 from solvers.equations.module import inputs as input_names
 from solvers.equations.number_checks import NotFiniteNumberError, Values
 from solvers.equations.signature_checks import check_module
-from solvers.equations.singularities.mass_matrix import check_condition, checked_before, examined
+from solvers.equations.singularities import check_condition, checked_before, examined
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings, ensemble_warnings
 from solvers.integration.checks.global_error import global_error_estimate
 from solvers.integration.checks.predictability import (

@@ -129,9 +129,9 @@ def integrate(
     solvers.integration.checks.energy_change.DriftWarning
         When that energy drifts over 1000 fixed steps and more of an explicit method, by a
         thousandth and more; it names a symplectic method.
-    solvers.equations.singularities.mass_matrix.MassMatrixWarning
+    solvers.equations.singularities.MassMatrixWarning
         When the mass matrix is nearly singular at the start, or where all coordinates are equal.
-    solvers.equations.singularities.singular_configuration.SingularConfigurationWarning
+    solvers.equations.singularities.SingularConfigurationWarning
         When constraints nearly depend on each other at the start.
     UserWarning
         When no compiler could build the loop, and it runs in Python.

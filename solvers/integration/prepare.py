@@ -18,7 +18,7 @@ from solvers.equations.module import (
 from solvers.equations.module import inputs as input_names
 from solvers.equations.number_checks import REAL, Values
 from solvers.equations.signature_checks import known_names
-from solvers.equations.singularities.mass_matrix import check_condition
+from solvers.equations.singularities import check_condition
 from solvers.equations.starts.assembly import Assembly
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
 from solvers.integration.checks.singularity import singularity

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.number_checks import positive
 from solvers.equations.signature_checks import check_module, known_names
-from solvers.equations.singularities.mass_matrix import check_condition
+from solvers.equations.singularities import check_condition
 from solvers.equations.starts.consistent_start import consistent_start, given_names
 from solvers.equations.starts.default_start import default_coordinates, default_words
 from solvers.integration.problem import validation
@@ -81,7 +81,7 @@ class Scene:
 
     Warns
     -----
-    solvers.equations.singularities.mass_matrix.MassMatrixWarning
+    solvers.equations.singularities.MassMatrixWarning
         When the mass matrix is nearly singular.
 
     Examples

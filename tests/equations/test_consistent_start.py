@@ -12,9 +12,8 @@ from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
-from solvers.equations.singularities.singular_configuration import SingularConfigurationWarning
-from solvers.equations.starts.assembly import EXACT, Assembly
-from solvers.equations.starts.tangent_start import tangent_start
+from solvers.equations.singularities import SingularConfigurationWarning
+from solvers.equations.starts.assembly import EXACT, Assembly, tangent_start
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.initial_states import initial_states

@@ -10,7 +10,7 @@ import pytest
 from handwritten import handwritten
 
 import generated.double_pendulum as dp
-from solvers.equations.singularities.mass_matrix import MassMatrixWarning, check_condition
+from solvers.equations.singularities import MassMatrixWarning, check_condition
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate

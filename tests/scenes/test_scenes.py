@@ -13,7 +13,7 @@ from counting import counted_calls
 import generated.double_pendulum as dp
 from solvers.app.modules import load as load_module
 from solvers.app.scenes import load_sweep
-from solvers.equations.singularities.mass_matrix import MassMatrixWarning
+from solvers.equations.singularities import MassMatrixWarning
 from solvers.io.quantity import QuantityError, quantity
 from solvers.io.toml_input import InputError
 from solvers.scenes.scene import Scene

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import Values, positive
-from solvers.equations.singularities.mass_matrix import checked_before
+from solvers.equations.singularities import checked_before
 from solvers.integration.accuracy.accurate_motion import accurate_motion, check_options
 from solvers.integration.accuracy.checked_motion import Array
 from solvers.integration.accuracy.checked_run import CHECKS, FINEST, MARGIN, RESERVE, TIGHTER, TRIES

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from solvers.equations.singularities.mass_matrix import checked_before
+from solvers.equations.singularities import checked_before
 from solvers.integration.accuracy.checked_motion import Array, Motion
 from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.integration.checks.predictability import ignore_predictability

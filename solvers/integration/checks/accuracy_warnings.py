@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.energy import conserves_energy, coupling
-from solvers.equations.singularities.mass_matrix import examined
+from solvers.equations.singularities import examined
 from solvers.integration.checks.energy_change import (
     LONG,
     VISIBLE,

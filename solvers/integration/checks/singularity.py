@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solvers.equations.module import GeneratedModule, has_function
-from solvers.equations.singularities.mass_matrix import inertia
+from solvers.equations.singularities import inertia
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble

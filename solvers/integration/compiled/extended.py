@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, has_constraints, has_header, integrals
-from solvers.equations.singularities.singular_configuration import NEAR, distance_from_singularity
+from solvers.equations.singularities import NEAR, distance_from_singularity
 from solvers.equations.starts.decimal_state import decimal_state
 from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.double_double import DoubleDouble

@@ -18,7 +18,7 @@ from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
 from solvers.equations.module import integrals
 from solvers.equations.number_checks import NotFiniteNumberError
-from solvers.equations.singularities.singular_configuration import NEAR, distance_from_singularity
+from solvers.equations.singularities import NEAR, distance_from_singularity
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.loops import compiled_loop, passage, python_loop

@@ -26,10 +26,9 @@ from solvers.equations.number_checks import (
     without_texts,
 )
 from solvers.equations.signature_checks import check_module
-from solvers.equations.starts.assembly import Assembly
+from solvers.equations.starts.assembly import Assembly, tangent_start
 from solvers.equations.starts.consistent_start import consistent, given_names, guesses
 from solvers.equations.starts.default_start import default_coordinates
-from solvers.equations.starts.tangent_start import tangent_start
 from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
 from solvers.integration.problem.memory import check_times

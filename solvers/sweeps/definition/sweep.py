@@ -15,7 +15,7 @@ from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, header
 from solvers.equations.module_cache import cached_module
 from solvers.equations.signature_checks import check_module
-from solvers.equations.singularities.mass_matrix import check_condition
+from solvers.equations.singularities import check_condition
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options
 from solvers.io.argument_types import check_type

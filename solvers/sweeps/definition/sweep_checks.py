@@ -8,8 +8,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.number_checks import positive, quantity, real_number
-from solvers.equations.singularities.mass_matrix import examined
-from solvers.equations.singularities.singular_configuration import Motion
+from solvers.equations.singularities import Motion, examined
 from solvers.io.argument_types import check_type
 from solvers.io.suggestion import did_you_mean
 from solvers.sweeps.definition.axes import Axes

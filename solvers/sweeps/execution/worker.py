@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.singularities.mass_matrix import checked_before
+from solvers.equations.singularities import checked_before
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.problem.status import Status, StopFlag

@@ -1,4 +1,4 @@
-"""The condition of the mass matrix: where it is large, accelerations lose their digits."""
+"""Singularities: of the mass matrix, and of constraints, as at toggle points of linkages."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -14,11 +14,91 @@ from solvers.equations.module import (
     has_function,
     position_constraints,
 )
-from solvers.equations.singularities.singular_configuration import Motion, check_constraints
+from solvers.equations.starts.assembly import Assembly
 from solvers.io.suggestion import warn_caller
 
-#: Conditions of the mass matrix: above the first digits are lost, above the second all of them.
+Array = NDArray[np.float64]
+#: A motion in a report, its parameters, and its initial state; None examines no initial state.
+Motion = tuple[str, Sequence[float], Sequence[float] | None]
+#: Conditions of G M⁻¹ Gᵀ and of the mass matrix: above the first digits are lost, above the second
+#: all of them.
 DOUBTFUL, SINGULAR = 1e12, 1e15
+#: A smallest singular value of constraints, usually of the size 1, that is near a singularity.
+NEAR = 0.02
+#: States that give the sizes of the rows of G.
+STATES = 16
+
+
+class SingularConfigurationWarning(UserWarning):
+    """Constraints nearly depend on each other: digits are lost."""
+
+
+def check_constraints(module: GeneratedModule, motions: Iterable[Motion], t: float) -> None:
+    """Refuse motions that start where constraints depend on each other, or warn near it."""
+    for name, params, y0 in motions:
+        if y0 is None:
+            continue
+        condition, weakest = condition_of_constraints(module, params, y0, t)
+        text = (
+            f"{name}the constraints of {module.SYSTEM} have condition {condition:.0e} (of G M⁻¹ "
+            f"Gᵀ) at the start: {weakest} nearly depends on the others, as at a toggle point"
+        )
+        if condition >= SINGULAR:
+            raise ValueError(
+                f"{text}, from which there is no unique motion; start elsewhere, or change lengths"
+            )
+        if condition >= DOUBTFUL:
+            lost = f"about {np.log10(condition):.0f} digits are lost"
+            warn_caller(f"{text}; {lost}", SingularConfigurationWarning)
+
+
+def condition_of_constraints(
+    module: GeneratedModule, params: Sequence[float], y0: Sequence[float], t: float
+) -> tuple[float, str]:
+    """The condition with rows of G of the size 1 at generic states, and the weakest constraint."""
+    y = np.array([y0[: len(module.STATE)]])
+    assembly = Assembly(module, np.array([params]), t)
+    rng, scales = np.random.default_rng(0), assembly.scales
+    others = np.repeat(y, STATES, axis=0)
+    others[:, : assembly.n] += _spread(assembly, y[0]) * rng.uniform(-1, 1, (STATES, assembly.n))
+    G, typical = assembly.jacobian(y)[0], assembly.jacobian(others)
+    M = np.array(module.mass_matrix(t, y[0].tolist(), params)) * np.outer(scales, scales)
+    if not (np.isfinite(G).all() and np.isfinite(M).all()):
+        return 0.0, ""
+    M /= np.abs(M).max() or 1.0
+    values = np.linalg.eigvalsh(M)
+    if values[0] < values[-1] / DOUBTFUL:  # as of a unit quaternion, or without inertia
+        M = M + G.T @ G
+    root = np.linalg.cholesky(M + np.finfo(float).eps * np.eye(len(M)))
+    sizes = np.linalg.norm(np.linalg.solve(root, typical.transpose(0, 2, 1)), axis=1)
+    sizes = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
+    rows = np.linalg.solve(root, G.T).T / np.where(sizes > 0, sizes, 1.0)[:, np.newaxis]
+    left, singular, _ = np.linalg.svd(rows)
+    least = singular[-1] if len(singular) == len(rows) else 0.0
+    largest = max(singular[0], 1.0)  # of a single constraint the least is the largest one here
+    condition = float((largest / least) ** 2) if least > 0 else float("inf")
+    return condition, assembly.names[int(np.argmax(np.abs(left[:, -1])))]
+
+
+def distance_from_singularity(
+    module: GeneratedModule, params: Sequence[float], y: Sequence[float], t: float
+) -> float:
+    """The smallest singular value of constraints of the size 1: in proportion to the distance."""
+    condition, _ = condition_of_constraints(module, params, y, t)
+    return condition**-0.5 if condition else float("inf")
+
+
+def _spread(assembly: Assembly, y: Array) -> Array:
+    """How far generic states are from a state: an angle, or as far as the largest coordinate.
+
+    A parameter may be longer than all parts, so that gradients of squares are larger there.
+    """
+    units = [assembly.module.UNITS[name] for name in assembly.module.COORDINATES]
+    largest: dict[str, float] = {}
+    for unit, value in zip(units, np.abs(y).tolist(), strict=False):
+        largest[unit] = max(largest.get(unit, 0.0), value)
+    of = [1.0 if unit == "rad" else largest[unit] or np.inf for unit in units]
+    return np.minimum(assembly.scales, of)
 
 
 class MassMatrixWarning(UserWarning):

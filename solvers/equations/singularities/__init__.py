@@ -1,1 +1,0 @@
-"""Singular mass matrices, configurations and coordinates."""
