@@ -134,6 +134,18 @@ def repeated_names() -> dict[str, list[str]]:
     return {name: files for name, files in paths.items() if files[1:]}
 
 
+def repeated_definitions(tree: ast.Module) -> list[str]:
+    """Names that a file defines twice at its top level: the last value is that of all uses."""
+    names = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    for node in tree.body:
+        if isinstance(node, ast.Assign | ast.AnnAssign):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            parts = (part for target in targets for part in ast.walk(target))
+            stored = (one for one in parts if isinstance(one, ast.Name))
+            names += [one.id for one in stored if isinstance(one.ctx, ast.Store)]
+    return sorted({name for name in names if names.count(name) > 1})
+
+
 def main() -> None:
     """Print a table, and the names that are repeated."""
     rows = [row for package in PACKAGES for row in folders(package)]

@@ -97,6 +97,14 @@ def test_no_name_of_a_class_or_file_stands_in_two_places() -> None:
     assert structure.repeated_names() == {}
 
 
+def test_no_file_defines_a_name_twice() -> None:
+    """Else constants of functions that were moved together have each other's values."""
+    paths = [path for package in ("derive", "solvers") for path in (ROOT / package).rglob("*.py")]
+    trees = {path: ast.parse(path.read_text()) for path in paths}
+    assert [path for path, tree in trees.items() if structure.repeated_definitions(tree)] == []
+    assert structure.repeated_definitions(ast.parse("A, B = 1, 2\nB, C = 3, 4")) == ["B"]
+
+
 def test_rooms_for_documents_have_few_arrows() -> None:
     row = Folder.of(ROOT / "derive" / "verification" / "documents")
     assert (row.floors, row.files) == (7, 7)

@@ -144,7 +144,7 @@ def _growth(times: Array, errors: Array, tolerance: float) -> float:
 #: Digits of Taylor series: fewest, increment, most.
 DIGITS, MORE_DIGITS, MOST_DIGITS = 24, 12, 96
 #: Largest angle in rad and number of turns for Taylor series.
-LARGEST_ANGLE, MOST_TURNS = 1e6, 3000.0
+LARGEST_ANGLE, MOST_SERIES_TURNS = 1e6, 3000.0
 
 
 def by_series(
@@ -159,7 +159,7 @@ def by_series(
     `NotAccurateError` where even the most digits are not sufficient, `SeriesError` where they take
     more than `MAX_PRODUCTS`. `report` receives the progress.
     """
-    check_length(motion, MOST_TURNS)
+    check_length(motion, MOST_SERIES_TURNS)
     if max(map(abs, motion.y0)) > LARGEST_ANGLE:
         raise TooLongError(f"angles above {LARGEST_ANGLE:g} rad: reduce them by whole turns")
     coarse, error = None, np.inf

@@ -132,7 +132,7 @@ NODES = (chebpts1(DEGREE + 1) + 1) / 2
 SLACK, MARGIN = 1.5, 0.5
 #: Relative rounding errors of values, and the distance from the real axis, in halves of a step, of
 #: a root that counts as real.
-ROUNDING, CLOSE = 1e-13, 1e-6
+ROUNDING, REAL = 1e-13, 1e-6
 #: An extremum is sought where its value is below this multiple of the polynomial's error there.
 UNCERTAIN = 10
 
@@ -194,7 +194,7 @@ def separate_crossings(before: float, values: Array, after: float) -> Shape:
         return Shape(c, [])
     margin = MARGIN * float(np.abs(values - before - NODES * (after - before)).max())
     roots = chebroots(chebder(c))
-    real = np.sort(roots[(np.abs(roots.imag) < CLOSE) & (np.abs(roots.real) < 1)].real)
+    real = np.sort(roots[(np.abs(roots.imag) < REAL) & (np.abs(roots.real) < 1)].real)
     parts = [*((real + 1) / 2).tolist(), 1.0]
     kept, last = [], before
     for part, end in pairwise(parts):
