@@ -12,7 +12,7 @@ from solvers.equations.energy import supplied_energy
 from solvers.equations.module import GeneratedModule, has_function
 from solvers.integration.accuracy.checked_motion import Array, Motion
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest
-from solvers.io.units import with_unit
+from solvers.io.quantity import with_unit
 from solvers.player.playable import Playable
 from solvers.player.sampled_motion import SampledMotion
 from solvers.scenes.scene import ENERGY, Scene

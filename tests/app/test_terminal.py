@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from solvers.io import progress
-from solvers.io.progress import Progress
+from solvers.io import terminal
+from solvers.io.terminal import Progress
 
 SCRIPTS = Path(sys.executable).parent
 #: Python does not write at once, but at the end, unless the tests' environment changes it.
@@ -132,13 +132,13 @@ def test_a_name_that_is_no_text_is_quoted_in_a_message(tmp_path: Path) -> None:
 def test_progress_fits_the_terminal(
     columns: int, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(progress, "FIRST", 0.001)
-    monkeypatch.setattr(progress, "NEXT", 0.001)
-    monkeypatch.setattr(progress, "COLUMNS", 79)
+    monkeypatch.setattr(terminal, "FIRST", 0.001)
+    monkeypatch.setattr(terminal, "NEXT", 0.001)
+    monkeypatch.setattr(terminal, "COLUMNS", 79)
     master, slave = pty.openpty()
     ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-    with open(slave, "w", encoding="utf-8") as terminal:
-        monkeypatch.setattr(sys, "stderr", terminal)
+    with open(slave, "w", encoding="utf-8") as screen:
+        monkeypatch.setattr(sys, "stderr", screen)
         with Progress() as report:
             report("a description that is longer than the terminal is wide " * 4)
             time.sleep(0.05)

@@ -18,8 +18,7 @@ from solvers import load as load_module
 from solvers.app.cli import main
 from solvers.equations.module import has_constraints, inputs
 from solvers.io.figure_names import axis_label
-from solvers.io.quantity import QuantityError, quantity
-from solvers.io.units import UNITS, dimension, with_unit
+from solvers.io.quantity import UNITS, QuantityError, dimension, quantity, with_unit
 from solvers.scenes.scene_summary import summary
 from solvers.sweeps.definition import map_kinds
 

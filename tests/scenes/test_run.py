@@ -380,7 +380,7 @@ def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None
         sys.executable,
         "-c",
         (
-            "import time\nfrom solvers.io.progress import Progress\n"
+            "import time\nfrom solvers.io.terminal import Progress\n"
             "with Progress() as report:\n    report('working')\n    time.sleep(1.6)\nprint('done')"
         ),
     ]

@@ -59,7 +59,7 @@ def run(arguments: Namespace) -> int:
 
 
 def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
     from solvers.studies.work_precision import peers
     from solvers.studies.work_precision.measured_curves import combinations, curves
     from solvers.studies.work_precision.reference import Reference

@@ -28,7 +28,7 @@ def run(arguments: Namespace) -> int:
     from solvers.app.demo.demo_page import LIVE_PAGE, write_page
     from solvers.app.demo.stages import stages, versions
     from solvers.app.live_page import LivePage
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
 
     arguments.output.mkdir(parents=True, exist_ok=True)  # before the work, not after it
     print("Double pendulum: from the positions of two bobs to their motion.\n")

@@ -58,7 +58,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Fit, print a summary and write files."""
     from solvers.app.fitting import fit, named_model, read_measurement
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
     from solvers.scenes.fitting import fit_summary, prediction
     from solvers.scenes.scene import Scene
 

@@ -41,7 +41,7 @@ def run(arguments: Namespace) -> int:
     from derive.formulas.typeset.typesetting import Formula
     from solvers.app.modules import specialiser
     from solvers.equations.module import equations_of_motion
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
     from solvers.scenes.output import write_files
     from solvers.scenes.scene_run import run_scene
     from solvers.scenes.scene_summary import figures, summary, together

@@ -31,7 +31,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Compute, plot and print."""
     from solvers.app.modules import load
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
     from solvers.studies.stability.scene_stability import SceneStability
 
     results: dict[str, Any] = {"methods": [], "failures": {}, "pictures": []}

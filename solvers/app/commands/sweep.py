@@ -44,7 +44,7 @@ def run(arguments: Namespace) -> int:
     """Run or resume a sweep, plot its maps and print statistics; return 3 if none completed."""
     from solvers.app.modules import load
     from solvers.io.figures import save
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
     from solvers.sweeps.definition.sweep_reading import find
     from solvers.sweeps.execution.convergence import convergence
     from solvers.sweeps.execution.sweep_run import partial_results, sweep

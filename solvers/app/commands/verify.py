@@ -55,7 +55,7 @@ def run(arguments: Namespace) -> int:
             hints=hints(arguments.system, arguments.names),
         )
     from solvers.app.verdict.report import report_verdicts, tables
-    from solvers.io.progress import Progress
+    from solvers.io.terminal import Progress
 
     with Progress() as report:
         report("verifying the report")

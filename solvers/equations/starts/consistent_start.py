@@ -18,8 +18,8 @@ from solvers.equations.starts.assembly import (
     Assembly,
     Flags,
 )
+from solvers.io.quantity import with_unit
 from solvers.io.suggestion import counted
-from solvers.io.units import with_unit
 
 #: Guesses of other configurations, and the distance at which two are the same.
 OTHERS, CLOSE = 48, 1e-6

@@ -12,8 +12,8 @@ from solvers.equations.module import GeneratedModule, has_function, title
 from solvers.integration.problem.status import Status
 from solvers.io.exports import data_frame, dataset
 from solvers.io.figure_names import plain_symbol
+from solvers.io.quantity import with_unit
 from solvers.io.suggestion import counted
-from solvers.io.units import with_unit
 from solvers.player.playable import Playable
 from solvers.player.sampled_motion import SampledMotion, sample_times
 from solvers.runge_kutta.stepper import Array

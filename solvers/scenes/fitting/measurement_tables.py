@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.io.quantity import UnitError, dimension
 from solvers.io.suggestion import did_you_mean, shortened
 from solvers.io.toml_input import InputError, read_bytes
-from solvers.io.units import UnitError, dimension
 from solvers.scenes.fitting.measurement import Measurement
 
 #: Bytes of the largest table.

@@ -8,8 +8,7 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import real_number
-from solvers.io.quantity import WORD, formula
-from solvers.io.units import UnitError, dimension
+from solvers.io.quantity import WORD, UnitError, dimension, formula
 from solvers.sweeps.definition.axes import Array
 
 #: Factors of m, kg, s and rad in the comparison of dimensions; an angle has none.

@@ -5,7 +5,7 @@ from contextlib import closing
 from pathlib import Path
 
 from solvers.equations.signature_checks import checked
-from solvers.io.progress import ProgressRate
+from solvers.io.terminal import ProgressRate
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.folder import Folder
 from solvers.sweeps.execution.pool import Pool

@@ -9,7 +9,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.equations.signature_checks import checked
 from solvers.integration.problem.events import Event
 from solvers.io.figure_names import symbol
-from solvers.io.units import with_unit
+from solvers.io.quantity import with_unit
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.maps import CountedMap, Motions

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from solvers.io.figure_names import axis_label, symbol
 from solvers.io.figures import COLOURS
-from solvers.io.units import with_unit
+from solvers.io.quantity import with_unit
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.plots.plot_quantity import Quantity, label_axis, letter
 from solvers.sweeps.results import Results

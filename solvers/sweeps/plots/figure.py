@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from solvers.io import figures
 from solvers.io.figure_names import symbol
-from solvers.io.units import with_unit
+from solvers.io.quantity import with_unit
 from solvers.sweeps.definition.sweep_checks import ENERGY
 from solvers.sweeps.plots.diagrams import bifurcation, response
 from solvers.sweeps.plots.panels import CURVES, curves, image, line, section

@@ -11,7 +11,7 @@ from matplotlib.colors import ListedColormap, to_rgba
 from solvers.equations.module import has_function
 from solvers.io.figure_names import axis_label, symbol
 from solvers.io.figures import COLOURS
-from solvers.io.units import with_unit
+from solvers.io.quantity import with_unit
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.definition.axes import Array, Grid
 from solvers.sweeps.execution.initial_states import initial_states
