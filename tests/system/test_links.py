@@ -35,8 +35,7 @@ from derive.system.parts import SystemDefinitionError
 from solvers import Scene, build, run_scene
 from solvers.equations.module import links
 from solvers.player.geometry import tracks
-from solvers.player.motion_plots import figure
-from solvers.player.shapes import outline
+from solvers.player.motion_plots import figure, outline
 from solvers.scenes.scene_summary import together
 
 x, theta, s = symbols("x theta s", real=True)
