@@ -24,8 +24,7 @@ from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.references.elliptic import jacobi, pendulum, swing
 from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated
-from solvers.references.power_series import PowerSeries
-from solvers.references.series_functions import series_functions
+from solvers.references.power_series import PowerSeries, series_functions
 from solvers.references.taylor import taylor
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
