@@ -11,7 +11,7 @@ from benchmarks.textbook_squeezer import textbook
 from scipy.integrate import quad
 
 from holonomic import integrate, load
-from solvers.references.rigid_bodies import top_inclination
+from solvers.references.elliptic import top_inclination
 
 #: Angles of the squeezer at 0.03 s: F. Mazzia, C. Magherini, Test Set for Initial Value Problem
 #: Solvers, II.10.

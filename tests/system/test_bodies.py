@@ -35,7 +35,7 @@ from holonomic import Status, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.singularity import SingularityWarning, singular_coordinates
-from solvers.references.rigid_bodies import free_body, top_inclination
+from solvers.references.elliptic import free_body, top_inclination
 
 w, x, y, z, a, b, c, g = sp.symbols("w x y z a b c g", real=True)
 phi, theta, psi = sp.symbols("phi theta psi", real=True)
