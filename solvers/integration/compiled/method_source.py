@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from solvers.integration.compiled.memory_layout import source
-from solvers.runge_kutta.blocks import Blocks
 from solvers.runge_kutta.collocation import lagrange, lagrange_factors
 from solvers.runge_kutta.continuous_extension import ContinuousExtension, elevated
+from solvers.runge_kutta.newton_stages import Blocks
 from solvers.runge_kutta.order_conditions import Number
 from solvers.runge_kutta.parallel_stages import (
     error_power,
