@@ -19,7 +19,7 @@ from solvers.integration.problem.validation import problem
 from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start
-from solvers.runge_kutta.order_choice import FAST, SLOW, OrderChoice
+from solvers.runge_kutta.step_control import FAST, SLOW, OrderChoice
 from solvers.scenes.scene_reading import find
 from solvers.studies.stability import scene_stability
 

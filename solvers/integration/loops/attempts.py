@@ -9,9 +9,8 @@ import numpy as np
 from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.runge_kutta.continuous_extension import bernstein_values
 from solvers.runge_kutta.newton_stages import NewtonStages
-from solvers.runge_kutta.order_choice import OrderChoice
 from solvers.runge_kutta.parallel_stages import Polynomial
-from solvers.runge_kutta.step_control import Controller
+from solvers.runge_kutta.step_control import Controller, OrderChoice
 from solvers.runge_kutta.stepper import (
     Array,
     NoConvergenceError,

@@ -19,8 +19,7 @@ from solvers.integration.loops.switching import first_part, is_coarse, next_part
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.recorder import Outcome, Recorder
-from solvers.runge_kutta.order_choice import OrderChoice
-from solvers.runge_kutta.step_control import Controller
+from solvers.runge_kutta.step_control import Controller, OrderChoice
 from solvers.runge_kutta.stepper import NotFiniteError, Stepper
 from solvers.runge_kutta.tableau import Tableau
 
