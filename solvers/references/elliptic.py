@@ -1,4 +1,8 @@
-"""Closed forms by Jacobi's elliptic functions: the pendulum, free bodies, Lagrange's top."""
+"""Closed forms by Jacobi's elliptic functions: the pendulum, free bodies, Lagrange's top.
+
+Sources: L. D. Landau, E. M. Lifshitz, Mechanics, § 37 (free body) and § 35 (top); E. T. Whittaker,
+Analytical Dynamics, § 69 and § 71; functions as in NIST's DLMF, chapter 22.
+"""
 
 import numpy as np
 import scipy

@@ -19,9 +19,8 @@ from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalue
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.method_catalogue import load, names
-from solvers.runge_kutta.stability_function import StabilityFunction
+from solvers.runge_kutta.stability_function import StabilityFunction, nonnegative_interval
 from solvers.runge_kutta.stepper import Stepper
-from solvers.runge_kutta.sturm import nonnegative_interval
 from solvers.studies.failure_modes import study
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability import critical_step as critical_step_module
