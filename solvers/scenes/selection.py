@@ -9,8 +9,7 @@ from solvers.integration.accuracy.checked_motion import Motion, OutsideDomainErr
 from solvers.integration.accuracy.method_choice import MethodChoice, cheapest, usual_form
 from solvers.integration.accuracy.sufficient_run import sufficient_run
 from solvers.scenes.models.full_equations import FullEquations
-from solvers.scenes.models.model import ClosedForm, Model
-from solvers.scenes.models.model_catalogue import closed_forms
+from solvers.scenes.models.model_catalogue import ClosedForm, Model, closed_forms
 from solvers.scenes.scene import Scene
 
 #: An error estimate above this is not reported as a number.

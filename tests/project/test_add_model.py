@@ -26,7 +26,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from solvers.scenes.models.model import ClosedForm
+from solvers.scenes.models.model_catalogue import ClosedForm
 from solvers.integration.accuracy.checked_motion import OutsideDomainError
 
 

@@ -12,7 +12,7 @@ from solvers.integration.accuracy.checked_motion import (
     OutsideDomainError,
     golden_points,
 )
-from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
+from solvers.scenes.models.model_catalogue import EPS, ROUNDINGS, ClosedForm
 
 #: Safety factor for times between the samples.
 MARGIN = 1.5

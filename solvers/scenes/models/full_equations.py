@@ -6,7 +6,7 @@ from typing import ClassVar, Self
 from solvers.integration.accuracy.checked_motion import Array
 from solvers.integration.accuracy.checked_run import CheckedRun
 from solvers.integration.accuracy.integration_run import IntegrationRun
-from solvers.scenes.models.model import Model
+from solvers.scenes.models.model_catalogue import Model
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from solvers.integration.accuracy.checked_motion import (
     OutsideDomainError,
     golden_points,
 )
-from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
+from solvers.scenes.models.model_catalogue import EPS, ROUNDINGS, ClosedForm
 
 #: Fewest times at which the defect is evaluated, their number in a period of the fastest mode, and
 #: the most with which errors are propagated.

@@ -8,7 +8,7 @@ import numpy as np
 from solvers.integration.accuracy.checked_motion import Array, Motion, OutsideDomainError
 from solvers.references.elliptic import pendulum as exact
 from solvers.references.elliptic import swing
-from solvers.scenes.models.model import EPS, ROUNDINGS, ClosedForm
+from solvers.scenes.models.model_catalogue import EPS, ROUNDINGS, ClosedForm
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
 #: Largest relative difference of equal numbers, and number of angles that are compared.

@@ -15,7 +15,7 @@ import scipy
 from numpy.typing import NDArray
 
 from solvers.integration.accuracy.checked_motion import Array, Motion, OutsideDomainError
-from solvers.scenes.models.model import EPS, ClosedForm, rounding_error
+from solvers.scenes.models.model_catalogue import EPS, ClosedForm, rounding_error
 from solvers.scenes.models.one_degree_of_freedom import ReducedMotion
 
 #: Numbers of points of a period to try, and of points that are searched for turning points.
