@@ -15,8 +15,7 @@ from solvers.equations.starts.default_start import default_coordinates
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError
-from solvers.scenes.scene import Scene
-from solvers.scenes.scene_checks import MOST_SAMPLES
+from solvers.scenes.scene import MOST_SAMPLES, Scene
 
 FILES = Path(__file__).parent / "files"
 #: Most pictures, outputs and runs.
