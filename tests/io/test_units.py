@@ -19,7 +19,7 @@ from solvers.app.cli import main
 from solvers.equations.module import has_constraints, inputs
 from solvers.io.figure_names import axis_label
 from solvers.io.quantity import UNITS, QuantityError, dimension, quantity, with_unit
-from solvers.scenes.scene_summary import summary
+from solvers.scenes.scene_output import summary
 from solvers.sweeps.definition import map_kinds
 
 NUMBERS = (100, 0.1, -1.5e-05, 2e20)

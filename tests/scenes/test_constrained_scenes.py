@@ -11,9 +11,9 @@ from solvers.app.modules import load
 from solvers.integration.integrate import integrate
 from solvers.io.toml_input import InputError
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_output import figures, summary
 from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import run_scene
-from solvers.scenes.scene_summary import figures, summary
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.definition.sweep_checks import FROM_ENERGY

@@ -17,8 +17,8 @@ from solvers.integration.accuracy.integration_run import IntegrationRun, NotAccu
 from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_output import summary
 from solvers.scenes.scene_reading import find
-from solvers.scenes.scene_summary import summary
 from solvers.scenes.selection import ModelSelection, motion_of, select_model
 
 #: The report's scene over 20 s, in which errors grow by seven orders of magnitude.

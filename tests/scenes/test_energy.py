@@ -16,10 +16,9 @@ from solvers.integration.accuracy.method_choice import SERIES, MethodChoice
 from solvers.player.geometry import energy_errors, tracks
 from solvers.player.motion_plots import figure
 from solvers.player.player_page import Page
-from solvers.scenes.output import write_files
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_output import together, write_files
 from solvers.scenes.scene_run import run_scene
-from solvers.scenes.scene_summary import together
 
 DAMPED = driven.params(c=0.3)
 DRIVEN = Scene(driven, DAMPED, {"theta": 1.0}, 2.0, accuracy=1e-6)

@@ -21,9 +21,9 @@ from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended, kernel
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_output import figures, summary
 from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import run_scene
-from solvers.scenes.scene_summary import figures, summary
 from solvers.scenes.selection import ModelSelection, motion_of, select_model
 
 #: The report's start, and states of its motion by Taylor series of 70 digits.

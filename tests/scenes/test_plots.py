@@ -26,9 +26,9 @@ from solvers.player.geometry import mass_positions, projected
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.scenes.scene import Scene
+from solvers.scenes.scene_output import together
 from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import SceneResult, run_scene
-from solvers.scenes.scene_summary import together
 from solvers.studies.stability.critical_step import CriticalStep
 from solvers.studies.stability.stability_plots import boundaries, regions
 from solvers.studies.work_precision import work_precision_plots as chart_plots

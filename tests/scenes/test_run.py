@@ -26,10 +26,9 @@ from solvers.io.figure_names import symbol
 from solvers.player.geometry import ELEVATION, projected, tracks
 from solvers.player.motion_plots import _labelled, default_pictures, figure
 from solvers.references.taylor import taylor
-from solvers.scenes.output import file_names
+from solvers.scenes.scene_output import file_names, summary, table, together
 from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import run_scene
-from solvers.scenes.scene_summary import summary, table, together
 
 KEYS = {"model", "method", "form", "final_state", "requested_accuracy", "error_estimate", "why"}
 

@@ -36,7 +36,7 @@ from solvers import Scene, build, run_scene
 from solvers.equations.module import links
 from solvers.player.geometry import tracks
 from solvers.player.motion_plots import figure, outline
-from solvers.scenes.scene_summary import together
+from solvers.scenes.scene_output import together
 
 x, theta, s = symbols("x theta s", real=True)
 l, m, g = symbols("l m g", positive=True)  # noqa: E741

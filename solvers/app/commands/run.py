@@ -42,9 +42,8 @@ def run(arguments: Namespace) -> int:
     from solvers.app.modules import specialiser
     from solvers.equations.module import equations_of_motion
     from solvers.io.terminal import Progress
-    from solvers.scenes.output import write_files
+    from solvers.scenes.scene_output import figures, summary, together, write_files
     from solvers.scenes.scene_run import run_scene
-    from solvers.scenes.scene_summary import figures, summary, together
 
     names = partial(_files, plot=arguments.plot, live=arguments.live)
     scenes, results = options.selected_scenes(arguments, DEFAULT, names), []
@@ -83,7 +82,7 @@ def run(arguments: Namespace) -> int:
 
 
 def _files(scene: "Scene", *, plot: bool, live: bool) -> Iterable[str]:
-    from solvers.scenes.output import file_names
+    from solvers.scenes.scene_output import file_names
 
     names = file_names(scene, 1 + len(scene.beside), plot=plot).values()
     return [*names, *([f"{scene.name}_live.html"] if live else [])]
