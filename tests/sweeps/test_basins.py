@@ -12,8 +12,8 @@ import generated.driven_pendulum as driven
 import generated.duffing as duffing
 from solvers import Basins, Grid, Pool, Sweep, partial_results, sweep
 from solvers.app.modules import load as load_module
-from solvers.sweeps.attractors import Attractor, classify
 from solvers.sweeps.execution import worker
+from solvers.sweeps.maps.basins import Attractor, classify
 from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.plots.plot_quantity import Quantity
 from solvers.sweeps.sweep_summary import summary
