@@ -14,8 +14,7 @@ from solvers.io import figures
 from solvers.io.figure_names import symbol
 from solvers.io.quantity import with_unit
 from solvers.sweeps.definition.sweep_checks import ENERGY
-from solvers.sweeps.plots.diagrams import bifurcation, response
-from solvers.sweeps.plots.panels import CURVES, curves, image, line, section
+from solvers.sweeps.plots.panels import CURVES, bifurcation, curves, image, line, response, section
 from solvers.sweeps.plots.plot_quantity import Quantity, label_axis, letter
 from solvers.sweeps.results import GOOD, Results
 
