@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from solvers.runge_kutta.method_catalogue import load
-from solvers.sweeps.execution.convergence import Convergence, tighter_rtol
+from solvers.sweeps.execution.sweep_run import Convergence, tighter_rtol
 from solvers.sweeps.results import Results
 
 #: Advice on other motions.

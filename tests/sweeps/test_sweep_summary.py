@@ -12,9 +12,9 @@ import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.sweeps.definition.axes import Grid, Random
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution import convergence, worker
-from solvers.sweeps.execution.convergence import Convergence
+from solvers.sweeps.execution import sweep_run, worker
 from solvers.sweeps.execution.initial_states import initial_states
+from solvers.sweeps.execution.sweep_run import Convergence
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
@@ -93,8 +93,8 @@ def test_convergence_compares_the_numbers_that_both_tolerances_have(
         tolerances.append((one.rtol, one.atol))
         return records
 
-    monkeypatch.setattr(convergence, "run_chunk", chunk)
-    change = convergence.convergence(definition)["low"]
+    monkeypatch.setattr(sweep_run, "run_chunk", chunk)
+    change = sweep_run.convergence(definition)["low"]
     rtol, atol = definition.rtol, definition.atol
     assert tolerances == [(rtol, atol), (rtol / 100, atol / 100)]
     n = change.motions

@@ -16,8 +16,7 @@ from solvers.player.player_page import player
 from solvers.player.track import Track
 from solvers.scenes.scene import Scene
 from solvers.sweeps.definition.sweep import Sweep
-from solvers.sweeps.execution.convergence import convergence, tighter_rtol
-from solvers.sweeps.execution.sweep_run import sweep
+from solvers.sweeps.execution.sweep_run import convergence, sweep, tighter_rtol
 from solvers.sweeps.plots.figure import figure
 
 #: Relative and absolute tolerance of both programs, and the step size of Euler's method in s.
