@@ -26,7 +26,7 @@ from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability import critical_step as critical_step_module
 from solvers.studies.stability import scene_stability
 from solvers.studies.stability.critical_step import CriticalStep, critical_step, limit
-from solvers.studies.stability.stability_plots import boundaries, regions
+from solvers.studies.stability.scene_stability import boundaries, regions
 
 F = Fraction
 RUNGE_KUTTA = [name for name in names() if not load(name).is_splitting]
