@@ -31,15 +31,16 @@ from solvers.scenes.scene_reading import find
 from solvers.studies import heyoka
 from solvers.studies.work_precision import measured_curves, peers, work_precision_plots
 from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier, work_at
-from solvers.studies.work_precision.curve_findings import (
+from solvers.studies.work_precision.measured_curves import TimedRun, combinations, curves, timed_run
+from solvers.studies.work_precision.reference import Reference
+from solvers.studies.work_precision.scene_curves import (
     RoundingLimit,
+    SceneCurves,
     misleading_energy,
+    record,
     rounding_limits,
     wrong_above,
 )
-from solvers.studies.work_precision.measured_curves import TimedRun, combinations, curves, timed_run
-from solvers.studies.work_precision.reference import Reference
-from solvers.studies.work_precision.scene_curves import SceneCurves, record
 
 REPORT = find("report", load_module)
 
