@@ -16,10 +16,18 @@ from solvers.equations.linearisation.normal_modes import Modes
 from solvers.io.text_table import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
-from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, ChaosResults, statistics
+from solvers.studies.failure_modes.chaos import (
+    CHAOTIC,
+    LONG_RUNS,
+    OFFSET,
+    ChaosResults,
+    horizon,
+    reference_motion,
+    separation,
+    statistics,
+)
 from solvers.studies.failure_modes.conservation import Conservation, cost
 from solvers.studies.failure_modes.drift import CASES, Drift, EnergyDrift
-from solvers.studies.failure_modes.horizon import OFFSET, horizon, reference_motion, separation
 from solvers.studies.failure_modes.largest_exponent import INDEPENDENT, Mean, lyapunov
 from solvers.studies.failure_modes.study import studies
 
