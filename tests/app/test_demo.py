@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 import generated.double_pendulum as dp
 from derive.verification.report.report_judgement import EQUATIONS
 from solvers.app.cli import main
-from solvers.app.demo import motions_stage, stages, verdicts_stage
+from solvers.app.demo import demo_page, motions_stage, verdicts_stage
 from solvers.app.demo.demo_page import write_page
 from solvers.app.demo.equations_stage import FUNCTIONS, generation
 from solvers.app.demo.stage import Stage, table
@@ -281,15 +281,15 @@ def test_programs_and_claims_are_listed_with_their_reasons() -> None:
 
 def test_the_stages_of_the_demonstration_have_their_order(tmp_path: Path) -> None:
     order = ["derive", "verify", "generate", "integrate", "chart", "stability", "map"]
-    assert [*stages.stages(tmp_path)] == order
+    assert [*demo_page.stages(tmp_path)] == order
 
 
 def test_without_a_compiler_the_map_is_left_out_with_a_message(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(stages, "no_compiler", lambda _: "no C compiler")
+    monkeypatch.setattr(demo_page, "no_compiler", lambda _: "no C compiler")
     for name in ("derivation", "verification", "generation", "motion", "cost", "limits"):
-        monkeypatch.setattr(stages, name, lambda *_: Stage(("a line",), "<p>content</p>"))
+        monkeypatch.setattr(demo_page, name, lambda *_: Stage(("a line",), "<p>content</p>"))
     assert main(["demo", "--output", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "left out: no C compiler" in text

@@ -25,8 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Run every stage once, print its results and write the page."""
-    from solvers.app.demo.demo_page import LIVE_PAGE, write_page
-    from solvers.app.demo.stages import stages, versions
+    from solvers.app.demo.demo_page import LIVE_PAGE, stages, versions, write_page
     from solvers.app.live_page import LivePage
     from solvers.io.terminal import Progress
 

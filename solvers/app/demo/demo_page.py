@@ -1,14 +1,59 @@
-"""The page of the demonstration: one file without references to other files."""
+"""The demonstration: its stages, from positions to a map of motions, and their page."""
 
-from collections.abc import Mapping
+import platform
+from collections.abc import Callable, Mapping
+from datetime import date
 from html import escape
+from importlib.metadata import version
 from pathlib import Path
 
 from derive.verification.report.derivation_beside_report import STYLE as DERIVATION_STYLE
+from solvers.app.demo.equations_stage import derivation, generation
+from solvers.app.demo.methods_stage import cost, limits
+from solvers.app.demo.motions_stage import flips, motion
 from solvers.app.demo.stage import ReportedNumber, Stage, table
+from solvers.app.demo.verdicts_stage import verification
+from solvers.app.modules import load
+from solvers.integration.prepare import no_compiler
 from solvers.io.atomic_write import write_text
 from solvers.io.html_page import html_page
 from solvers.player import player_page as motions
+from solvers.scenes.scene_reading import find
+from solvers.sweeps.definition import sweep_reading
+
+#: Packages whose versions the page states.
+PACKAGES = ("holonomic", "sympy", "numpy", "scipy", "matplotlib")
+
+
+def stages(folder: Path) -> dict[str, Callable[[], Stage]]:
+    """The stages by name, in their order; the map of motions needs a compiler."""
+    scene = find("report", load)
+
+    def flip_map() -> Stage:
+        if missing := no_compiler(scene.module):
+            return Stage((f"left out: {missing}",))
+        return flips(sweep_reading.find("flips", load), folder / "flips")
+
+    return {
+        "derive": derivation,
+        "verify": verification,
+        "generate": lambda: generation(load("double_pendulum")),
+        "integrate": lambda: motion(scene),
+        "chart": lambda: cost(scene),
+        "stability": lambda: limits(scene),
+        "map": flip_map,
+    }
+
+
+def versions() -> dict[str, str]:
+    """Date, machine and versions."""
+    return {
+        "date": date.today().isoformat(),
+        "machine": f"{platform.system()} {platform.machine()}",
+        "Python": platform.python_version(),
+        **{name: version(name) for name in PACKAGES},
+    }
+
 
 STYLE = Path(__file__).with_name("demo.css")
 TITLE = "Double pendulum: from positions to motion"
