@@ -20,8 +20,7 @@ import generated.single_pendulum as sp
 from derive import Derivation, load
 from derive.codegen.module_files import files
 from derive.codegen.module_functions import Functions
-from solvers.app.cli import main
-from solvers.app.matplotlib_folder import VARIABLE, provide_matplotlib_folder
+from solvers.app.cli import VARIABLE, main, provide_matplotlib_folder
 from solvers.equations.module import header
 from solvers.equations.module_cache import cached_module
 from solvers.integration.compiled.compiler import build
