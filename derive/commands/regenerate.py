@@ -7,8 +7,7 @@ from pathlib import Path
 from shlex import quote
 
 from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
-from derive.codegen.generated_folder import FileDifference, GeneratedFiles
-from derive.codegen.module_files import texts
+from derive.codegen.module_files import FileDifference, GeneratedFiles, texts
 from derive.codegen.module_summary import mobility
 from derive.commands import write_document
 from derive.commands.derive_options import add_arguments

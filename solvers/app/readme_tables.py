@@ -6,7 +6,7 @@ from functools import partial
 from math import inf
 from pathlib import Path
 
-from derive.codegen.generated_folder import GeneratedFiles
+from derive.codegen.module_files import GeneratedFiles
 from derive.commands import system_description
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction

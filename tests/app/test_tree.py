@@ -15,7 +15,7 @@ import pytest
 from folders import ROOT
 
 import generated
-from derive.codegen.generated_folder import GeneratedFiles
+from derive.codegen.module_files import GeneratedFiles
 from derive.commands import regenerate as command
 from derive.commands.regenerate import main, planned
 from solvers import integrate
@@ -221,7 +221,7 @@ def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
     old = {f"m{k}.py": "old\n" * 20_000 for k in range(8)}
     code = (
         "import sys; from pathlib import Path\n"
-        "from derive.codegen.generated_folder import GeneratedFiles\n"
+        "from derive.codegen.module_files import GeneratedFiles\n"
         "for n in range(10**6):\n"
         "    texts = {f'm{k}.py': f'{n}\\n' * 20_000 for k in range(8)}\n"
         "    GeneratedFiles(Path(sys.argv[1]), texts, complete=True).write()\n"

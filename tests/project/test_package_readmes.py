@@ -13,7 +13,7 @@ from folders import ROOT
 from snippets import assert_is_printed, run_snippet
 
 import generated.double_pendulum as dp
-from derive.codegen.generated_folder import GeneratedFiles
+from derive.codegen.module_files import GeneratedFiles
 from derive.verification.documents.pages.verdict_table import document_record
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.hand import EQUATIONS, HEADER
