@@ -9,8 +9,12 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.constrained_factorisation import ConstrainedFactorisation
-from derive.codegen.elimination.factorisation import Factorisation, Loops, factorisation
+from derive.codegen.elimination.factorisation import (
+    ConstrainedFactorisation,
+    Factorisation,
+    Loops,
+    factorisation,
+)
 from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node

@@ -9,8 +9,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.constrained_factorisation import ConstrainedFactorisation
-from derive.codegen.elimination.factorisation import Rows
+from derive.codegen.elimination.factorisation import ConstrainedFactorisation, Rows
 from derive.codegen.elimination.kinematic_tree_factorisation import TreeFactorisation
 from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.constrained_factorisation import ConstrainedFactorisation
+from derive.codegen.elimination.factorisation import ConstrainedFactorisation
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.lagrangian_form import HALF
