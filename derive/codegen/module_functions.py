@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from derive.codegen.expression_graph.rational import with_fewest_calls
-from derive.codegen.forms.equations_of_motion import EquationsOfMotion
+from derive.codegen.forms.equations_of_motion import EquationsOfMotion, OutputForm
 from derive.codegen.forms.hamiltonian_form import HamiltonianForm
 from derive.codegen.forms.kinematic_tree_form import TreeForm
 from derive.codegen.forms.lagrangian_form import LagrangianForm
-from derive.codegen.forms.output_form import OutputForm
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.codegen.forms.quaternion_form import QuaternionForm
 from derive.codegen.function_specs import FORCES, OF_EXPORTS, SPECS, Form, FunctionSpec, is_small

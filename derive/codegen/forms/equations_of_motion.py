@@ -1,4 +1,4 @@
-"""Quantities common to all forms of the equations of motion, as nodes of one graph.
+"""Quantities common to all forms of the equations of motion, and outputs, as nodes of a graph.
 
 Nodes are differentiated. Derivatives of solutions use the factorisation of the mass matrix:
 ∂(M⁻¹ b) = M⁻¹ (∂b - ∂M M⁻¹ b). Nothing is inverted or simplified.
@@ -191,3 +191,24 @@ class EquationsOfMotion:
         """M₀, then K."""
         linearisation = self._derivation.linearisation()
         return self._nodes([*linearisation.mass_matrix, *linearisation.stiffness_matrix])
+
+
+class OutputForm(EquationsOfMotion):
+    """The outputs of a system as functions of (q, q̇), and their derivatives."""
+
+    def __init__(self, derivation: Derivation) -> None:
+        super().__init__(derivation)
+        self.outputs = self._nodes([formula for _, formula in self._system.measured])
+
+    @property
+    def outputs_jacobian(self) -> list[Node]:
+        """Rows of ∂outputs/∂(q, q̇)."""
+        return self._derivatives((*self._system.q, *self._system.qdot))
+
+    @property
+    def outputs_parameter_jacobian(self) -> list[Node]:
+        """Rows of ∂outputs/∂params."""
+        return self._derivatives(self._system.params)
+
+    def _derivatives(self, variables: Sequence[sp.Symbol]) -> list[Node]:
+        return [self._derivative(node, v.name) for node in self.outputs for v in variables]
