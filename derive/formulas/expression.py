@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.formulas import function_table
+from derive.formulas import functions
 from derive.formulas.budget import INFINITE, MAX_BITS, MAX_EXPONENT, Budget, BudgetError
 from derive.formulas.evaluation.generic_values import check_value
 from derive.formulas.evaluation.numeric import NoValueError
@@ -25,7 +25,7 @@ Value: TypeAlias = sp.Expr | sp.MatrixBase
 Namespace = Mapping[str, Any]
 
 #: The functions and constants available in every formula.
-FUNCTIONS: dict[str, Any] = function_table.FUNCTIONS | {"pi": sp.pi}
+FUNCTIONS: dict[str, Any] = functions.FUNCTIONS | {"pi": sp.pi}
 
 #: The comparisons of conditions.
 COMPARISONS = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge}

@@ -6,7 +6,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterable
 
-from derive.formulas.function_table import FUNCTIONS, GENERATED
+from derive.formulas.functions import FUNCTIONS, GENERATED
 from derive.system.parts import SystemDefinitionError
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}\Z")

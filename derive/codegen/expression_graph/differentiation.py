@@ -19,7 +19,7 @@ from derive.codegen.expression_graph.node import (
     operands,
 )
 from derive.codegen.expression_graph.sympy_translation import Translation
-from derive.formulas.function_table import FUNCTIONS
+from derive.formulas.functions import FUNCTIONS
 
 #: Arguments of the functions that are differentiated.
 X = sp.symbols("x y", real=True)

@@ -27,8 +27,7 @@ from derive.codegen.expression_graph.node import (
     RewrittenNode,
     SumNode,
 )
-from derive.formulas.function_table import FUNCTIONS
-from derive.formulas.switching_functions import CHOICES
+from derive.formulas.functions import CHOICES, FUNCTIONS
 
 #: Functions of generated code that some numbers have no value of, or none that is finite.
 PARTIAL = ("exp", "log", "sqrt", "sinh", "cosh", "pow")

@@ -9,7 +9,7 @@ import sympy as sp
 from mpmath import fp
 from sympy.core.relational import Relational
 
-from derive.formulas import function_table
+from derive.formulas import functions
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -24,7 +24,7 @@ NEWTON, CLOSED = 12, 1e-9
 
 #: By their names in formulas and in SymPy.
 FUNCTIONS: dict[str, Callable[..., float]] = {
-    **{name: getattr(math, name) for name in function_table.FUNCTIONS if hasattr(math, name)},
+    **{name: getattr(math, name) for name in functions.FUNCTIONS if hasattr(math, name)},
     **dict.fromkeys(("abs", "Abs"), abs),
     **dict.fromkeys(("min", "Min"), min),
     **dict.fromkeys(("max", "Max"), max),

@@ -1,4 +1,4 @@
-"""Functions with kinks or jumps, and the numbers whose signs decide between their branches.
+"""The functions of formulas; kinks, jumps, and the numbers whose signs decide between branches.
 
 Such a number is a switching function (E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 Differential Equations I, section II.6): between its zeros, formulas are smooth.
@@ -8,6 +8,19 @@ from collections.abc import Collection, Iterable, Iterator
 
 import sympy as sp
 from sympy.core.relational import Relational
+
+#: By their names in formulas.
+FUNCTIONS = {
+    f.__name__: f
+    for f in (
+        *(sp.sin, sp.cos, sp.tan, sp.exp, sp.log, sp.sqrt),
+        *(sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.atan2, sp.sign),
+    )
+} | {"abs": sp.Abs, "min": sp.Min, "max": sp.Max, "Piecewise": sp.Piecewise}
+
+#: Functions of generated code, beside those of formulas that it calls by the same names.
+GENERATED = ("pow", "select")
+
 
 #: Functions with kinks or jumps, and their derivatives.
 CHOICES = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.Heaviside, sp.DiracDelta, sp.Piecewise)
