@@ -15,13 +15,15 @@ from math import lcm
 import numpy as np
 import sympy as sp
 
-from derive.formulas.evaluation.residue_values import Evaluation, RandomResidues, branches
 from derive.formulas.evaluation.residues import (
     PRIME,
+    Evaluation,
     NoRootError,
+    RandomResidues,
     Residues,
     ResidueSeries,
     Rows,
+    branches,
     echelon,
     inverse,
     null_space,

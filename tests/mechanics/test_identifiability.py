@@ -7,10 +7,11 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Input, Parameter, PointMass, System, load, velocity
-from derive.formulas.evaluation.residue_values import Evaluation, RandomResidues
 from derive.formulas.evaluation.residues import (
     PRIME,
+    Evaluation,
     NoRootError,
+    RandomResidues,
     ResidueSeries,
     echelon,
     null_space,

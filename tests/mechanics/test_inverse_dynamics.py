@@ -29,8 +29,13 @@ from derive import (
     reduced,
     velocity,
 )
-from derive.formulas.evaluation.residue_values import Evaluation, RandomResidues
-from derive.formulas.evaluation.residues import NoRootError, ResidueSeries, echelon
+from derive.formulas.evaluation.residues import (
+    Evaluation,
+    NoRootError,
+    RandomResidues,
+    ResidueSeries,
+    echelon,
+)
 from derive.formulas.proofs.zero import vanishes
 from derive.system.symbols import TIME
 from solvers import build, integrate
