@@ -10,8 +10,7 @@ import sympy as sp
 from derive.formulas.evaluation.generic_values import is_small
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations
-from derive.mechanics.linearisation.free_changes import tidied
-from derive.mechanics.linearisation.point import OperatingPoint
+from derive.mechanics.linearisation.point import OperatingPoint, tidied
 from derive.system.parts import SystemDefinitionError
 
 Solution: TypeAlias = dict[sp.Symbol, sp.Expr]

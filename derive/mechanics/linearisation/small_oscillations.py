@@ -10,8 +10,7 @@ from derive.formulas.evaluation.generic_values import is_small
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations
-from derive.mechanics.linearisation.free_changes import FreeChanges, tidied
-from derive.mechanics.linearisation.point import OperatingPoint
+from derive.mechanics.linearisation.point import FreeChanges, OperatingPoint, tidied
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
 

@@ -13,8 +13,15 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.equations import Equations
-from derive.mechanics.linearisation.free_changes import FreeChanges, solved, tidied
-from derive.mechanics.linearisation.point import Formula, OperatingPoint, expression, named
+from derive.mechanics.linearisation.point import (
+    Formula,
+    FreeChanges,
+    OperatingPoint,
+    expression,
+    named,
+    solved,
+    tidied,
+)
 from derive.system.parts import SystemDefinitionError, formula, items
 from derive.system.symbols import TIME
 from derive.system.system import System
