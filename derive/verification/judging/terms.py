@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.formulas.expression import Namespace, number
-from derive.mechanics.energies.harmonics import Harmonics
-from derive.mechanics.energies.reduction import collected
+from derive.mechanics.energies.reduction import Harmonics, collected
 
 #: Coefficients, which depend on parameters only, by the function of the state that they multiply.
 Coefficients = dict[sp.Expr, sp.Expr]
