@@ -34,7 +34,12 @@ MOST = 12
 
 
 class RegularIntegrals:
-    """The choice of integrals, with the `rows` of constraints and `known` differentials."""
+    """Integrals that can replace constraints: with integrating factors that are never 0.
+
+    Gradients of integrals are combinations of the constraints, A rows + B known, with the `rows` of
+    constraints, the `known` differentials and integrating factors A. They can replace those rows
+    whose columns of A have a determinant that is never 0.
+    """
 
     def __init__(
         self,

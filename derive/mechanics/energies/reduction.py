@@ -26,7 +26,11 @@ HALF = sp.QQ(1, 2)
 
 @dataclass(frozen=True)
 class Harmonics:
-    """`expression` as a sum of coefficient times sine or cosine of a sum of angles."""
+    """`expression` as a sum of coefficient times sine or cosine of a sum of angles.
+
+    Terms are collected as numbers by the multiples of angles and the powers of other factors, so
+    that terms that cancel never become SymPy expressions.
+    """
 
     expression: sp.Expr
 
