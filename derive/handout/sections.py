@@ -17,8 +17,14 @@ from derive.handout.document_model import (
     HandoutSection,
     Paragraph,
 )
-from derive.handout.hamilton import hamilton, routhian
-from derive.handout.motion_sections import accelerations, energy, euler_lagrange, lagrangian
+from derive.handout.motion_sections import (
+    accelerations,
+    energy,
+    euler_lagrange,
+    hamilton,
+    lagrangian,
+    routhian,
+)
 from derive.handout.numbering import Numbering
 from derive.handout.oscillations import oscillations
 from derive.handout.setup import constraints, energies, system, velocities
