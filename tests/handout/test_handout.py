@@ -25,10 +25,9 @@ from derive.handout.derived_letters import DerivedLetters
 from derive.handout.document_files import write_document
 from derive.handout.document_model import Code, HandoutDocument, NumberedEquation, Paragraph
 from derive.handout.exercises import planted, with_exercises
-from derive.handout.formats.characters import declarations
 from derive.handout.formats.notebook import notebook
 from derive.handout.formats.page import BLANK, page
-from derive.handout.formats.tex import tex
+from derive.handout.formats.tex import declarations, tex
 from derive.handout.numbering import Numbering
 from derive.handout.sections import document
 

@@ -1,9 +1,11 @@
 """Documents as LaTeX, for the packages of texlive-latex-base."""
 
-from collections.abc import Sequence
+import unicodedata
+from collections.abc import Iterable, Sequence
 from textwrap import TextWrapper
 
 from derive.formulas.typeset.latex import latex
+from derive.formulas.typeset.lettering import GREEK
 from derive.formulas.typeset.line_breaks import latex_rows
 from derive.handout.document_model import (
     WIDTH,
@@ -15,7 +17,61 @@ from derive.handout.document_model import (
     Paragraph,
     pieces,
 )
-from derive.handout.formats.characters import declarations, escaped
+
+SPECIAL = {
+    **{character: rf"\{character}" for character in "#$%&_{}"},
+    "\\": r"\textbackslash{}",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    **{character: f"${character}$" for character in "<>|"},
+}
+#: Characters that LaTeX sets itself.
+KNOWN = set("–—‘’“”…")
+#: Accents after the letter in decomposed characters, and their commands.
+ACCENTS = dict(zip("\u0300\u0301\u0302\u0303\u0308\u030a\u030c\u0327", "`'^~\"rvc", strict=True))
+#: Letters with a command of their own.
+LETTERS = dict(zip("ßæÆœŒøØłŁ", "ss ae AE oe OE o O l L".split(), strict=True))
+MATHEMATICS = {
+    **{letter: rf"\{name}" for name, letter in GREEK.items()},
+    **{
+        character: f"^{{{digit}}}"
+        for character, digit in zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-", strict=True)
+    },
+    **{character: f"_{digit}" for digit, character in enumerate("₀₁₂₃₄₅₆₇₈₉")},
+    **dict(zip("·×−°±≤≥", r"\cdot \times - ^\circ \pm \le \ge".split(), strict=True)),
+    **dict(zip("≠≈→∞∂′", r"\ne \approx \to \infty \partial '".split(), strict=True)),
+    **dict(zip("½Σµᵀ", r"\frac12 \Sigma \mu ^T".split(), strict=True)),
+}
+
+
+def escaped(text: str) -> str:
+    """`text` with the characters that have a meaning in LaTeX as commands."""
+    return "".join(SPECIAL.get(character, character) for character in text)
+
+
+def declarations(texts: Iterable[str]) -> list[str]:
+    """LaTeX that declares the other characters of texts, in the order of their numbers.
+
+    A character without a command is shown by its number.
+    """
+    characters = {c for text in texts for c in text if not c.isascii()} - KNOWN
+    return [
+        rf"\DeclareUnicodeCharacter{{{ord(character):04X}}}{{{_command(character)}}}"
+        for character in sorted(characters)
+    ]
+
+
+def _command(character: str) -> str:
+    if character in MATHEMATICS:
+        return rf"\ensuremath{{{MATHEMATICS[character]}}}"
+    if character in LETTERS:
+        return rf"\{LETTERS[character]}{{}}"
+    decomposed = unicodedata.normalize("NFD", character)
+    base, mark = decomposed[0], decomposed[1:]
+    if base.isascii() and base.isalpha() and mark in ACCENTS:
+        return rf"\{ACCENTS[mark]}{{{base}}}"
+    return f"[U+{ord(character):04X}]"
+
 
 DOCUMENT = r"""\documentclass[11pt,a4paper,fleqn]{article}
 \usepackage[margin=22mm]{geometry}
