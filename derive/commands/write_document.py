@@ -2,7 +2,7 @@
 
 from argparse import Namespace
 
-from derive.handout.document_files import WRITERS, write_document
+from derive.handout.derivation_document import WRITERS, write_document
 from derive.mechanics.derivation import Derivation
 from derive.system.files.system_catalogue import load
 from derive.system.parts import SystemDefinitionError

@@ -21,15 +21,14 @@ from derive.commands.regenerate import main
 from derive.formulas.evaluation.generic_values import STATES, sample
 from derive.formulas.evaluation.numeric import Evaluator
 from derive.formulas.expression import FUNCTIONS, parse
+from derive.handout.derivation_document import document, write_document
 from derive.handout.derived_letters import DerivedLetters
-from derive.handout.document_files import write_document
 from derive.handout.document_model import Code, HandoutDocument, NumberedEquation, Paragraph
 from derive.handout.exercises import planted, with_exercises
 from derive.handout.formats.notebook import notebook
 from derive.handout.formats.page import BLANK, page
 from derive.handout.formats.tex import declarations, tex
 from derive.handout.numbering import Numbering
-from derive.handout.sections import document
 
 #: A system with friction, a driving force, a spring, and letters of derived quantities.
 DAMPED = """

@@ -6,9 +6,8 @@ from pathlib import Path
 import pytest
 
 from derive import Derivation, load
-from derive.handout.document_files import write_document
+from derive.handout.derivation_document import document, write_document
 from derive.handout.document_model import Paragraph
-from derive.handout.sections import document
 from derive.reading.documents import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints

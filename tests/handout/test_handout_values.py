@@ -12,10 +12,9 @@ from latex_trees import show
 
 from derive import Derivation, load, names, reduced
 from derive.formulas.typeset.lettering import lettering
+from derive.handout.derivation_document import document, with_letters, write_document
 from derive.handout.derived_letters import DerivedLetters
-from derive.handout.document_files import write_document
 from derive.handout.formats.tex import equation_rows
-from derive.handout.sections import document, with_letters
 from derive.reading.documents import read_document
 from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import (

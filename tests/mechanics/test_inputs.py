@@ -22,8 +22,8 @@ from derive import (
     velocity,
     with_inputs,
 )
+from derive.handout.derivation_document import document
 from derive.handout.formats.page import page
-from derive.handout.sections import document
 from derive.system.parts import SystemDefinitionError
 from solvers import build
 from solvers.equations.module import ELEMENTARY, function, has_function, inputs, with_functions

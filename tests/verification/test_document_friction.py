@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from derive import Derivation, load
-from derive.handout.document_files import write_document
+from derive.handout.derivation_document import write_document
 from derive.reading.documents import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints

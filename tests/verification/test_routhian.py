@@ -9,7 +9,7 @@ import sympy as sp
 from derive import Constraint, Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.formulas.evaluation.generic_values import is_small, sample
 from derive.formulas.evaluation.numeric import Evaluator
-from derive.handout.document_files import write_document
+from derive.handout.derivation_document import write_document
 from derive.mechanics.routhian import Routhian
 from derive.reading.documents import read_document
 from derive.verification.documents.judgement import judge_document

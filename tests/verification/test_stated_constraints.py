@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, load
-from derive.handout.document_files import write_document
+from derive.handout.derivation_document import write_document
 from derive.reading.documents import read_document
 from derive.verification.documents.judgement import _read, judge_document
 from derive.verification.documents.letters.energies import has_rotations
