@@ -27,10 +27,16 @@ from solvers.integration.checks.singularity import SingularityWarning, singulari
 from solvers.integration.checks.step_stability import StepWarning, mark_unstable, step_instability
 from solvers.integration.loops import compiled_loop, passage
 from solvers.integration.loops.ensemble_loop import EnsembleRun
-from solvers.integration.problem import memory, validation
+from solvers.integration.problem import validation
 from solvers.integration.problem.events import Extremum
-from solvers.integration.problem.memory import limit_steps
-from solvers.integration.problem.problem import EventFunction, Options, Problem
+from solvers.integration.problem.problem import (
+    EventFunction,
+    Options,
+    Problem,
+    check_memory,
+    check_times,
+    limit_steps,
+)
 from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.ensemble_solution import Ensemble, EnsembleTimes
 from solvers.integration.results.recorder import Outcome
@@ -181,7 +187,7 @@ class MotionBatch:
         check_module(module)
         check_type("form", options.form, str | None, "the name of a form")
         states = validation.state_rows(module, y0, params, options.form or "lagrangian")
-        memory.check_times(options.t_eval, states.shape[1])
+        check_times(options.t_eval, states.shape[1])
         times = EnsembleTimes.of(t_span, options.t_eval, len(states))
         problem = validation.problem_at_rest(module, times.span, replace(options, t_eval=()))
         if times.differ and problem.schedule:
@@ -237,7 +243,7 @@ def many_motions(
     components = len(problem.start)
     rows = len(states) * (1 + times.samples.shape[1] + len(problem.events) * occurrences)
     remedy = "integrate fewer motions at once, or record fewer times and occurrences"
-    memory.check_memory(f"{rows} states of {len(states)} motions", rows, components, remedy)
+    check_memory(f"{rows} states of {len(states)} motions", rows, components, remedy)
     loop = f"compiled by {program.library.compiler}" if program else "python"
     result = Ensemble.empty(problem, len(states), occurrences, loop, times.samples)
     result = replace(result, alone=partial(motions.alone, options))

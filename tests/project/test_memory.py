@@ -11,7 +11,7 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
-from solvers.integration.problem import memory
+from solvers.integration.problem import problem
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
 
@@ -52,7 +52,7 @@ def test_steps_that_are_known_to_be_fewer_are_permitted() -> None:
 def test_controlled_steps_stop_where_memory_ends(
     backend: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(memory, "available_bytes", lambda: 10.5 * memory.COPIES * 8 * 5)
+    monkeypatch.setattr(problem, "available_bytes", lambda: 10.5 * problem.COPIES * 8 * 5)
     short = integrate(dp, (0, 9), START, dp.DEFAULTS, max_steps=10**9, backend=backend)
     assert (short.status, short.steps) == (Status.STEP_LIMIT, 10)
     assert "do not fit into memory, give times t_eval" in short.message

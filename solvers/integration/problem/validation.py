@@ -31,8 +31,7 @@ from solvers.equations.starts.consistent_start import consistent, given_names, g
 from solvers.equations.starts.default_start import default_coordinates
 from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
-from solvers.integration.problem.memory import check_times
-from solvers.integration.problem.problem import Options, Problem, shortest_step
+from solvers.integration.problem.problem import Options, Problem, check_times, shortest_step
 from solvers.io.argument_types import check_type
 from solvers.io.suggestion import counted, shortened, warn_caller
 from solvers.runge_kutta.method_catalogue import SCIPY, load
