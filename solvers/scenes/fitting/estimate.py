@@ -16,9 +16,9 @@ from solvers.scenes.fitting.least_squares import (
     Minimum,
     NotConvergedError,
     minimise,
+    relaxed,
 )
 from solvers.scenes.fitting.multiple_shooting import NoResidualsError
-from solvers.scenes.fitting.relaxation import relaxed
 from solvers.scenes.fitting.statistics import autocorrelation, covariance, leverages
 
 #: Samples of the parabola whose value and slope are those of a coordinate at a node.
