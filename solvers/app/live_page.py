@@ -13,10 +13,9 @@ from solvers.equations.module import has_constraints, links
 from solvers.io.atomic_write import write_text
 from solvers.io.figure_names import plain_symbol
 from solvers.io.html_page import html_page
-from solvers.player.geometry import links_and_points
 from solvers.player.playable import Playable
 from solvers.player.player_page import VIEW, as_json, source, style
-from solvers.player.sampled_motion import SampledMotion
+from solvers.player.sampled_motion import SampledMotion, links_and_points
 from solvers.runge_kutta import method_catalogue
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_reading import find

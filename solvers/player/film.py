@@ -18,9 +18,8 @@ from matplotlib.ticker import MaxNLocator
 from solvers.equations.number_checks import positive
 from solvers.io.atomic_write import write_text
 from solvers.io.figures import COLOURS, FORMATS, panels, save
-from solvers.player.geometry import links_and_points, mass_positions, projected
 from solvers.player.motion_plots import draw_link, label_axes, plain
-from solvers.player.sampled_motion import SampledMotion
+from solvers.player.sampled_motion import SampledMotion, links_and_points, mass_positions, projected
 from solvers.player.track import Array
 
 #: Frames a second of a film, of 40 ms: a GIF counts in hundredths of a second, and programs show

@@ -15,8 +15,14 @@ from matplotlib.ticker import MaxNLocator
 from solvers.equations.module import depends_on_time, links
 from solvers.io.figure_names import axis_label, symbol
 from solvers.io.figures import COLOURS, panels
-from solvers.player.geometry import energy_errors, links_and_points, mass_positions, projected
-from solvers.player.sampled_motion import SampledMotion, curves_of
+from solvers.player.sampled_motion import (
+    SampledMotion,
+    curves_of,
+    energy_errors,
+    links_and_points,
+    mass_positions,
+    projected,
+)
 from solvers.player.track import Array
 
 #: Width of the line of each kind in points.

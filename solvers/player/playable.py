@@ -137,7 +137,7 @@ def _together(first: Playable, beside: Sequence[Playable]) -> list[SampledMotion
 
 
 def _page(motions: Sequence[SampledMotion]) -> "Page":
-    from solvers.player.geometry import tracks
     from solvers.player.player_page import Page
+    from solvers.player.sampled_motion import tracks
 
     return Page(motions[0].title, motions[0].note, tracks(motions))

@@ -9,9 +9,8 @@ import numpy as np
 
 from solvers.equations.module import GeneratedModule, named, operations_on_state
 from solvers.io.atomic_write import write_text
-from solvers.player.geometry import tracks
 from solvers.player.player_page import Page
-from solvers.player.sampled_motion import SampledMotion
+from solvers.player.sampled_motion import SampledMotion, tracks
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_run import SceneResult
 

@@ -16,8 +16,8 @@ import generated.duffing as duffing
 import generated.furuta_pendulum as furuta
 import generated.single_pendulum as single
 from solvers import Held, Solution, ensemble, integrate
-from solvers.player.geometry import energy_errors
 from solvers.player.playable import Playable
+from solvers.player.sampled_motion import energy_errors
 from solvers.references.taylor import taylor
 
 START = (2.0, 0.5, 0.0, 0.0)

@@ -13,9 +13,9 @@ from solvers.equations.energy import energy_unit, supplied_energy
 from solvers.integration.accuracy.checked_motion import Motion
 from solvers.integration.accuracy.integration_run import IntegrationRun
 from solvers.integration.accuracy.method_choice import SERIES, MethodChoice
-from solvers.player.geometry import energy_errors, tracks
 from solvers.player.motion_plots import figure
 from solvers.player.player_page import Page
+from solvers.player.sampled_motion import energy_errors, tracks
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_output import together, write_files
 from solvers.scenes.scene_run import run_scene

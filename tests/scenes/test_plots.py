@@ -22,7 +22,7 @@ from solvers.app.modules import load as load_module
 from solvers.equations.energy import EnergyUnit
 from solvers.io.figures import panels
 from solvers.player import motion_plots as scene_plots
-from solvers.player.geometry import mass_positions, projected
+from solvers.player.sampled_motion import mass_positions, projected
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.scenes.scene import Scene

@@ -23,8 +23,8 @@ from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
 from solvers.equations.module import equations_of_motion
 from solvers.io.figure_names import symbol
-from solvers.player.geometry import ELEVATION, projected, tracks
 from solvers.player.motion_plots import _labelled, default_pictures, figure
+from solvers.player.sampled_motion import ELEVATION, projected, tracks
 from solvers.references.taylor import taylor
 from solvers.scenes.scene_output import file_names, summary, table, together
 from solvers.scenes.scene_reading import find

@@ -34,8 +34,8 @@ from derive.system.links.link import Link
 from derive.system.parts import SystemDefinitionError
 from solvers import Scene, build, run_scene
 from solvers.equations.module import links
-from solvers.player.geometry import tracks
 from solvers.player.motion_plots import figure, outline
+from solvers.player.sampled_motion import tracks
 from solvers.scenes.scene_output import together
 
 x, theta, s = symbols("x theta s", real=True)

@@ -17,7 +17,7 @@ from derive.system.parts import SystemDefinitionError
 from solvers.app.cli import main as holonomic
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
-from solvers.player.geometry import energy_errors
+from solvers.player.sampled_motion import energy_errors
 from solvers.scenes.scene_output import together
 from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import run_scene
