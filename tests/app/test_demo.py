@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 import generated.double_pendulum as dp
 from derive.verification.report.report_judgement import EQUATIONS
 from solvers.app.cli import main
-from solvers.app.demo import demo_page, motions_stage, verdicts_stage
+from solvers.app.demo import demo_page, equations_stage, motions_stage
 from solvers.app.demo.demo_page import write_page
 from solvers.app.demo.equations_stage import FUNCTIONS, generation
 from solvers.app.demo.stage import Stage, table
@@ -269,7 +269,7 @@ def test_programs_and_claims_are_listed_with_their_reasons() -> None:
     equations = [{"id": "2.1", "verdict": "verified"}, {"id": "2.2", "verdict": "verified"}]
     programs = [{"stops": []}, {"stops": ["no import", "x < 1 is wrong"]}]
     claims = [{"id": "C1", "claim": "RK4 is best", "verdict": "contradicted", "number": "5 < 9"}]
-    html = verdicts_stage._section(equations, programs, claims)
+    html = equations_stage._section(equations, programs, claims)
     assert html.startswith(
         "<p>Of 2 equations, <strong>2</strong> hold as printed. Of 1 objectives, claims and "
         "recommendations, <strong>1</strong> do not hold.</p>"

@@ -8,11 +8,10 @@ from importlib.metadata import version
 from pathlib import Path
 
 from derive.verification.report.derivation_beside_report import STYLE as DERIVATION_STYLE
-from solvers.app.demo.equations_stage import derivation, generation
+from solvers.app.demo.equations_stage import derivation, generation, verification
 from solvers.app.demo.methods_stage import cost, limits
 from solvers.app.demo.motions_stage import flips, motion
 from solvers.app.demo.stage import ReportedNumber, Stage, table
-from solvers.app.demo.verdicts_stage import verification
 from solvers.app.modules import load
 from solvers.integration.prepare import no_compiler
 from solvers.io.atomic_write import write_text
