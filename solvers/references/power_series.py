@@ -12,7 +12,7 @@ from math import atan2
 from operator import mul
 from typing import TypeAlias
 
-from solvers.equations.starts.decimal_state import sine_and_cosine
+from solvers.references.decimal_numbers import sine_and_cosine
 
 #: The operations of a function: series in the order of their evaluation.
 Tape: TypeAlias = "list[PowerSeries]"

@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, function, integrals, named, with_functions
-from solvers.equations.starts.decimal_state import decimal_state
-from solvers.references.exact_literals import with_exact_literals
+from solvers.references.decimal_numbers import decimal_state, with_exact_literals
 from solvers.references.power_series import PowerSeries, series_functions
 
 #: Steps of Newton's method: from a start in doubles, residuals have 16, 32, 64 ... digits.

@@ -21,8 +21,7 @@ from holonomic import build, integrate
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import with_functions
 from solvers.equations.starts.consistent_start import consistent_start
-from solvers.equations.starts.decimal_state import decimal_state, sine_and_cosine
-from solvers.references.exact_literals import with_exact_literals
+from solvers.references.decimal_numbers import decimal_state, sine_and_cosine, with_exact_literals
 from solvers.references.taylor import DecimalProjection, decimal_motion
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.surd import Surd

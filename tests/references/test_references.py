@@ -20,9 +20,8 @@ import generated.single_pendulum as sp
 from holonomic import Coordinate, Parameter, PointMass, System, build
 from solvers.app.modules import load as load_module
 from solvers.equations.module import ELEMENTARY
-from solvers.equations.starts.decimal_state import sine_and_cosine
+from solvers.references.decimal_numbers import sine_and_cosine, with_exact_literals
 from solvers.references.elliptic import jacobi, pendulum, swing
-from solvers.references.exact_literals import with_exact_literals
 from solvers.references.extrapolation import extrapolated
 from solvers.references.power_series import PowerSeries, series_functions
 from solvers.references.taylor import taylor

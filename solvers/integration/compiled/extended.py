@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule, has_constraints, has_header, integrals
 from solvers.equations.singularities import NEAR, distance_from_singularity
-from solvers.equations.starts.decimal_state import decimal_state
 from solvers.integration.compiled.compiler import NoCompilerError, build
 from solvers.integration.compiled.double_double import DoubleDouble
 from solvers.integration.compiled.extended_source import (
@@ -28,6 +27,7 @@ from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.compiled.native import equations
 from solvers.integration.problem.problem import COLLAPSE, shortest_step
 from solvers.integration.problem.status import Status
+from solvers.references.decimal_numbers import decimal_state
 from solvers.runge_kutta.stepper import Array
 
 #: Seconds of C between checks for an interruption by the user, and bytes to which C aligns numbers.

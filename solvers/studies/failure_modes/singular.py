@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function
-from solvers.equations.starts.decimal_state import sine_and_cosine
 from solvers.io.figures import COLOURS, panels
 from solvers.io.text_table import text_table
+from solvers.references.decimal_numbers import sine_and_cosine
 from solvers.references.power_series import PowerSeries
 from solvers.references.taylor import taylor
 from solvers.studies.failure_modes.study import Load, Study
