@@ -21,6 +21,7 @@ from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.independence import is_singular
+from derive.system.bodies.orientation import dot
 from derive.system.bodies.rigid_body import RigidBody
 from derive.system.symbols import TIME
 
@@ -78,7 +79,7 @@ class QuasiVelocities:
         for body in self.derivation.bodies:
             omega = self._turning(body)
             for moment, axes in body.turns:
-                pairs.append((moment, tuple(_dot(axis, omega) for axis in axes)))
+                pairs.append((moment, tuple(dot(axis, omega) for axis in axes)))
         return pairs
 
     def _turning(self, body: RigidBody) -> Row:
@@ -112,7 +113,7 @@ class QuasiVelocities:
         slopes = [(m, [[x.diff(u) for x in v] for u in self.u]) for m, v in self._velocities]
 
         def entry(i: int, j: int) -> sp.Expr:
-            terms = (m * self._shortened(reduced(_dot(rows[i], rows[j]))) for m, rows in slopes)
+            terms = (m * self._shortened(reduced(dot(rows[i], rows[j]))) for m, rows in slopes)
             return sp.Add(*terms)
 
         n = len(self.u)
@@ -135,7 +136,7 @@ class QuasiVelocities:
             changes = tuple(map(self._rate, v))
             for i, u in enumerate(self.u):
                 slopes = tuple(x.diff(u) for x in v)
-                forces[i] -= inertia * self._shortened(_dot(slopes, changes))
+                forces[i] -= inertia * self._shortened(dot(slopes, changes))
         for body in self.derivation.bodies:
             if not body.turns:
                 continue
@@ -184,7 +185,3 @@ def _with_square(form: sp.Expr, symbol: sp.Symbol, square: sp.Expr) -> sp.Expr:
         coefficient, power = term.as_coeff_exponent(symbol)
         terms.append(coefficient * square ** (power // 2) * symbol ** (power % 2))
     return sp.Add(*terms)
-
-
-def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
-    return sp.Add(*(x * y for x, y in zip(a, b, strict=True)))

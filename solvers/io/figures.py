@@ -73,6 +73,11 @@ def coloured(values: Iterable[Value]) -> Iterator[tuple[Value, str]]:
     return zip(dict.fromkeys(values), COLOURS, strict=False)
 
 
+def colours(count: int) -> list[str]:
+    """So many colours, which repeat after the seventh."""
+    return [COLOURS[k % len(COLOURS)] for k in range(count)]
+
+
 def columns(rows: Sequence[object], *names: str) -> list[list[Any]]:
     """The values of each attribute of the rows, such as coordinates to plot."""
     return [[getattr(row, name) for row in rows] for name in names]

@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 
 from solvers.equations.number_checks import positive
 from solvers.io.atomic_write import write_text
-from solvers.io.figures import COLOURS, FORMATS, panels, save
+from solvers.io.figures import FORMATS, colours, panels, save
 from solvers.player.motion_plots import draw_link, label_axes, plain
 from solvers.player.sampled_motion import SampledMotion, links_and_points, mass_positions, projected
 from solvers.player.track import Array
@@ -124,21 +124,17 @@ class _Panel:
         lines = [ends for kind, ends in self.links if kind in ("rod", "thread", "spring")]
         joints = [number for ends in lines for number in ends if number >= len(self.masses)]
         self.axes.plot(*places[joints].T, "o", color=DARK, markersize=3.5, alpha=alpha)
-        for mass, colour in zip(self.masses, _colours(len(self.masses)), strict=True):
+        for mass, colour in zip(self.masses, colours(len(self.masses)), strict=True):
             self.axes.plot(*mass[:, k], "o", color=colour, markersize=7, alpha=alpha)
 
     def draw_paths(self, k: int, duration: float) -> None:
         """Paths of the masses in the time before a time."""
         start = self.t[k] - duration
         samples = (self.sample_times >= start) & (self.sample_times <= self.t[k])
-        colours = _colours(len(self.masses))
-        for path, mass, colour in zip(self.paths, self.masses, colours, strict=True):
+        own = colours(len(self.masses))
+        for path, mass, colour in zip(self.paths, self.masses, own, strict=True):
             x, y = np.column_stack([path[:, samples], mass[:, k]])
             self.axes.plot(x, y, color=colour, linewidth=1.2, alpha=0.6, zorder=1)
-
-
-def _colours(count: int) -> list[str]:
-    return [COLOURS[k % len(COLOURS)] for k in range(count)]
 
 
 def _figure(motions: Sequence[SampledMotion], times: Array) -> tuple[Figure, list[_Panel]]:

@@ -137,7 +137,7 @@ class ExportedSystem:
             names[f"correction{suffix}"] = "correction"
         texts = [re.sub(rf"\b{name}\b", new, self._text(name)) for name, new in names.items()]
         texts += map(self._text, also)
-        texts += [self._project(), self._row(of), self._follow(), *self._event(of)]
+        texts += [self._project(), self._row(), self._follow(), *self._event(of)]
         tree = ast.parse(_template())
         own = ast.parse("\n\n".join(texts)).body
         replaced = {one.name for one in own if isinstance(one, ast.FunctionDef)}
@@ -260,7 +260,7 @@ class ExportedSystem:
             yield f"y[{k}] = y[{k}]*scale"
             yield f"y[{k + 1}] = y[{k + 1}]*scale"
 
-    def _row(self, of: Simulation) -> str:
+    def _row(self) -> str:
         head = (
             "def row(t: float, y: Vector, angles: Vector, params: Vector, values: Vector) -> None:"
         )

@@ -97,7 +97,7 @@ def exported_text(system: System, to: str, simulation: Simulation | None) -> tup
     program = of.simulation(simulation, ["simulate"] if target.is_program else target.entry)
     if stem in program.routines:  # a file of MATLAB has the name of its first function
         stem += "_motion"
-    about = f"{_about(of, [of.form])}\n\n{_integration(of, simulation)}"
+    about = f"{_about(of, [of.form])}\n\n{_integration(simulation)}"
     columns = of.columns(simulation) if target.is_program else ()
     params, start = tuple(of.values(simulation)), tuple(map(float, simulation.y0))
     angles = tuple(of.angles)
@@ -131,7 +131,7 @@ def _about(of: ExportedSystem, forms: Sequence[Form]) -> str:
     return "\n".join(lines)
 
 
-def _integration(of: ExportedSystem, simulation: Simulation) -> str:
+def _integration(simulation: Simulation) -> str:
     method = simulation.method
     lines = [f"Method: {method.title}, {len(method.b)} stages."]
     if simulation.steps:

@@ -239,7 +239,7 @@ class Translation:
         if expression.is_Symbol:
             return self._known.get(expression.name) or graph.leaf(expression.name)
         if expression.is_Rational:
-            return graph.node(_fraction(expression))
+            return graph.node(fraction(expression))
         if expression.is_Add and not expression.is_number:
             spring = elongation(expression)
             if spring is not None:
@@ -264,7 +264,7 @@ class Translation:
         value = expression.evalf(DIGITS)
         if not (value.is_Float and value.is_finite):
             raise _unsupported(expression)
-        magnitude = self.graph.irrational(_fraction(sp.Rational(abs(value))))
+        magnitude = self.graph.irrational(fraction(sp.Rational(abs(value))))
         return magnitude if value > 0 else -magnitude
 
     def _elongation(self, spring: Elongation) -> Node:
@@ -297,7 +297,8 @@ def _factors(product: sp.Mul) -> Iterable[sp.Expr]:
     return [base**exponent for base, exponent in exponents.items()]
 
 
-def _fraction(number: sp.Rational) -> Fraction:
+def fraction(number: sp.Rational) -> Fraction:
+    """A number of SymPy's as one of Python's."""
     return Fraction(int(number.p), int(number.q))
 
 

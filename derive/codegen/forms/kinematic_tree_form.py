@@ -15,7 +15,7 @@ from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import substitution
-from derive.codegen.expression_graph.sympy_translation import Translation
+from derive.codegen.expression_graph.sympy_translation import Translation, fraction
 from derive.codegen.forms.lagrangian_form import HALF
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.mechanics.derivation import Derivation
@@ -37,7 +37,7 @@ class TreeForm(ProjectionForm):
         self._along_rates = [f"rate of {name}" for name in names]
         columns = [tree.differences.col(i) for i in self._n]
         self._directions = {
-            name: {s.name: _fraction(x) for s, x in zip(state, column, strict=True) if x}
+            name: {s.name: fraction(x) for s, x in zip(state, column, strict=True) if x}
             for state, names in ((q, self._along), (qdot, self._along_rates))
             for name, column in zip(names, columns, strict=True)
         }
@@ -49,7 +49,7 @@ class TreeForm(ProjectionForm):
 
     def _weighted(self, weights: Sequence[sp.Expr], nodes: Sequence[Node]) -> Node:
         pairs = zip(nodes, weights, strict=True)
-        return self._graph.sum([(node, _fraction(x)) for node, x in pairs if x])
+        return self._graph.sum([(node, fraction(x)) for node, x in pairs if x])
 
     def _to_variables(self, forces: Sequence[Node]) -> Vector:
         """Generalized forces of the variables."""
@@ -250,7 +250,3 @@ class _InCoordinates(ConstrainedFactorisation):
     def solve(self, forces: Sequence[Node], rates: Sequence[Node]) -> tuple[Vector, Vector]:
         changes, multipliers = self.of_variables(forces, rates)
         return self._to_coordinates(changes), multipliers
-
-
-def _fraction(number: sp.Rational) -> Fraction:
-    return Fraction(int(number.p), int(number.q))

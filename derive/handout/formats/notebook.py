@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from derive.formulas.typeset.latex import latex
 from derive.handout.document_model import (
     Block,
     Code,
@@ -12,9 +11,8 @@ from derive.handout.document_model import (
     HandoutTable,
     NumberedEquation,
     Paragraph,
-    pieces,
 )
-from derive.handout.formats.tex import aligned
+from derive.handout.formats.tex import aligned, with_formulas
 
 METADATA = {
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -74,9 +72,7 @@ def _rows(rows: Sequence[Sequence[str]]) -> Iterator[str]:
 
 
 def _text(text: str) -> str:
-    return "".join(
-        f"${latex(piece.tree)}$" if piece.tree else _escaped(piece.text) for piece in pieces(text)
-    )
+    return with_formulas(text, _escaped)
 
 
 def _escaped(text: str) -> str:

@@ -1,7 +1,7 @@
 """Documents as LaTeX, for the packages of texlive-latex-base."""
 
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from textwrap import TextWrapper
 
 from derive.formulas.typeset.latex import latex
@@ -143,10 +143,15 @@ def _block(block: Block) -> str:
             return f"\n{escaped(language)}:\n\n{{\\footnotesize\n{verbatim}\n}}"
 
 
-def _text(text: str) -> str:
+def with_formulas(text: str, escape: Callable[[str], str]) -> str:
+    """Text with its formulas between dollar signs, the rest with characters escaped."""
     return "".join(
-        f"${latex(piece.tree)}$" if piece.tree else escaped(piece.text) for piece in pieces(text)
+        f"${latex(piece.tree)}$" if piece.tree else escape(piece.text) for piece in pieces(text)
     )
+
+
+def _text(text: str) -> str:
+    return with_formulas(text, escaped)
 
 
 def _wrapped(line: str) -> str:

@@ -13,6 +13,7 @@ from derive.formulas.functions import CHOICES, decisive_numbers, switching_funct
 from derive.mechanics.energies.kinematic_tree import KinematicTree, kinematic_tree
 from derive.mechanics.energies.reduction import gathered, reduced
 from derive.mechanics.energies.turning import turned
+from derive.system.bodies.orientation import dot
 from derive.system.bodies.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
@@ -99,7 +100,7 @@ class Kinetics:
             turns = [self._turn(body, v) for v in self.variables]
             for moment, axes in body.turns:
                 inertias.append(moment)
-                tangents.append([tuple(_dot(axis, turn) for axis in axes) for turn in turns])
+                tangents.append([tuple(dot(axis, turn) for axis in axes) for turn in turns])
         dots: dict[object, sp.Expr] = {}
 
         def entry(i: int, j: int) -> sp.Expr:
@@ -108,7 +109,7 @@ class Kinetics:
             for inertia, tangent in zip(inertias, tangents, strict=True):
                 pair = (tangent[i], tangent[j])
                 if pair not in dots:
-                    dots[pair] = _factored(reduced(_dot(*pair), MOST_REDUCED))
+                    dots[pair] = _factored(reduced(dot(*pair), MOST_REDUCED))
                 totals[dots[pair]] = totals.get(dots[pair], sp.S.Zero) + inertia
             return sp.Add(*(total * dot for dot, total in totals.items()))
 
@@ -238,10 +239,6 @@ class Kinetics:
         work = (f * v for f, v in zip(self.system.applied, self.system.qdot, strict=True))
         explicit = self.lagrangian if TIME in self.variables else -self.potential_energy
         return sp.Add(*work) - explicit.diff(TIME)
-
-
-def _dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
-    return sp.Add(*(x * y for x, y in zip(a, b, strict=True)))
 
 
 def _factored(expression: sp.Expr) -> sp.Expr:

@@ -70,7 +70,7 @@ class Orientation:
                 f"vector {shortened(vector)} has {len(components)} components: give three in body "
                 "axes"
             )
-        return tuple(_dot(row, components) for row in self.rows)
+        return tuple(dot(row, components) for row in self.rows)
 
     def turn(self, variable: sp.Symbol) -> Vector:
         """The angular velocity in body axes for each unit of the variable's rate."""
@@ -183,7 +183,7 @@ def rotation_matrix(rows: Sequence[Sequence[sp.Expr | float]]) -> Orientation:
         )
     columns = [*zip(*given, strict=True)]
     products = {
-        (i, j): _dot(columns[i], columns[j]) - int(i == j) for i in range(3) for j in range(i, 3)
+        (i, j): dot(columns[i], columns[j]) - int(i == j) for i in range(3) for j in range(i, 3)
     }
     conditions = tuple(
         sp.Rational(1, 1 + (i == j)) * value
@@ -263,7 +263,8 @@ def _rows(matrix: sp.Matrix) -> tuple[Vector, ...]:
     return tuple(tuple(matrix[i, :]) for i in range(matrix.rows))
 
 
-def _dot(a: Vector, b: Vector) -> sp.Expr:
+def dot(a: Sequence[sp.Expr | int], b: Sequence[sp.Expr]) -> sp.Expr:
+    """The product of two vectors."""
     return sp.Add(*(x * y for x, y in zip(a, b, strict=True)))
 
 

@@ -44,7 +44,7 @@ def accurate_ensemble(
 ) -> Ensemble:
     """The motions of `ensemble` with this accuracy, whose arguments it describes."""
     accuracy = positive("accuracy", accuracy)
-    check_options(module, options)
+    check_options(options)
     motions = MotionBatch.of(module, t_span, y0, params, options)
     rows, tolerance = np.arange(len(motions.states)), max(accuracy * RESERVE, FINEST * TIGHTER)
     result, estimates = None, np.full(len(rows), np.inf)

@@ -42,7 +42,7 @@ def accurate_motion(
     The method and form of `options` are chosen, unless one of them `is_named`.
     """
     accuracy = positive("accuracy", accuracy)
-    check_options(module, options)
+    check_options(options)
     problem = validation.problem(module, t_span, y0, params, options)
     motion = _motion(problem, options)
     if motion.duration == 0:
@@ -71,7 +71,7 @@ def accurate_motion(
     )
 
 
-def check_options(module: GeneratedModule, options: Options) -> None:
+def check_options(options: Options) -> None:
     """Refuse options that an accuracy determines."""
     for name in ("rtol", "atol", "h", "max_steps", "backend", "compensated"):
         if np.any(getattr(options, name) != getattr(Options, name)):

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from solvers.equations.number_checks import Array
 from solvers.io.figure_names import axis_label, symbol
-from solvers.io.figures import COLOURS, panels
+from solvers.io.figures import COLOURS, colours, panels
 from solvers.scenes.fitting.fitted_model import Fit
 from solvers.scenes.fitting.prediction import ModelComparison, Prediction
 from solvers.scenes.fitting.statistics import autocorrelation
@@ -61,7 +61,7 @@ def prediction_figure(comparison: ModelComparison, title: str) -> Figure:
 
 def _draw_motion(panel: Axes, fit: Fit, k: int) -> None:
     for run, curve, residuals, colour in zip(
-        fit.runs, fit.fitted, fit.residuals, _colours(len(fit.runs)), strict=True
+        fit.runs, fit.fitted, fit.residuals, colours(len(fit.runs)), strict=True
     ):
         panel.plot(run.t, curve[k] + residuals[k], ".", ms=4, color=GREY)
         panel.plot(run.t, curve[k], "-", lw=1, color=colour, label=run.name)
@@ -79,9 +79,7 @@ def _draw_prediction(panel: Axes, prediction: Prediction, fit: Fit, k: int) -> N
 
 
 def _draw_residuals(panel: Axes, fit: Fit, k: int) -> None:
-    for run, residuals, colour in zip(
-        fit.runs, fit.residuals, _colours(len(fit.runs)), strict=True
-    ):
+    for run, residuals, colour in zip(fit.runs, fit.residuals, colours(len(fit.runs)), strict=True):
         panel.plot(run.t, residuals[k], ".", ms=3, color=colour)
     for side in (-2, 2):
         panel.axhline(side * fit.estimate.noise[k], color=GREY, lw=0.8, ls="--")
@@ -104,10 +102,6 @@ def _draw_autocorrelation(panel: Axes, residuals: Sequence[Array], count: int) -
         panel.axhline(side / np.sqrt(count), color=GREY, lw=0.8, ls="--")
     panel.axhline(0, color=GREY, lw=0.8)
     panel.set(xlabel="lag / samples", ylabel="autocorrelation", ylim=(-1, 1))
-
-
-def _colours(count: int) -> list[str]:
-    return [COLOURS[k % len(COLOURS)] for k in range(count)]
 
 
 def _label(fit: Fit, k: int) -> str:
