@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "21cd5567cb095106"
+DIGEST = "35a4fe4b14094863"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
@@ -509,15 +509,14 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
         c8*x_dot*x_dot + c9*theta3_dot*theta3_dot + c10*theta1_dot*theta1_dot
         + c11*theta2_dot*theta2_dot
     )
-    x1 = (
+    # outputs
+    return (
         c2*x_dot*theta1_dot*cos_theta1 + c3*x_dot*theta2_dot*cos_theta2
         + c4*x_dot*theta3_dot*cos_theta3 + c5*theta1_dot*theta2_dot*cos(theta1 - theta2)
         + c6*theta3_dot*theta1_dot*cos(theta1 - theta3)
         + c7*theta3_dot*theta2_dot*cos(theta2 - theta3) + 0.5*x0 - c12*cos_theta1
         - c13*cos_theta2 - c14*cos_theta3
     )
-    # outputs
-    return x1
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:

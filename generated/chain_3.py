@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "0a1f7c6e4f4afcc0"
+DIGEST = "81476b845cca21ca"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -395,14 +395,13 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     c12 = g*c3
     # intermediate terms
     x0 = c6*theta3_dot*theta3_dot + c8*theta1_dot*theta1_dot + c9*theta2_dot*theta2_dot
-    x1 = (
+    # outputs
+    return (
         c2*theta1_dot*theta2_dot*cos(theta1 - theta2)
         + c4*theta3_dot*theta1_dot*cos(theta1 - theta3)
         + c5*theta3_dot*theta2_dot*cos(theta2 - theta3) + 0.5*x0 - c10*cos(theta1)
         - c11*cos(theta2) - c12*cos(theta3)
     )
-    # outputs
-    return x1
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "c0f664195a46b5d2"
+DIGEST = "fdc89d98e9987e73"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -318,9 +318,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # intermediate terms
     x0 = c0*theta_dot
     x1 = m*x_dot*x_dot + m*y_dot*y_dot + c1*theta_dot*theta_dot
-    x2 = y_dot*cos(theta)*x0 + 0.5*x1 - x_dot*sin(theta)*x0
     # outputs
-    return x2
+    return y_dot*cos(theta)*x0 + 0.5*x1 - x_dot*sin(theta)*x0
 
 
 def constraints(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "c0f664195a46b5d2"
+DIGEST = "fdc89d98e9987e73"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

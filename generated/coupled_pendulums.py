@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "3eb650db123c53ae"
+DIGEST = "7c9b86d1f26c909f"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -510,9 +510,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     x4 = l*x3
     x5 = d + x4
     x6 = l*(l*x2 + x3*(2.0*d + x4))/(d + sqrt(c4*x2 + x5*x5))
-    x7 = 0.5*x0 - (c3*cos_theta1 + c3*cos_theta2 - 0.5*k*x6*x6)
     # outputs
-    return x7
+    return 0.5*x0 - (c3*cos_theta1 + c3*cos_theta2 - 0.5*k*x6*x6)
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "3eb650db123c53ae"
+DIGEST = "7c9b86d1f26c909f"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -74,7 +74,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_bar_pendulum"
-DIGEST = "d49a6b01aca43e63"
+DIGEST = "f6e09f866009a972"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -287,9 +287,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
         c2*theta1_dot*theta1_dot + c3*theta1_dot*theta2_dot*cos(theta1 - theta2)
         - c4*cos(theta2)
     )
-    x1 = (1.0/6.0)*c1*theta2_dot*theta2_dot + 0.5*x0 - c5*cos(theta1)
     # outputs
-    return x1
+    return (1.0/6.0)*c1*theta2_dot*theta2_dot + 0.5*x0 - c5*cos(theta1)
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -498,12 +497,11 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     x1 = cos(theta1 - theta2)
     x2 = c1*p_theta2
     x3 = (2.0*x0 - 3.0*x1*x2)/(2.0*c2 - 1.5*m2*x1*x1)
-    x4 = (
+    # outputs
+    return (
         0.5*x0*x3 + 1.5*(c4*p_theta2 - 0.5*x1*x3)*x2
         - g*(c5*cos(theta1) + 0.5*c3*cos(theta2))
     )
-    # outputs
-    return x4
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

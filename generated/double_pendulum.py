@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "double_pendulum"
-DIGEST = "c9db18f51f3bebc4"
+DIGEST = "f553fee1de36f65e"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -278,12 +278,11 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     c6 = g*c0
     # intermediate terms
     x0 = c2*theta2_dot*theta2_dot + c4*theta1_dot*theta1_dot
-    x1 = (
+    # outputs
+    return (
         c1*theta2_dot*theta1_dot*cos(theta1 - theta2) + 0.5*x0 - c5*cos(theta1)
         - c6*cos(theta2)
     )
-    # outputs
-    return x1
 
 
 def reactions(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -510,9 +509,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     x2 = c1*p_theta2
     sin_x1 = sin(x1)
     x3 = (x0 - cos_x1*x2)/(m1 + m2*sin_x1*sin_x1)
-    x4 = 0.5*(x0*x3 + (c3*p_theta2 - cos_x1*x3)*x2) - g*(c4*cos(theta1) + c2*cos(theta2))
     # outputs
-    return x4
+    return 0.5*(x0*x3 + (c3*p_theta2 - cos_x1*x3)*x2) - g*(c4*cos(theta1) + c2*cos(theta2))
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "876ca5242b2318d6"
+DIGEST = "e5de41db53522948"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -192,9 +192,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     m, k, beta, _, F, Omega = params.tolist() if hasattr(params, "tolist") else params
     # intermediate terms
     x0 = x*x
-    x1 = 0.25*beta*x0*x0 + 0.5*(k*x0 + m*x_dot*x_dot) - F*x*cos(Omega*t)
     # outputs
-    return x1
+    return 0.25*beta*x0*x0 + 0.5*(k*x0 + m*x_dot*x_dot) - F*x*cos(Omega*t)
 
 
 def power(t: float, y: Numbers, params: Numbers) -> float:
@@ -392,10 +391,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     m, k, beta, _, F, Omega = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0/m
-    # intermediate terms
-    x0 = 0.5*p_x*(c0*p_x) + x*(0.5*k*x + 0.25*beta*x*x*x - F*cos(Omega*t))
     # outputs
-    return x0
+    return 0.5*p_x*(c0*p_x) + x*(0.5*k*x + 0.25*beta*x*x*x - F*cos(Omega*t))
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

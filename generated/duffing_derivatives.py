@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "876ca5242b2318d6"
+DIGEST = "e5de41db53522948"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

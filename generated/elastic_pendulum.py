@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "7b56ba3436cf7dc5"
+DIGEST = "2116fef120c784f1"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -368,9 +368,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     c1 = 1.0/m
     # intermediate terms
     x0 = r - l
-    x1 = 0.5*k*x0*x0 - c0*r*cos(theta) + 0.5*(p_r*(c1*p_r) + p_theta*(c1*p_theta/r)/r)
     # outputs
-    return x1
+    return 0.5*k*x0*x0 - c0*r*cos(theta) + 0.5*(p_r*(c1*p_r) + p_theta*(c1*p_theta/r)/r)
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -94,7 +94,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "079c598808cb8a15"
+DIGEST = "6af726e8bb2e0560"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
@@ -616,12 +616,11 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     x9 = x*x8
     x10 = (x5 + x6*x7*x9/x3)/(m*(1.0 - x1/x3 - y_*x1*x6*x8/(x3*x3)))
     x11 = x0 + cos_latitude*x4
-    x12 = (
+    # outputs
+    return (
         0.5*(x5*x10 + x7*(x6*(x7 + x10*x9/x3)))
         - m*(0.5*c2*(x11*x11 + c3*x1 + c4*x1) + g*x4)
     )
-    # outputs
-    return x12
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -88,7 +88,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "05a127f674756ae2"
+DIGEST = "4541db0e57fdabe7"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -424,9 +424,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     c8 = c*c4
     # intermediate terms
     x0 = c1*phi_dot*phi_dot + c3*sin(psi) + c5*sin(chi) + c6*phi_dot*psi_dot*cos(phi - psi)
-    x1 = c0*sin(phi) + 0.5*x0 + (1.0/6.0)*(c7*psi_dot*psi_dot + c8*chi_dot*chi_dot)
     # outputs
-    return x1
+    return c0*sin(phi) + 0.5*x0 + (1.0/6.0)*(c7*psi_dot*psi_dot + c8*chi_dot*chi_dot)
 
 
 def constraints(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "59ededc50af58c9c"
+DIGEST = "3d81e5b5ce18de56"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -291,9 +291,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     sin_theta = sin(theta)
     x0 = sin_theta*sin_theta
     x1 = alpha_dot*alpha_dot*(I + J*x0 + m*(c2 + c3*x0)) + c4*theta_dot*theta_dot
-    x2 = c1*alpha_dot*theta_dot*cos_theta + 0.5*x1 - c5*cos_theta
     # outputs
-    return x2
+    return c1*alpha_dot*theta_dot*cos_theta + 0.5*x1 - c5*cos_theta
 
 
 def power(t: float, y: Numbers, params: Numbers) -> float:
@@ -593,9 +592,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     sin_theta = sin(theta)
     x1 = sin_theta*sin_theta
     x2 = (p_alpha - x0*p_theta)/(I + J*x1 + m*(c4 + c5*x1) - c2*cos_theta*x0)
-    x3 = 0.5*(p_alpha*x2 + p_theta*(c1*p_theta - x0*x2)) - c6*cos_theta
     # outputs
-    return x3
+    return 0.5*(p_alpha*x2 + p_theta*(c1*p_theta - x0*x2)) - c6*cos_theta
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

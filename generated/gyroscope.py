@@ -83,7 +83,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "9a861dd8ed39a2be"
+DIGEST = "f98c385ff6be1a4d"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -317,9 +317,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     x0 = C*gamma_dot
     cos_beta = cos(beta)
     x1 = alpha_dot*alpha_dot*(I + c0*cos_beta*cos_beta + c1*sin_beta*sin_beta)
-    x2 = alpha_dot*sin_beta*x0 + 0.5*(gamma_dot*x0 + x1 + c2*beta_dot*beta_dot)
     # outputs
-    return x2
+    return alpha_dot*sin_beta*x0 + 0.5*(gamma_dot*x0 + x1 + c2*beta_dot*beta_dot)
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "9a861dd8ed39a2be"
+DIGEST = "f98c385ff6be1a4d"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

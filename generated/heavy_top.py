@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "e3db4880b0506810"
+DIGEST = "9c1d307a7d89ac09"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -319,11 +319,10 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     sin_theta = sin(theta)
     x1 = sin_theta*sin_theta
     x2 = phi_dot*phi_dot*(A*x1 + C*cos_theta*cos_theta + c2*x1)
-    x3 = (
+    # outputs
+    return (
         c1*cos_theta + phi_dot*cos_theta*x0 + 0.5*(psi_dot*x0 + x2 + c3*theta_dot*theta_dot)
     )
-    # outputs
-    return x3
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "ba759f153a4fc5d7"
+DIGEST = "cf5e49d5a3bb8b99"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")
@@ -175,9 +175,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
-    x2 = x0*y_ + 0.5*(x0 + x1 + x_dot*x_dot + y_dot*y_dot) - (1.0/3.0)*y_*x1
     # outputs
-    return x2
+    return x0*y_ + 0.5*(x0 + x1 + x_dot*x_dot + y_dot*y_dot) - (1.0/3.0)*y_*x1
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -293,9 +292,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # intermediate terms
     x0 = x*x
     x1 = y_*y_
-    x2 = x0*y_ + 0.5*(x0 + x1) - (1.0/3.0)*y_*x1 + 0.5*(p_x*p_x + p_y*p_y)
     # outputs
-    return x2
+    return x0*y_ + 0.5*(x0 + x1) - (1.0/3.0)*y_*x1 + 0.5*(p_x*p_x + p_y*p_y)
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

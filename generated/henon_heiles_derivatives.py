@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "ba759f153a4fc5d7"
+DIGEST = "cf5e49d5a3bb8b99"
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "3a313eaaf9ee40c6"
+DIGEST = "ebad0ed904b5ccf8"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -378,9 +378,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     c3 = R*Omega*Omega
     # intermediate terms
     sin_theta = sin(theta)
-    x0 = 0.5*c0*p_theta*(c2*p_theta) - c1*(0.5*c3*sin_theta*sin_theta + g*cos(theta))
     # outputs
-    return x0
+    return 0.5*c0*p_theta*(c2*p_theta) - c1*(0.5*c3*sin_theta*sin_theta + g*cos(theta))
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

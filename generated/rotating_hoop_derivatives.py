@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "3a313eaaf9ee40c6"
+DIGEST = "ebad0ed904b5ccf8"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "19af3084f7393a45"
+DIGEST = "bcea9e3baaae2259"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -225,10 +225,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     c0 = M*g
     c1 = M + m
     c2 = m*g
-    # intermediate terms
-    x0 = c0*r + 0.5*(c1*r_dot*r_dot + m*r*r*theta_dot*theta_dot) - c2*r*cos(theta)
     # outputs
-    return x0
+    return c0*r + 0.5*(c1*r_dot*r_dot + m*r*r*theta_dot*theta_dot) - c2*r*cos(theta)
 
 
 def mass_matrix(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -406,10 +404,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # terms of the parameters alone
     c0 = 1.0/(M + m)
     c1 = 1.0/m
-    # intermediate terms
-    x0 = g*r*(M - m*cos(theta)) + 0.5*(p_r*(c0*p_r) + p_theta*(c1*p_theta/r)/r)
     # outputs
-    return x0
+    return g*r*(M - m*cos(theta)) + 0.5*(p_r*(c0*p_r) + p_theta*(c1*p_theta/r)/r)
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

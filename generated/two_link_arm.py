@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "167812a8ce85b5f7"
+DIGEST = "fce0951a06c158eb"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -338,9 +338,8 @@ def energy(t: float, y: Numbers, params: Numbers) -> float:
     # intermediate terms
     cos_q2 = cos(q2)
     x0 = q1_dot*q1_dot*(c6 + m2*(c7 + 2.0*c8*cos_q2)) + c9*q2_dot*q2_dot
-    x1 = c3*sin(q1) + q1_dot*q2_dot*(I2 + c4*(c2 + l1*cos_q2)) + c5*sin(q2 + q1) + 0.5*x0
     # outputs
-    return x1
+    return c3*sin(q1) + q1_dot*q2_dot*(I2 + c4*(c2 + l1*cos_q2)) + c5*sin(q2 + q1) + 0.5*x0
 
 
 def power(t: float, y: Numbers, params: Numbers) -> float:
@@ -593,9 +592,8 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     x0 = I2 + c4*(c2 + l1*cos_q2)
     x1 = c5*x0
     x2 = (p_q1 - p_q2*x1)/(c6 + m2*(c7 + 2.0*c8*cos_q2) - x0*x1)
-    x3 = g*(c3*sin(q1) + c4*sin(q2 + q1)) + 0.5*(p_q1*x2 + p_q2*(c5*(p_q2 - x0*x2)))
     # outputs
-    return x3
+    return g*(c3*sin(q1) + c4*sin(q2 + q1)) + 0.5*(p_q1*x2 + p_q2*(c5*(p_q2 - x0*x2)))
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:

@@ -139,7 +139,7 @@ def {f.name}({arguments}) -> {type}:
         {returns}
     """
 {body}
-    return {outputs}
+{returned}
 '''
 
 OVER_ARRAYS = '''
@@ -247,7 +247,7 @@ class PythonBackend(Backend):
     def statement(self, statement: Statement, function: Function) -> list[str]:
         match statement:
             case ValueAssignment(name, text):
-                return [_broken(text, 4, name)]
+                return [_broken(text, 4, f"{name} = ")]
             case FactorisationAssignment(name, size, entries):
                 return [f"    {name} = _factorised({_tuple(entries, depth=1)}, {size})"]
             case SolutionAssignment(name, matrix, right):
@@ -289,6 +289,10 @@ class PythonBackend(Backend):
 
     def function(self, function: Function) -> str:
         assigned = self.assignments(function)
+        match assigned.terms:
+            case [*terms, ValueAssignment(name, text)] if assigned.outputs == [name]:
+                # a number that is returned at once needs no name
+                assigned.terms, assigned.outputs = terms, [text]
         return ONE.format(
             f=function,
             arguments=_arguments(function),
@@ -296,7 +300,7 @@ class PythonBackend(Backend):
             returns=broken_sum(function.returns, WIDTH - 8).replace("\n", f"\n{' ' * 8}"),
             parameters=_parameters(function),
             body="\n".join(self.body(function, self._inputs(function), assigned)),
-            outputs=_shaped(assigned.outputs, function.shape),
+            returned=_broken(_shaped(assigned.outputs, function.shape), 4, "return "),
         )
 
     def _functions(self, functions: Sequence[Function]) -> str:
@@ -465,9 +469,9 @@ def _tuple(items: Sequence[str], depth: int = 0) -> str:
     return f"(\n{inner}{' ' * 4 * depth})"
 
 
-def _broken(text: str, margin: int, name: str = "") -> str:
+def _broken(text: str, margin: int, before: str = "") -> str:
     """An indented line, or one in brackets over several lines if it is too long."""
-    start = " " * margin + (f"{name} = " if name else "")
+    start = " " * margin + before
     if len(start) + len(text) <= WIDTH or "\n" in text:
         return start + text
     lines = indent(broken_sum(text, WIDTH - margin - 4), " " * (margin + 4))
