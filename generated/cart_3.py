@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "35a4fe4b14094863"
+DIGEST = "0378489eb4e167b4"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",

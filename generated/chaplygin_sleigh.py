@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "fdc89d98e9987e73"
+DIGEST = "e2ffd0b19dbb9cf8"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "faef11811731c156"
+DIGEST = "d4495c30a17e3a52"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "e5de41db53522948"
+DIGEST = "db9522d13267760c"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")

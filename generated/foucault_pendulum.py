@@ -94,7 +94,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "6af726e8bb2e0560"
+DIGEST = "2b8ed4c3a7229438"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")

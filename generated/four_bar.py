@@ -88,7 +88,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "4541db0e57fdabe7"
+DIGEST = "16990f565c7e409a"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")

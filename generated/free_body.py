@@ -93,7 +93,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "free_body"
-DIGEST = "ba4508e015f5412c"
+DIGEST = "d076825604c147cb"
 COORDINATES = ("w", "x", "y", "z")
 STATE = ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot")
 FORMS = ("lagrangian", "variational", "sensitivity")

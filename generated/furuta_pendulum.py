@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "3d81e5b5ce18de56"
+DIGEST = "5627150a0a35d409"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

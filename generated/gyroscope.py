@@ -83,7 +83,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "f98c385ff6be1a4d"
+DIGEST = "0fe2d989e94a2526"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "9c1d307a7d89ac09"
+DIGEST = "b8959f3b5e25e1b2"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "cf5e49d5a3bb8b99"
+DIGEST = "8c4b04ec4ca65b1b"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")

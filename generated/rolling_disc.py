@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "4dbf20be2049d332"
+DIGEST = "911e1070db7dc6d5"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "ed307174195dff13"
+DIGEST = "b9f40576065bd4e1"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

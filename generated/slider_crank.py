@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "slider_crank"
-DIGEST = "843e2799a0bed093"
+DIGEST = "95913685b399b79b"
 COORDINATES = ("phi",)
 STATE = ("phi", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

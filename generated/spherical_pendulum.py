@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "d984ba763e081d10"
+DIGEST = "9626480260386b07"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "fce0951a06c158eb"
+DIGEST = "e00bdf658acb25a7"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

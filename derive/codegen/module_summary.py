@@ -24,8 +24,10 @@ STATES: dict[Form, str] = {
     "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
     "rational": "State y in functions of the rational form",
     "variational": "State y of `rhs_variational`: a motion and its linear perturbation",
-    "sensitivity": "State y of `rhs_sensitivity`: the same",
+    "sensitivity": "State y of `rhs_sensitivity`: a motion and its linear perturbation",
 }
+#: Of the last two, where their states have the same components.
+PERTURBED = STATES["variational"].replace(":", " and `rhs_sensitivity`:")
 
 
 def units(system: System) -> dict[str, str]:
@@ -58,7 +60,11 @@ def states(contents: Contents, forms: Iterable[Form]) -> str:
     """The components of the state in these forms, with units."""
     unit = units(contents.system)
     rows = {form: [f"{name} [{unit[name]}]" for name in contents.states[form]] for form in forms}
-    return "\n\n".join(_section(STATES[form], lines) for form, lines in rows.items())
+    titles = {form: STATES[form] for form in rows}
+    if {"variational", "sensitivity"} <= {*rows} and rows["variational"] == rows["sensitivity"]:
+        del rows["sensitivity"]
+        titles["variational"] = PERTURBED
+    return "\n\n".join(_section(titles[form], lines) for form, lines in rows.items())
 
 
 @lru_cache(maxsize=1)  # for the files of all languages, and of parts of a module
