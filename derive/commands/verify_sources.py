@@ -17,7 +17,7 @@ from derive.verification.files import judge_file
 from derive.verification.hand import HandDerivation, judge
 from derive.verification.judging.verdict import VerdictName, table_width, verdict_rows, wrapped
 from derive.verification.report.report_judgement import OrderOf
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.io.toml_input import InputError
 
 #: The verdicts that are counted, and the width of the column of files.

@@ -14,7 +14,7 @@ from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.io.figures import coloured, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.references.taylor import taylor
 from solvers.studies import heyoka
 

@@ -15,7 +15,7 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.ensemble import ensemble
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.runge_kutta.method_catalogue import load
 from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at

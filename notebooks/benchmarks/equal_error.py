@@ -14,7 +14,7 @@ from benchmarks.motions import Array, Curves
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import prepare
 from solvers.integration.problem.problem import Options
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.studies.work_precision.cost_curve import work_at
 
 METHODS, POWERS = ("verner853", "verner98", "gauss8"), range(-1, -13, -1)

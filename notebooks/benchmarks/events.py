@@ -18,7 +18,7 @@ from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at
 

@@ -20,7 +20,7 @@ from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule, with_functions
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.inputs import Held
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.scenes.fitting.fitted_model import fitted
 from solvers.scenes.fitting.measurement import Measurement, Outputs
 

@@ -22,7 +22,7 @@ from benchmarks.motions import END, FINAL, START
 from solvers.equations.module import GeneratedModule
 from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.prepare import prepare
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.studies import heyoka
 
 Array = NDArray[np.float64]

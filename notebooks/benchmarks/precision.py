@@ -17,7 +17,7 @@ from benchmarks.motions import START, Array, Curves, ordinary
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.references.decimal_numbers import decimal_state
 from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at

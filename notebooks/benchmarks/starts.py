@@ -15,7 +15,7 @@ from benchmarks.motions import Array, Curves, Runs, tolerances
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at
 

@@ -129,7 +129,7 @@ def test_an_import_of_another_room_is_an_arrow(tmp_path: Path) -> None:
 def test_derive_imports_only_standard_library_modules_of_solvers() -> None:
     code = (
         "import sys, solvers.io.suggestion, solvers.io.atomic_write, solvers.io.toml_input,"
-        "solvers.io.text_table, solvers.io.terminal, solvers.io.html_page;"
+        "solvers.io.terminal, solvers.io.terminal, solvers.io.html_page;"
         "print([m for m in ('sympy', 'numpy', 'scipy', 'matplotlib') if m in sys.modules])"
     )
     run = subprocess.run(

@@ -13,7 +13,7 @@ import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.modules import load
 from solvers.equations.linearisation.normal_modes import Modes
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
 from solvers.studies.failure_modes.chaos import (

@@ -7,7 +7,7 @@ import numpy as np
 
 from solvers.io.quantity import with_unit
 from solvers.io.suggestion import counted
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.scenes.fitting.fitted_model import Fit
 from solvers.scenes.fitting.prediction import ModelComparison
 

@@ -16,7 +16,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.io.figures import COLOURS, coloured, columns, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.references.taylor import taylor
 from solvers.studies.failure_modes.largest_exponent import Mean, lyapunov
 from solvers.studies.failure_modes.study import Load, Study

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from solvers.io.figures import coloured, legend_beside, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.studies.failure_modes.drift import Case, Drift, drift
 from solvers.studies.failure_modes.study import Load, Study
 

@@ -18,7 +18,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.io.figures import coloured, legend_beside, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.studies.failure_modes.study import Load, Study
 
 Array = NDArray[np.float64]

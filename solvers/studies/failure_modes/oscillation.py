@@ -12,7 +12,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.io.figures import coloured, columns, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes.study import Load, Study

@@ -14,7 +14,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.io.figures import COLOURS, columns, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.references.elliptic import pendulum as exact_solution
 from solvers.studies.failure_modes.study import Load, Study
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.module import GeneratedModule, function
 from solvers.io.figures import COLOURS, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.references.decimal_numbers import sine_and_cosine
 from solvers.references.power_series import PowerSeries
 from solvers.references.taylor import taylor

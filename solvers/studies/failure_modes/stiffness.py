@@ -13,7 +13,7 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.prepare import NotFinishedError, Prepared, prepare
 from solvers.io.figures import coloured, columns, legend_beside, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.studies.failure_modes.study import Load, Study
 from solvers.studies.work_precision.measured_curves import MOST_STEPS

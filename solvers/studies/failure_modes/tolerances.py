@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.io.figures import coloured, columns, legend_beside, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.method_catalogue import SCIPY
 from solvers.studies.failure_modes.study import Load, Study

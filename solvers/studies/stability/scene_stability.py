@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.io.figures import COLOURS, coloured, panels
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.scenes.scene import Scene

@@ -15,7 +15,7 @@ from solvers.equations.module import has_function
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate
 from solvers.io.exports import jsonable
-from solvers.io.text_table import text_table
+from solvers.io.terminal import text_table
 from solvers.runge_kutta.method_catalogue import load
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision import work_precision_plots
