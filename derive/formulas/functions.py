@@ -1,10 +1,12 @@
-"""The functions of formulas; kinks, jumps, and the numbers whose signs decide between branches.
+"""The functions of formulas: their table, derivatives, kinks and jumps, and switching functions.
 
-Such a number is a switching function (E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
-Differential Equations I, section II.6): between its zeros, formulas are smooth.
+A number whose sign decides between branches is a switching function (E. Hairer, S. P. Norsett,
+G. Wanner, Solving Ordinary Differential Equations I, section II.6): between its zeros, formulas are
+smooth.
 """
 
 from collections.abc import Collection, Iterable, Iterator
+from functools import lru_cache
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -96,3 +98,35 @@ def _decisive(part: sp.Expr) -> Iterator[sp.Expr]:
             first = part.func(first, argument)
     else:
         yield part.args[0]
+
+
+#: Derivatives that are kept.
+MOST = 100_000
+
+
+@lru_cache(MOST)
+def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """∂expression/∂symbol, as ``expression.diff(symbol)`` gives it; that of equal parts once.
+
+    SymPy's own collects the symbols of every part of every part, which takes longer than the rest.
+    """
+    if expression == symbol:
+        return sp.S.One
+    if not expression.args:
+        return sp.S.Zero
+    if not isinstance(expression, sp.Add | sp.Mul | sp.Pow | sp.sin | sp.cos):
+        return expression.diff(symbol)
+    changes = [derivative(part, symbol) for part in expression.args]
+    if not any(changes):
+        return sp.S.Zero
+    if expression.is_Add:
+        return sp.Add(*changes)
+    if expression.is_Mul:
+        parts = expression.args
+        terms = [sp.Mul(*parts[:k], d, *parts[k + 1 :]) for k, d in enumerate(changes) if d != 0]
+        return sp.Add(*terms)
+    if expression.is_Pow:
+        base, exponent = expression.args
+        growth = changes[1] * sp.log(base) if changes[1] != 0 else sp.S.Zero
+        return expression * (growth + changes[0] * exponent / base)
+    return expression.fdiff() * changes[0]

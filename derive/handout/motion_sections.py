@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.handout.derived_letters import names_of, words
 from derive.handout.document_model import Block, Paragraph
 from derive.handout.numbering import Numbering, tidied

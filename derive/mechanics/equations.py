@@ -6,7 +6,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.mechanics.constraints.differentiated_constraints import Constraints
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import collected, reduced

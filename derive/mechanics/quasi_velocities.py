@@ -16,7 +16,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.budget import is_expandable
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced

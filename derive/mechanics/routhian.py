@@ -11,7 +11,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import collected, reduced
 from derive.mechanics.equations import HALF, Equations

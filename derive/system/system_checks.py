@@ -6,7 +6,7 @@ from itertools import chain
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.system.declaration import Declaration
 from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from derive import load
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.system.symbols import TIME
 
 x, y = sp.symbols("x y", real=True)

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.mechanics.constraints.integrability import Integrability, integrability
 from derive.mechanics.energies.kinetics import Kinetics, Matrix
 from derive.mechanics.energies.reduction import collected

@@ -24,7 +24,7 @@ from typing import Any
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.formulas.proofs.trigonometric_field import TrigonometricField
 from derive.system.symbols import TIME
 from derive.system.system import System

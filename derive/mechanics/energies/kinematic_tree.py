@@ -15,7 +15,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.budget import is_expandable
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.mechanics.energies.reduction import reduced
 
 Vector: TypeAlias = tuple[sp.Expr, ...]

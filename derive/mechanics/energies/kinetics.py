@@ -8,8 +8,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.budget import is_expandable
-from derive.formulas.derivative import derivative
-from derive.formulas.functions import CHOICES, decisive_numbers, switching_functions
+from derive.formulas.functions import CHOICES, decisive_numbers, derivative, switching_functions
 from derive.mechanics.energies.kinematic_tree import KinematicTree, kinematic_tree
 from derive.mechanics.energies.reduction import gathered, reduced
 from derive.mechanics.energies.turning import turned

@@ -12,7 +12,7 @@ from typing import Self, TypeAlias
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.formulas.proofs.zero import vanishes
 from derive.system.parts import SystemDefinitionError, formula, formulas, items
 from solvers.io.suggestion import shortened

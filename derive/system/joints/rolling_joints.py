@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.formulas.derivative import derivative
+from derive.formulas.functions import derivative
 from derive.system.bodies.orientation import AXES, Orientation
 from derive.system.constraints import Constraint, Point
 from derive.system.joints.joint import canonical, components, constraint_rows, unit_vector
