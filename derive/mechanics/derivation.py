@@ -20,9 +20,9 @@ from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.independence import check_independence, is_singular
 from derive.mechanics.linearisation.closed_form_equilibria import equilibria
 from derive.mechanics.linearisation.point import Formula, OperatingPoint
+from derive.mechanics.linearisation.point import outputs as output_formulas
 from derive.mechanics.linearisation.small_oscillations import Linearisation, SmallOscillations
 from derive.mechanics.linearisation.state_space import StateSpace, state_space
-from derive.mechanics.outputs import outputs as output_formulas
 from derive.mechanics.regressor import Regressor, regressor
 from derive.mechanics.steps import StepByStep
 from derive.system.bodies.rigid_body import RigidBody

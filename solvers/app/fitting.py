@@ -248,7 +248,7 @@ def _formulas(module: GeneratedModule, names: tuple[str, ...]) -> GeneratedModul
     """The generated functions of quantities that are no components of the state."""
     from derive import Derivation
     from derive.codegen.module_files import output_texts
-    from derive.mechanics.outputs import outputs
+    from derive.mechanics.linearisation.point import outputs
 
     derivation = Derivation(system_of(module))
     expressions = outputs(derivation, names)

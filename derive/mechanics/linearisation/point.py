@@ -1,6 +1,6 @@
-"""Points of a system by names and formulas, and small changes that constraints leave free there."""
+"""Points and outputs of a system by names and formulas; changes that constraints leave free."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -11,7 +11,7 @@ from derive.formulas.evaluation.generic_values import is_small, sample
 from derive.formulas.evaluation.numeric import Evaluator, NoValueError
 from derive.formulas.expression import FUNCTIONS, number
 from derive.formulas.syntax import ExpressionError
-from derive.mechanics.energies.kinetics import Matrix
+from derive.mechanics.energies.kinetics import Kinetics, Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations
 from derive.system.parts import SystemDefinitionError, formula
@@ -183,3 +183,33 @@ def _rows(system: System, matrix: Matrix) -> list[list[float]]:
         raise SystemDefinitionError(
             f"the constraints of {system.name!r} have no derivatives at the point: {error}"
         ) from None
+
+
+def named_outputs(kinetics: Kinetics) -> dict[str, sp.Expr]:
+    """Quantities with names: ``energy``, positions ``x1``, ``y1`` ..., outputs, and the state.
+
+    The number is that of the mass, in the order of the system; two axes are x and y.
+    """
+    system = kinetics.system
+    positions = {
+        f"{axis}{k}": part
+        for k, mass in enumerate(system.masses, 1)
+        for axis, part in zip("xyz", mass.position, strict=False)
+    }
+    state = {s.name: s for s in (*system.q, *system.qdot)}
+    return {"energy": kinetics.energy} | positions | dict(system.measured) | state
+
+
+def outputs(kinetics: Kinetics, formulas: Sequence[Formula]) -> tuple[sp.Expr, ...]:
+    """Formulas, or names of `named_outputs`, as expressions; `SystemDefinitionError` if invalid."""
+    system, named = kinetics.system, named_outputs(kinetics)
+    symbols = {s.name: s for s in (*system.params, TIME)}
+    namespace, results = FUNCTIONS | symbols | named, []
+    for given in formulas:
+        if isinstance(given, str) and given.isidentifier() and given not in namespace:
+            raise SystemDefinitionError(
+                f"{shortened(given)} is no output{did_you_mean(given, named)}; known are "
+                f"{', '.join(named)}, and formulas of these and of parameters"
+            )
+        results.append(expression(f"output {shortened(given)}", given, namespace))
+    return tuple(results)
