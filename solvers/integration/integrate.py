@@ -124,9 +124,9 @@ def integrate(
         When the motion does not reach its end.
     solvers.integration.checks.predictability.PredictabilityWarning
         When errors grow to the size of the motion before its end.
-    solvers.integration.checks.energy_change.EnergyWarning
+    solvers.integration.checks.accuracy_warnings.EnergyWarning
         When a motion that conserves its energy ends with another one.
-    solvers.integration.checks.energy_change.DriftWarning
+    solvers.integration.checks.accuracy_warnings.DriftWarning
         When that energy drifts over 1000 fixed steps and more of an explicit method, by a
         thousandth and more; it names a symplectic method.
     solvers.equations.singularities.MassMatrixWarning

@@ -17,7 +17,7 @@ import generated.rotating_hoop as hoop
 import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
 import generated.swinging_atwood as atwood
-from solvers.integration.checks.energy_change import DriftWarning, EnergyWarning
+from solvers.integration.checks.accuracy_warnings import DriftWarning, EnergyWarning
 from solvers.integration.checks.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate

@@ -77,7 +77,7 @@ CONVERGED = {
 
 
 @pytest.mark.long("more cases of the same kind", keep=3)
-@pytest.mark.filterwarnings("ignore::solvers.integration.checks.energy_change.DriftWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.accuracy_warnings.DriftWarning")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("form", ["lagrangian", "hamiltonian"])
 @pytest.mark.parametrize("method", CONVERGED)
@@ -161,7 +161,7 @@ def test_time_may_run_backwards_or_not_at_all() -> None:
     assert still.y[:, 0].tolist() == list(REPORT)
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.checks.energy_change.DriftWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.accuracy_warnings.DriftWarning")
 def test_fixed_steps_end_at_the_end_of_the_span_and_do_not_drift() -> None:
     solution = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, method="rk4", h=0.3)
     assert solution.t == pytest.approx([0, 0.3, 0.6, 0.9, 1.0])
@@ -236,7 +236,7 @@ def test_angles_of_the_rational_form_are_unwrapped() -> None:
     assert spinning[1] == pytest.approx(spinning[0], abs=1e-8)
 
 
-@pytest.mark.filterwarnings("ignore::solvers.integration.checks.energy_change.DriftWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.accuracy_warnings.DriftWarning")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 def test_the_rational_form_keeps_sine_and_cosine_together(backend: str) -> None:
     # each step of rk4 shortens sine and cosine by (0.7 rad)^6/144: if nothing restored them,
@@ -294,7 +294,7 @@ def test_implicit_midpoint_conserves_the_energy_of_its_modified_equation() -> No
 
 
 @pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
-@pytest.mark.filterwarnings("ignore::solvers.integration.checks.energy_change.DriftWarning")
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.accuracy_warnings.DriftWarning")
 def test_implicit_midpoint_keeps_the_energy_where_other_methods_do_not() -> None:
     def growth(method: str) -> float:
         """Largest error of the energy in the second minute, over that in the first."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.energy import conserves_energy, equilibrium_state
 from solvers.equations.module import has_function
-from solvers.integration.checks.energy_change import changed_energy
+from solvers.integration.checks.accuracy_warnings import changed_energy
 from solvers.integration.checks.predictability import PredictabilityWarning
 from solvers.integration.loops.passage import rerun
 from solvers.integration.problem.problem import Problem
