@@ -43,7 +43,7 @@ class TrigonometricField:
             wave(self._angles[angle]) for angle in moving for wave in (sp.sin, sp.cos)
         )
         half = [(self.field(self._halves[a]), self._angles[a]) for a in self._angles]
-        self._slopes = {
+        self._derivatives = {
             v: [(t, (1 + t**2) * self.value(a.diff(v)) / 2) for t, a in half if a.has(v)]
             for v in variables
         }
@@ -69,14 +69,14 @@ class TrigonometricField:
                 f"{str(formula)[:80]} is not a rational function of coordinates, sines and cosines"
             ) from None
 
-    def slope(self, value: Any, variable: sp.Symbol) -> Any:
+    def derivative(self, value: Any, variable: sp.Symbol) -> Any:
         """The derivative by a variable."""
         own = value.diff(self._generators[variable])
-        return sum((value.diff(t) * slope for t, slope in self._slopes[variable]), own)
+        return sum((value.diff(t) * rate for t, rate in self._derivatives[variable]), own)
 
     def gradient(self, value: Any) -> list[Any]:
         """The derivatives by all variables."""
-        return [self.slope(value, variable) for variable in self.variables]
+        return [self.derivative(value, variable) for variable in self.variables]
 
     def at_a_point(self, value: Any) -> Any:
         """The number of an element where all variables and parameters have certain values."""

@@ -220,13 +220,13 @@ def _ranks_at_a_point(
     """Ranks of the first `known` forms, of all, and of their derived ones, at a point."""
     n, at = range(len(functions.variables)), functions.at_a_point
     values = [[at(entry) for entry in form] for form in forms]
-    slopes = [[[*map(at, functions.gradient(entry))] for entry in form] for form in forms]
+    gradients = [[[*map(at, functions.gradient(entry))] for entry in form] for form in forms]
     matrix = DomainMatrix(values, (len(forms), len(n)), sp.QQ)
     pairs = [*combinations(matrix.nullspace().to_list(), 2)]
     brackets = [
         [sum(((d[b][a] - d[a][b]) * X[a] * Y[b] for a in n for b in n), sp.QQ.zero)
          for X, Y in pairs]
-        for d in slopes
+        for d in gradients
     ]  # fmt: skip
     first = DomainMatrix(values[:known], (known, len(n)), sp.QQ).rank() if known else 0
     curvature = DomainMatrix(brackets, (len(forms), len(pairs)), sp.QQ).rank()
@@ -281,7 +281,7 @@ class _Forms:
         """Variables, sines and cosines in the forms."""
         functions, entries = self._functions, [*chain(*self._rows)]
         is_used = {
-            v: any(row[k] for row in self._rows) or any(functions.slope(e, v) for e in entries)
+            v: any(row[k] for row in self._rows) or any(functions.derivative(e, v) for e in entries)
             for k, v in enumerate(functions.variables)
         }
         used = {v for v, yes in is_used.items() if yes}

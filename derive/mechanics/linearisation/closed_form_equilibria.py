@@ -59,11 +59,13 @@ def _solutions(
             changed = [sp.factor(reduced(c.subs(step.unknown, root))) for c in others]
             for values in _solutions([c for c in changed if not is_small(c)], rest, name):
                 value = tidied(root.subs(values)) if root.free_symbols & {*rest} else root
-                if _is_possible(step.unknown, value) and not is_small(step.slope.subs(values)):
+                if _is_possible(step.unknown, value) and not is_small(
+                    step.coefficient.subs(values)
+                ):
                     yield {step.unknown: value, **values}
         if step.may_be_singular:
             remainder = step.factor.xreplace({step.unknown: sp.S.Zero})
-            both = [sp.factor(reduced(c)) for c in (step.slope, remainder)]
+            both = [sp.factor(reduced(c)) for c in (step.coefficient, remainder)]
             yield from _solutions([*others, *(c for c in both if c != 0)], unknowns, name)
 
 
@@ -76,22 +78,22 @@ class _Step:
     count: int  # of unknowns
 
     @cached_property
-    def slope(self) -> sp.Expr:
+    def coefficient(self) -> sp.Expr:
         """The coefficient of the unknown in a linear equation of several unknowns, or else 1."""
         return self.factor.diff(self.unknown) if self.count > 1 else sp.S.One
 
     @property
     def is_linear(self) -> bool:
-        return self.unknown not in self.slope.free_symbols
+        return self.unknown not in self.coefficient.free_symbols
 
     @property
     def may_be_singular(self) -> bool:
-        """Whether the slope can be 0, where the factor does not determine the unknown."""
-        return self.slope.is_zero is not False
+        """Whether the coefficient can be 0, where the factor does not determine the unknown."""
+        return self.coefficient.is_zero is not False
 
     @property
     def cost(self) -> tuple[bool, bool, int]:
-        """Factors of one unknown are solved first, those of uncertain slopes late."""
+        """Factors of one unknown are solved first, those of uncertain coefficients late."""
         return not self.is_linear, self.may_be_singular, self.count
 
     def roots(self, name: str) -> list[sp.Expr]:
@@ -100,7 +102,7 @@ class _Step:
             own = sorted(self.factor.free_symbols, key=str)
             raise SystemDefinitionError(_no_closed_form(name, self.factor, own))
         if self.count > 1:
-            return [-self.factor.xreplace({self.unknown: sp.S.Zero}) / self.slope]
+            return [-self.factor.xreplace({self.unknown: sp.S.Zero}) / self.coefficient]
         return _roots(self.factor, self.unknown, name)
 
 
