@@ -1,4 +1,4 @@
-"""``holonomic derive``: write the generated modules, or check that they are up to date."""
+"""``holonomic derive``: write the generated modules, check them, or write a document."""
 
 import sys
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
@@ -9,8 +9,8 @@ from shlex import quote
 from derive.codegen.expression_graph.sympy_translation import UnsupportedFunctionError
 from derive.codegen.module_files import FileDifference, GeneratedFiles, texts
 from derive.codegen.module_summary import mobility
-from derive.commands import write_document
 from derive.commands.derive_options import add_arguments
+from derive.handout.derivation_document import WRITERS, write_document
 from derive.mechanics.constraints.differentiated_constraints import Constraints
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.reduced_coordinates import reduced
@@ -18,6 +18,44 @@ from derive.system.files.shipped import names
 from derive.system.files.system_catalogue import UnknownSystemError, load
 from derive.system.parts import SystemDefinitionError
 from solvers.io.terminal import standard_streams
+
+
+def is_document_requested(arguments: Namespace) -> bool:
+    """Whether an option of documents is given."""
+    options = (arguments.document, arguments.exercises, arguments.seed)
+    return any(option is not None for option in options)
+
+
+def write_requested_document(arguments: Namespace) -> int:
+    """Write the document, and the key of its exercises; print their paths."""
+    _check_document_options(arguments)
+    derivation = Derivation(load(arguments.systems[0]))
+    path, exercises, seed = arguments.document, arguments.exercises, arguments.seed or 0
+    for written in write_document(derivation, path, exercises, seed):
+        print(f"wrote {written}")
+    return 0
+
+
+def _check_document_options(arguments: Namespace) -> None:
+    """Raise `SystemDefinitionError` if the options do not fit each other."""
+    path = arguments.document
+    if path is None:
+        raise SystemDefinitionError(
+            "--exercises and --seed concern a document: name its file with --document FILE"
+        )
+    if arguments.seed is not None and arguments.exercises != "mistakes":
+        raise SystemDefinitionError("--seed chooses mistakes: add --exercises mistakes")
+    if arguments.check or arguments.output is not None:
+        raise SystemDefinitionError("--document writes one file: omit --check and --output")
+    if len(arguments.systems) != 1:
+        given = ", ".join(arguments.systems) or "none"
+        raise SystemDefinitionError(f"--document takes one system, got {given}: name one")
+    if path.suffix not in WRITERS:
+        known = ", ".join(WRITERS)
+        raise SystemDefinitionError(
+            f"{path}: the suffix {path.suffix!r} names no format of documents; known are {known}"
+        )
+
 
 PACKAGE = '''"""Equations of motion as code, one module a system; see ``holonomic derive``."""
 
@@ -45,8 +83,8 @@ def main(argv: Sequence[str]) -> int:
 def run(arguments: Namespace, others: Iterable[GeneratedFiles] = ()) -> int:
     """Run the command, also on `others`; return 0, 1 (differences), 2 (input) or 4 (files)."""
     try:
-        if write_document.is_requested(arguments):
-            return write_document.run(arguments)
+        if is_document_requested(arguments):
+            return write_requested_document(arguments)
         trees = [planned(arguments.systems, arguments.output), *others]
         if not arguments.check:
             _state(arguments.systems)
