@@ -1,7 +1,6 @@
 """The integration of many motions: in vector lanes over all cores, or one by one in Python."""
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -70,6 +69,8 @@ class EnsembleRun:
 
     def _run_threads(self, batch: Batch, workers: int) -> None:
         """Run the batch; C releases Python's lock, this thread receives interruptions."""
+        from concurrent.futures import ThreadPoolExecutor  # takes time to load
+
         batch.restart()
         with ThreadPoolExecutor(workers) as pool:
             try:
