@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.integration.loops import scipy_loop
 from solvers.integration.loops.attempts import (
     FAILURES,
@@ -15,7 +14,7 @@ from solvers.integration.loops.attempts import (
     StepAttempts,
     TimedState,
 )
-from solvers.integration.loops.switching import first_part, is_coarse, next_part
+from solvers.integration.loops.switching import is_coarse, run_parts
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.recorder import Outcome, Recorder
@@ -36,27 +35,21 @@ def run(problem: Problem, outcome: Outcome, stop: StopFlag | None = None) -> Non
     if not isinstance(problem.method, Tableau):
         scipy_loop.run(problem, outcome, stop)
         return
-    recorder, h, status = Recorder(problem, outcome), problem.h, Status.FINISHED
-    members, tolerances = problem.method.members, (problem.rtol, problem.atol)
+    h, members, tolerances = problem.h, problem.method.members, (problem.rtol, problem.atol)
     controllers = [None if h else Controller.of(method, *tolerances) for method in members]
     choice = OrderChoice(len(members))
-    try:
-        for segment in problem.segments(lambda: recorder.y, outcome.history):
-            part, status = first_part(segment, outcome)
-            while part is not None:
-                recorder.restart(part)
-                orders = Orders(_attempts(part, members, controllers), choice)
-                try:
-                    status, h = _run(part, outcome, recorder, orders, h, stop)
-                finally:
-                    outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
-                    outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
-                part, status = next_part(part, outcome, status)
-            if status is not Status.FINISHED:
-                break
-    except NotFiniteNumberError as failure:
-        status = outcome.fail(failure)
-    outcome.end_with(status, problem)
+
+    def run_part(part: Problem, recorder: Recorder) -> Status:
+        nonlocal h
+        orders = Orders(_attempts(part, members, controllers), choice)
+        try:
+            status, h = _run(part, outcome, recorder, orders, h, stop)
+        finally:
+            outcome.nfev += sum(attempts.stepper.nfev for attempts in orders.members)
+            outcome.njev += sum(attempts.stepper.njev for attempts in orders.members)
+        return status
+
+    run_parts(problem, outcome, run_part)
 
 
 def _attempts(

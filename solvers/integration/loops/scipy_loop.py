@@ -8,8 +8,7 @@ import numpy as np
 import scipy
 
 from solvers.equations.forms import Form
-from solvers.equations.number_checks import NotFiniteNumberError
-from solvers.integration.loops.switching import first_part, next_part
+from solvers.integration.loops.switching import run_parts
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status, StopFlag
 from solvers.integration.results.recorder import Outcome, Recorder
@@ -52,19 +51,7 @@ class DenseOutput:
 def run(problem: Problem, outcome: Outcome, stop: StopFlag) -> None:
     """Integrate `problem` until `stop` is set; `outcome` holds the results so far at any time."""
     outcome.backend = "scipy"
-    recorder, status = Recorder(problem, outcome), Status.FINISHED
-    try:
-        for segment in problem.segments(lambda: recorder.y, outcome.history):
-            part, status = first_part(segment, outcome)
-            while part is not None:
-                recorder.restart(part)
-                status = _run(part, outcome, recorder, stop)
-                part, status = next_part(part, outcome, status)
-            if status is not Status.FINISHED:
-                break
-    except (NotFiniteError, NotFiniteNumberError) as failure:
-        status = outcome.fail(failure)
-    outcome.end_with(status, problem)
+    run_parts(problem, outcome, lambda part, recorder: _run(part, outcome, recorder, stop))
 
 
 def _run(problem: Problem, outcome: Outcome, recorder: Recorder, stop: StopFlag) -> Status:

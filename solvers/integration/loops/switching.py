@@ -9,18 +9,19 @@ keep their order. A function to whose zero the motion returns at once from both 
 The compiled loop does the same in ``compiled/c/switching.h``.
 """
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 
 import numpy as np
 
 from solvers.equations.forms import Form
+from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.equations.sliding import is_affine
 from solvers.integration.problem.events import SwitchEvent
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
-from solvers.integration.results.recorder import Outcome
-from solvers.runge_kutta.stepper import Array
+from solvers.integration.results.recorder import Outcome, Recorder
+from solvers.runge_kutta.stepper import Array, NotFiniteError
 
 #: Parts between switches that are shorter than this many spacings of times, in succession, after
 #: which all functions that changed their signs in turn are at 0.
@@ -180,7 +181,28 @@ def _consistent(
     raise UndeterminedError
 
 
-def first_part(problem: Problem, outcome: Outcome) -> tuple[Problem | None, Status]:
+def run_parts(
+    problem: Problem, outcome: Outcome, run: Callable[[Problem, Recorder], Status]
+) -> None:
+    """Integrate the parts of a problem between samples of held inputs and switches, one by one.
+
+    ``run(part, recorder)`` integrates a part from the recorder's state on.
+    """
+    recorder, status = Recorder(problem, outcome), Status.FINISHED
+    try:
+        for segment in problem.segments(lambda: recorder.y, outcome.history):
+            part, status = _first_part(segment, outcome)
+            while part is not None:
+                recorder.restart(part)
+                part, status = _next_part(part, outcome, run(part, recorder))
+            if status is not Status.FINISHED:
+                break
+    except (NotFiniteError, NotFiniteNumberError) as failure:
+        status = outcome.fail(failure)
+    outcome.end_with(status, problem)
+
+
+def _first_part(problem: Problem, outcome: Outcome) -> tuple[Problem | None, Status]:
     """The problem up to the first switch, and its status if there is none to solve."""
     try:
         part, y = started(problem, *outcome.end, outcome.signs)
@@ -192,7 +214,7 @@ def first_part(problem: Problem, outcome: Outcome) -> tuple[Problem | None, Stat
     return part, Status.FINISHED
 
 
-def next_part(problem: Problem, outcome: Outcome, status: Status) -> tuple[Problem | None, Status]:
+def _next_part(problem: Problem, outcome: Outcome, status: Status) -> tuple[Problem | None, Status]:
     """The problem after the switch that ended a part with `status`; None if there was none."""
     index = _switch_of(problem, outcome) if status is Status.EVENT else None
     if index is None:
