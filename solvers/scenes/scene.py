@@ -10,8 +10,12 @@ from solvers.equations.module import GeneratedModule, has_constraints, has_pertu
 from solvers.equations.number_checks import positive, real_numbers
 from solvers.equations.signature_checks import check_module, known_names
 from solvers.equations.singularities import check_condition
-from solvers.equations.starts.consistent_start import consistent_start, given_names
-from solvers.equations.starts.default_start import default_coordinates, default_words
+from solvers.equations.starts.consistent_start import (
+    consistent_start,
+    default_coordinates,
+    default_words,
+    given_names,
+)
 from solvers.integration.problem import validation
 from solvers.integration.problem.validation import check_splitting
 from solvers.io.argument_types import check_texts, check_type

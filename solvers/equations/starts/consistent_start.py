@@ -1,13 +1,14 @@
-"""Initial states that satisfy the constraints of a system."""
+"""Initial states: what they may leave out, and those that satisfy the constraints of a system."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function, has_constraints, has_function
+from solvers.equations.module import GeneratedModule, function, has_constraints, has_function, part
 from solvers.equations.number_checks import Values, quantities, real_number
 from solvers.equations.signature_checks import checked
 from solvers.equations.starts.assembly import (
@@ -20,6 +21,57 @@ from solvers.equations.starts.assembly import (
 )
 from solvers.io.quantity import with_unit
 from solvers.io.suggestion import counted
+
+
+def default_coordinates(
+    module: GeneratedModule, given: Collection[str], params: NDArray[Any]
+) -> dict[str, Any]:
+    """Values of coordinates that are not given, of a system without constraints.
+
+    Parameters
+    ----------
+    module : module
+        A generated module.
+    given : collection of str
+        Names of the components that are given.
+    params : ndarray of shape (parameters, ...)
+        Parameters, of one motion or of many.
+
+    Returns
+    -------
+    dict of str to float or ndarray
+        0 for coordinates on which no acceleration depends, such as cyclic ones; for lengths, which
+        are positive, the value at the equilibrium, if the system has one. Other coordinates are
+        missing.
+    """
+    missing = [name for name in module.COORDINATES if name not in given]
+    if not missing:
+        return {}
+    variables = part(module, "rhs").VARIABLES["accelerations"]
+    result: dict[str, Any] = {
+        name: 0.0 for name in missing if name not in variables and name not in module.POSITIVE
+    }
+    lengths = [name for name in missing if name in module.POSITIVE]
+    if lengths and has_function(module, "equilibrium"):
+        rest = function(module, "equilibrium_many")(params)
+        result |= {name: rest[module.COORDINATES.index(name)] for name in lengths}
+    return result
+
+
+def default_words(module: GeneratedModule, values: dict[str, Any]) -> str:
+    """Default coordinates of one motion as text; empty if there are none."""
+    units = module.UNITS
+    lengths = [
+        f"{name} = {float(value):.6g} {units[name]}"
+        for name, value in values.items()
+        if name in module.POSITIVE
+    ]
+    others = [name for name in values if name not in module.POSITIVE]
+    parts = [f"at equilibrium: {', '.join(lengths)}"] if lengths else []
+    if others:
+        parts.append(f"without effect on accelerations: {', '.join(others)} = 0")
+    return "; ".join(parts)
+
 
 #: Guesses of other configurations, and the distance at which two are the same.
 OTHERS, CLOSE = 48, 1e-6

@@ -27,8 +27,12 @@ from solvers.equations.number_checks import (
 )
 from solvers.equations.signature_checks import check_module
 from solvers.equations.starts.assembly import Assembly, tangent_start
-from solvers.equations.starts.consistent_start import consistent, given_names, guesses
-from solvers.equations.starts.default_start import default_coordinates
+from solvers.equations.starts.consistent_start import (
+    consistent,
+    default_coordinates,
+    given_names,
+    guesses,
+)
 from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
 from solvers.integration.problem.problem import Options, Problem, check_times, shortest_step
