@@ -9,8 +9,7 @@ import numpy as np
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.compiler import build
-from solvers.integration.compiled.kernel import Batch
-from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.kernel import Batch, program
 from solvers.integration.compiled.native import equations
 from solvers.integration.loops import compiled_loop
 from solvers.integration.problem import validation

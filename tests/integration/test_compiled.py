@@ -16,8 +16,7 @@ import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled import compiler
-from solvers.integration.compiled.kernel import Batch, Kernel, kernel
-from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.kernel import Batch, Kernel, kernel, program
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.compiled.native import equations
 from solvers.integration.ensemble import ensemble

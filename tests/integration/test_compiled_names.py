@@ -13,8 +13,8 @@ import pytest
 import generated.single_pendulum as sp
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import SystemDefinitionError
-from solvers.integration.compiled import equations_source, kernel_source
-from solvers.integration.compiled.kernel_source import PROGRAM, program
+from solvers.integration.compiled import equations_source, kernel
+from solvers.integration.compiled.kernel import PROGRAM, program
 from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.compiled.native import equations
 from solvers.runge_kutta.method_catalogue import load
@@ -54,7 +54,7 @@ def test_macros_of_the_standard_headers_are_refused_as_names(standard: str, tmp_
 
 
 def test_macros_of_the_templates_are_refused_as_names() -> None:
-    python = inspect.getsource(kernel_source) + inspect.getsource(equations_source)
+    python = inspect.getsource(kernel) + inspect.getsource(equations_source)
     macros = set(re.findall(r"#define (\w+)", python + TEMPLATES))
     assert {"ONE_LANE", "RHS"} <= macros
     assert [name for name in sorted(macros) if is_allowed(name)] == []

@@ -23,7 +23,7 @@ import generated.double_pendulum as dp
 from solvers.integration.compiled import compilation, compiler, kernel, native
 from solvers.integration.compiled.compilation import LIBRARY
 from solvers.integration.compiled.compiler import NoCompilerError, build
-from solvers.integration.compiled.kernel_source import program
+from solvers.integration.compiled.kernel import program
 from solvers.integration.compiled.native import native_rhs
 from solvers.io import build_cache
 from solvers.io.build_cache import DIGESTS, _seal
