@@ -20,9 +20,8 @@ from folders import ROOT
 from handwritten import handwritten
 
 import generated.double_pendulum as dp
-from solvers.integration.compiled import compilation, compiler, kernel, native
-from solvers.integration.compiled.compilation import LIBRARY
-from solvers.integration.compiled.compiler import NoCompilerError, build
+from solvers.integration.compiled import compiler, kernel, native
+from solvers.integration.compiled.compiler import LIBRARY, NoCompilerError, build
 from solvers.integration.compiled.kernel import program
 from solvers.integration.compiled.native import native_rhs
 from solvers.io import build_cache
@@ -170,8 +169,8 @@ def test_after_a_failing_compiler_the_next_is_used_with_a_notice(
     working = (str(shutil.which("cc")),)
     broken = fake_compiler(tmp_path, script.format(cc=CC))
     if {"sleep", "yes"} & {*script.split()}:
-        monkeypatch.setattr(compilation, "PATIENCE", 0.5)
-        monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.5)
+        monkeypatch.setattr(compiler, "PATIENCE", 0.5)
+        monkeypatch.setattr(compiler, "TRIAL_LIMIT", 0.5)
     monkeypatch.setattr(compiler, "compilers", lambda: iter([broken]))
     with pytest.raises(NoCompilerError, match=message):
         build(SOURCE)
@@ -192,7 +191,7 @@ def test_after_a_failing_compiler_the_next_is_used_with_a_notice(
 def test_a_library_that_cannot_be_called_is_not_kept(
     body: str, message: str, own_cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compilation, "PROBE_LIMIT", 0.5)
+    monkeypatch.setattr(compiler, "PROBE_LIMIT", 0.5)
     with pytest.raises(NoCompilerError, match=message):
         build(f"{SOURCE}void probe(void);\nvoid probe(void) {{ {body} }}\n")
     assert [*own_cache.iterdir()] == []
@@ -246,8 +245,8 @@ def test_a_broken_compiler_is_tried_once_in_a_process_its_threads_and_forks(
 ) -> None:
     broken = counting(tmp_path, script)
     monkeypatch.setattr(compiler, "compilers", lambda: iter([broken]))
-    monkeypatch.setattr(compilation, "PATIENCE", 0.3)
-    monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.3)
+    monkeypatch.setattr(compiler, "PATIENCE", 0.3)
+    monkeypatch.setattr(compiler, "TRIAL_LIMIT", 0.3)
 
     with ThreadPoolExecutor(4) as threads:
         assert all(threads.map(fails, range(8)))
@@ -261,12 +260,12 @@ def test_a_hanging_compiler_is_known_to_other_processes_for_some_time(
 ) -> None:
     hanging = counting(tmp_path, "sleep 60")
     monkeypatch.setattr(compiler, "compilers", lambda: iter([hanging]))
-    monkeypatch.setattr(compilation, "PATIENCE", 0.3)
-    monkeypatch.setattr(compilation, "TRIAL_LIMIT", 0.3)
+    monkeypatch.setattr(compiler, "PATIENCE", 0.3)
+    monkeypatch.setattr(compiler, "TRIAL_LIMIT", 0.3)
 
     def in_another_process() -> int:
         """The calls of the compiler so far."""
-        monkeypatch.setattr(compiler, "_attempts", compilation.FailedCompilations())
+        monkeypatch.setattr(compiler, "_attempts", compiler.FailedCompilations())
         fails(1)
         return calls(tmp_path)
 
@@ -282,8 +281,8 @@ def test_a_hanging_compiler_is_known_to_other_processes_for_some_time(
     os.mkfifo(mark)
     assert in_another_process() == 6
     Path(hanging[0]).write_text(f"#!/bin/sh\nexec '{shutil.which('cc')}' $@\n")
-    monkeypatch.setattr(compilation, "PATIENCE", 20.0)
-    monkeypatch.setattr(compiler, "_attempts", compilation.FailedCompilations())
+    monkeypatch.setattr(compiler, "PATIENCE", 20.0)
+    monkeypatch.setattr(compiler, "_attempts", compiler.FailedCompilations())
     assert answer(build(SOURCE).path) == 42  # the mark is that of another file
 
 
@@ -308,8 +307,8 @@ def test_an_invalid_program_does_not_stop_others(
 def test_a_slow_compiler_that_works_is_given_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compilation, "PATIENCE", 0.2)
-    monkeypatch.setattr(compilation, "PROBE_LIMIT", 20)
+    monkeypatch.setattr(compiler, "PATIENCE", 0.2)
+    monkeypatch.setattr(compiler, "PROBE_LIMIT", 20)
     script = f"grep -q trial source.c || sleep 0.6\nexec '{shutil.which('cc')}' $@"
     monkeypatch.setattr(compiler, "compilers", lambda: iter([counting(tmp_path, script)]))
     assert answer(build(SOURCE).path) == 42

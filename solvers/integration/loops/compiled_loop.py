@@ -6,8 +6,7 @@ from threading import Thread
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import GeneratedModule, has_header
 from solvers.equations.number_checks import NotFiniteNumberError
-from solvers.integration.compiled.compilation import is_ahead
-from solvers.integration.compiled.compiler import NoCompilerError
+from solvers.integration.compiled.compiler import NoCompilerError, is_ahead
 from solvers.integration.compiled.kernel import Batch, Kernel, kernel
 from solvers.integration.compiled.memory_layout import MAX_EVENTS, STATUSES
 from solvers.integration.problem.events import Event
