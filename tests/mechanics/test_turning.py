@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, rotations
-from derive.mechanics.energies.turning import turned
+from derive.mechanics.energies.kinetics import turned
 
 x, y, psi, phi, theta, g = symbols = sp.symbols("x y psi phi theta g", real=True)
 a, b = sp.symbols("a b", positive=True)
