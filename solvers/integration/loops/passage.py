@@ -24,8 +24,8 @@ from solvers.integration.compiled.kernel import Kernel
 from solvers.integration.loops import compiled_loop, passage, python_loop
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status
+from solvers.integration.results.event_location import Curve
 from solvers.integration.results.recorder import Outcome, Recorder
-from solvers.integration.results.step_states import Curve
 from solvers.runge_kutta.stepper import Array
 
 #: Integrates a problem up to its end, or up to a step that collapses.

@@ -11,8 +11,8 @@ from solvers.equations.forms import Form
 from solvers.integration.loops.switching import run_parts
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status, StopFlag
+from solvers.integration.results.event_location import Curve
 from solvers.integration.results.recorder import Outcome, Recorder
-from solvers.integration.results.step_states import Curve
 from solvers.runge_kutta.stepper import Array, NotFiniteError, Rhs, evaluated
 
 

@@ -13,7 +13,11 @@ from solvers.integration.results.event_location import (
     NODES,
     ROUGH_NODES,
     Bracket,
+    Curve,
+    EventCourse,
+    OrdinaryStates,
     Shape,
+    StepStates,
     approach,
     estimate,
     locate,
@@ -21,7 +25,6 @@ from solvers.integration.results.event_location import (
     rough_polynomial,
     separate_crossings,
 )
-from solvers.integration.results.step_states import Curve, EventCourse, OrdinaryStates, StepStates
 from solvers.runge_kutta.stepper import Array, NoConvergenceError
 
 
