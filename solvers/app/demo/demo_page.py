@@ -9,8 +9,7 @@ from pathlib import Path
 
 from derive.verification.report.derivation_beside_report import STYLE as DERIVATION_STYLE
 from solvers.app.demo.equations_stage import derivation, generation, verification
-from solvers.app.demo.methods_stage import cost, limits
-from solvers.app.demo.motions_stage import flips, motion
+from solvers.app.demo.motions_stage import cost, flips, limits, motion
 from solvers.app.demo.stage import ReportedNumber, Stage, table
 from solvers.app.modules import load
 from solvers.integration.prepare import no_compiler
