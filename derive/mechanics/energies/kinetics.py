@@ -1,9 +1,4 @@
-"""Tangents of a position in turned axes, in which fewer of them depend on angles.
-
-A turn of all tangents by the same angle does not change their dot products. In axes that turn with
-a vehicle, tangents of its points do not depend on its heading ψ: (a cos ψ - b sin ψ, a sin ψ +
-b cos ψ) becomes (a, b), whatever a and b are, so that nothing is expanded.
-"""
+"""Energies of a system, from the positions of its masses."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +23,12 @@ Products: TypeAlias = dict[sp.Expr, sp.Expr]
 
 
 def turned(tangents: Sequence[Vector]) -> list[Vector]:
-    """The tangents after turns about coordinate axes, while these remove angles from them."""
+    """The tangents after turns about coordinate axes, while these remove angles from them.
+
+    A turn of all tangents by the same angle does not change their dot products. In axes that turn
+    with a vehicle, tangents of its points do not depend on its heading ψ: (a cos ψ - b sin ψ,
+    a sin ψ + b cos ψ) becomes (a, b), whatever a and b are, so that nothing is expanded.
+    """
     best: list[Vector] | None = [*tangents]
     while best is not None:
         tangents, best = best, _simpler(best)

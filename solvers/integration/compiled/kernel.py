@@ -1,6 +1,6 @@
 """Compiled loops: the C program for one form and one method, called from Python for many motions.
 
-It consists of the module's generated header, the method's stages written out from its
+The program consists of the module's generated header, the method's stages written out from its
 tableau, and the handwritten files in the folder ``c``.
 """
 
