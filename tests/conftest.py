@@ -28,7 +28,7 @@ from solvers.app.modules import load as load_module
 from solvers.integration.checks import predictability
 from solvers.scenes.scene_reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
-from solvers.studies.stability_study import CriticalStep, SceneStability
+from solvers.studies.stability import CriticalStep, SceneStability
 
 #: The environment variable that chooses the cases of long tests which the short part keeps.
 SEED = "HOLONOMIC_TEST_SEED"

@@ -8,7 +8,7 @@ their exact stability functions.
 
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
-from solvers.studies.stability_study import boundaries
+from solvers.studies.stability import boundaries
 
 names = ("rk1", "midpoint", "rk3", "rk4", "dop853")
 picture = boundaries({name: StabilityFunction.of(load(name)) for name in names})

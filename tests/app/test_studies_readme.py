@@ -19,7 +19,7 @@ from solvers.studies.failure_modes.drift import EnergyDrift
 from solvers.studies.failure_modes.largest_exponent import lyapunov
 from solvers.studies.failure_modes.separatrix import upright
 from solvers.studies.failure_modes.stiffness import Stiffness, crossover
-from solvers.studies.stability_study import CriticalStep
+from solvers.studies.stability import CriticalStep
 
 PATH = ROOT / "solvers" / "studies" / "README.md"
 README = PATH.read_text(encoding="utf-8")

@@ -21,7 +21,7 @@ from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.newton_stages import Newton, NewtonStages, Start
 from solvers.runge_kutta.step_control import FAST, SLOW, OrderChoice
 from solvers.scenes.scene_reading import find
-from solvers.studies import stability_study
+from solvers.studies import stability
 
 ORDERS = tuple(method.order for method in load("radau").members)
 FIXED = ("radau3", "radau5", "radau7")
@@ -224,7 +224,7 @@ def test_the_stability_study_has_fixed_steps_of_each_method_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     methods: list[str] = []
-    monkeypatch.setattr(stability_study, "critical_step", lambda name, *_: methods.append(name))
-    stability_study.SceneStability.of(find("report", load_module))
+    monkeypatch.setattr(stability, "critical_step", lambda name, *_: methods.append(name))
+    stability.SceneStability.of(find("report", load_module))
     left_out = {name for name in {*names()} - {*methods} if not load(name).is_splitting}
     assert left_out == {"radau"}

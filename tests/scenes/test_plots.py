@@ -29,7 +29,7 @@ from solvers.scenes.scene import Scene
 from solvers.scenes.scene_output import together
 from solvers.scenes.scene_reading import find
 from solvers.scenes.scene_run import SceneResult, run_scene
-from solvers.studies.stability_study import CriticalStep, boundaries, regions
+from solvers.studies.stability import CriticalStep, boundaries, regions
 from solvers.studies.work_precision import work_precision_plots as chart_plots
 from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun
 from solvers.sweeps.definition.axes import Grid, Random

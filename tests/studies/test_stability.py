@@ -21,11 +21,11 @@ from solvers.integration.problem.status import Status
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction, nonnegative_interval
 from solvers.runge_kutta.stepper import Stepper
-from solvers.studies import stability_study
-from solvers.studies import stability_study as critical_step_module
+from solvers.studies import stability
+from solvers.studies import stability as critical_step_module
 from solvers.studies.failure_modes import study
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
-from solvers.studies.stability_study import CriticalStep, boundaries, critical_step, limit, regions
+from solvers.studies.stability import CriticalStep, boundaries, critical_step, limit, regions
 
 F = Fraction
 RUNGE_KUTTA = [name for name in names() if not load(name).is_splitting]
@@ -130,7 +130,7 @@ def test_a_fall_is_found_exactly_among_touches() -> None:
 def test_the_command_prints_every_method_of_the_scenes(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stability_study, "names", lambda: ("gauss1", "rk1", "rk4"))
+    monkeypatch.setattr(stability, "names", lambda: ("gauss1", "rk1", "rk4"))
     assert main(["stability", "single", "light_above", "--json", "--output", str(tmp_path)]) == 0
     found = json.loads(capsys.readouterr().out)
     keys = ("scene", "method", "order", "imaginary_stability_interval", "critical_step_predicted")
@@ -166,7 +166,7 @@ def test_without_a_scene_the_command_studies_where_methods_fail(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(stability_study, "names", lambda: ("rk1", "rk4"))
+    monkeypatch.setattr(stability, "names", lambda: ("rk1", "rk4"))
     monkeypatch.setattr(Chaos, "run", lambda *_: chaotic)  # which tests of failures use, too
     monkeypatch.setattr(study, "studies", partial(study.studies, small=True))
     assert main(["stability", "--output", str(tmp_path)]) == 0

@@ -32,7 +32,7 @@ def run(arguments: Namespace) -> int:
     """Compute, plot and print."""
     from solvers.app.modules import load
     from solvers.io.terminal import Progress
-    from solvers.studies.stability_study import SceneStability
+    from solvers.studies.stability import SceneStability
 
     results: dict[str, Any] = {"methods": [], "failures": {}, "pictures": []}
     show = partial(_show, arguments, results["pictures"])

@@ -22,7 +22,7 @@ from solvers.player.track import Track
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.scenes.scene import Scene
-from solvers.studies.stability_study import boundaries, critical_step
+from solvers.studies.stability import boundaries, critical_step
 from solvers.studies.work_precision.cost_curve import Combination, CostCurve
 from solvers.studies.work_precision.measured_curves import curves
 from solvers.studies.work_precision.reference import Reference

@@ -1,1 +1,0 @@
-"""Stability of Runge–Kutta methods: exact regions, and what running steppers do."""
