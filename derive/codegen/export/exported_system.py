@@ -10,8 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from derive.codegen.export.exported_program import ExportedProgram, Without
-from derive.codegen.export.program_backend import SubsetBackend, stores
+from derive.codegen.export.exported_program import ExportedProgram, SubsetBackend, Without, stores
 from derive.codegen.function_specs import Form
 from derive.codegen.module_functions import Functions, split
 from derive.codegen.module_summary import units
