@@ -22,7 +22,6 @@ from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction, nonnegative_interval
 from solvers.runge_kutta.stepper import Stepper
 from solvers.studies import stability
-from solvers.studies import stability as critical_step_module
 from solvers.studies.failure_modes import study
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability import CriticalStep, boundaries, critical_step, limit, regions
@@ -215,7 +214,7 @@ def test_another_system_has_other_critical_steps(monkeypatch: pytest.MonkeyPatch
     assert found.measured == pytest.approx(2 * sqrt(2) / 100, rel=1e-3)
     # a method that is not the one of the prediction would be found out
     monkeypatch.setattr(
-        critical_step_module,
+        stability,
         "integrate",
         lambda *args, **options: integrate(*args, **(options | {"method": "rk3"})),
     )
