@@ -313,6 +313,70 @@ def test_a_rate_is_not_accused_by_a_position_that_nothing_confirms(tmp_path: Pat
     assert "it contradicts line 1" in rate.note
 
 
+@pytest.mark.parametrize("used", ["", "$$ V = m g y $$"])
+def test_a_sign_that_only_a_position_and_its_rate_have_accuses_none(
+    used: str, tmp_path: Path
+) -> None:
+    text = rf"""$$ x = l\sin\theta, \qquad y = l\cos\theta $$ {used}
+    $$ \dot x = l\dot\theta\cos\theta $$ $$ \dot y = l\dot\theta\sin\theta $$
+    $$ T = \frac12 m l^2\dot\theta^2 $$ $$ l\ddot\theta + g\sin\theta = 0 $$"""
+    (rate,) = [one for one in judged(tmp_path, text) if one.latex.startswith(r"\dot y")]
+    assert rate.verdict == ("wrong" if used else "context")
+    assert used or "it contradicts line 1" in rate.note
+
+
+def test_the_sign_of_a_wrong_component_is_that_of_its_rate(tmp_path: Path) -> None:
+    text = r"""$$ x = l\sin\theta\cos\phi, \quad y = l\sin\theta\sin\phi $$ $$ z = l\sin\theta $$
+    $$ \dot z = -l\dot\theta\sin\theta $$
+    $$ T = \frac12 m l^2 (\dot\theta^2 + \dot\phi^2\sin^2\theta) $$
+    $$ V = -m g l\cos\theta $$
+    $$ l\ddot\theta - l\dot\phi^2\sin\theta\cos\theta + g\sin\theta = 0 $$"""
+    formulas = judged(tmp_path, text)
+    (one,) = wrong(formulas)
+    assert one.latex == r"z = l\sin\theta"
+    assert "-" not in one.correction
+    (rate,) = [one for one in formulas if one.latex.startswith(r"\dot z")]
+    assert rate.verdict == "verified"
+
+
+def test_of_two_equal_components_none_is_accused(tmp_path: Path) -> None:
+    text = r"""$$ x = l\sin\theta\cos\phi, \quad y = l\sin\theta\cos\phi, \quad z = -l\cos\theta $$
+    $$ T = \frac12 m l^2 (\dot\theta^2 + \dot\phi^2\sin^2\theta) $$
+    $$ V = -m g l\cos\theta $$
+    $$ l\ddot\theta - l\dot\phi^2\sin\theta\cos\theta + g\sin\theta = 0 $$"""
+    assert wrong(judged(tmp_path, text)) == []
+
+
+def test_a_potential_is_not_accused_by_an_equation_that_lacks_a_term(tmp_path: Path) -> None:
+    text = r"""$$ T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2 $$
+    $$ V = \frac12 x_1^2\left(k_1 + k_2\right) - k_2 x_1 x_2 + \frac12 k_2 x_2^2 $$
+    $$ m_1\ddot x_1 + (k_1 + k_2) x_1 - k_2 x_2 = 0 $$ $$ m_2\ddot x_2 - k_2 x_1 = 0 $$"""
+    formulas = judged(tmp_path, text)
+    assert wrong(formulas) == []
+    assert "agrees with line 1: nothing else" in formulas[1].note
+
+
+def test_a_mass_in_place_of_a_sum_is_larger_than_the_others(tmp_path: Path) -> None:
+    text = r"""With $M = m_1 + m$, $$ T = \frac12 M\dot x^2 + m l\dot\theta\dot x\cos\theta
+    + \frac12 m l^2\dot\theta^2 $$ $$ V = -m g l\cos\theta $$
+    $$ L = T - V $$ $$ M\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = 0 $$
+    $$ l\ddot\theta + \ddot x\cos\theta + g\sin\theta = 0 $$"""
+    right = [one.verdict for one in judged(tmp_path, text)[-2:]]
+    assert right == ["verified", "verified"]
+    (one,) = wrong(judged(tmp_path, text.replace("+ g", "+ 2 g")))
+    assert one.wrong_term == r"2 g\sin\theta"
+
+
+def test_a_mass_that_moves_along_one_axis_is_part_of_the_system(tmp_path: Path) -> None:
+    text = r"""$$ y_1 = -y, \qquad x_2 = l\sin\alpha, \qquad y_2 = l\cos\alpha - y $$
+    $$ T = \frac{l^2 m_2\dot\alpha^2}{2} + l m_2\dot\alpha\dot y\sin\alpha
+    + \frac{\dot y^2 (m_1 + m_2)}{2} $$
+    $$ V = -g l m_2\cos\alpha + g y (m_1 + m_2) + \frac{k y^2}{2} $$
+    $$ g l m_2\sin\alpha + l^2\ddot\alpha + l m_2\ddot y\sin\alpha = 0 $$"""
+    (one,) = wrong(judged(tmp_path, text))
+    assert one.wrong_term == r"l^2\ddot\alpha"
+
+
 def test_a_known_system_that_fits_one_of_three_formulas_accuses_none(tmp_path: Path) -> None:
     text = r"""$$ E = \frac12 c r^2 + \frac12 M\dot\phi^2 r^2 $$
     $$ M\ddot r = -c r + M\dot\phi^2 r $$ $$ M\ddot\phi r^2 = -2 M\dot\phi r\dot r $$"""

@@ -1,4 +1,4 @@
-"""Wrong terms in products of matrices, in roots and in terms that vanish."""
+"""Wrong terms in products of matrices, in roots, in rates and in terms that vanish."""
 
 from pathlib import Path
 
@@ -34,6 +34,22 @@ $$(m_1+m_2) a \ddot\theta_1 + m_2 b \ddot\theta_2 \cos(\theta_1-\theta_2)
 $$b \ddot\theta_2 + a \ddot\theta_1 \cos(\theta_1-\theta_2)
  - a \dot\theta_1^2\sin(\theta_1-\theta_2) + g \sin\theta_2 = 0$$
 """
+POLAR = r"""
+$$L = \frac12 m\dot r^2 + \frac12 m\dot\phi^2 r^2$$
+$$\frac{d}{dt} \frac{\partial L}{\partial \dot r} = m\ddot r$$
+$$p_r = m\dot r, \quad p_\phi = m r^2\dot\phi$$
+$$H = \frac{1}{2 m r^2}\left(p_\phi^2 + p_r^2 r^2\right)$$
+$$\dot r = \frac{p_r}{m}, \quad
+\dot p_r = -\frac{p_r^2}{m r} + \frac{1}{m r^3}\left(p_\phi^2 + p_r^2 r^2\right)$$
+"""
+SPRINGS = r"""
+$$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2$$
+$$V = \frac12 x_1^2\left(k_1 + k_2\right) - k_2 x_1 x_2 + \frac12 k_2 x_2^2$$
+$$L = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2
+     - \frac12 x_1^2\left(k_1 + k_2\right) + k_2 x_1 x_2 - \frac12 k_2 x_2^2$$
+$$m_1\ddot x_1 + (k_1 + k_2) x_1 - k_2 x_2 = 0$$
+$$m_2\ddot x_2 - k_2 x_1 + k_2 x_2 = 0$$
+"""
 
 
 def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
@@ -46,7 +62,7 @@ def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
-@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS])
+@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS, POLAR, SPRINGS])
 def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
 
@@ -70,6 +86,10 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
          r"- a \dot\theta_1^2\sin(\theta_2-\theta_2)",
          r"- a \dot\theta_1^2\sin(\theta_2-\theta_2)", r"\sin\left("),
         (FIELD, r"(E + \frac kr", r"(E - \frac kr", r"- \frac kr", r"\frac{k}{r}"),
+        (POLAR, r"\dot r} = m\ddot", r"\dot r} = 2 m\ddot", r"2 m\ddot r", r"= m "),
+        (POLAR, r"\frac{1}{m r^3}", r"\frac{1}{2 m r^3}", r"\frac{1}{2 m r^3}", r"{m r^3}"),
+        (POLAR, r"$$\dot r = \frac", r"$$r = \frac", "", ""),
+        (SPRINGS, r"- k_2 x_1 + k_2 x_2 =", r"- k_2 x_1 =", "", r"+ k_2 x_2 = 0"),
     ],
 )  # fmt: skip
 def test_the_wrong_part_is_found(

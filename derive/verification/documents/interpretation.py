@@ -12,7 +12,11 @@ from derive.verification.documents.letters.energies import has_rotations, system
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import letters_of
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.documents.letters.positions import stated_candidates, stated_systems
+from derive.verification.documents.letters.positions import (
+    POINT,
+    stated_candidates,
+    stated_systems,
+)
 from derive.verification.documents.letters.stated_equations import StatedEquations
 from derive.verification.documents.letters.templates import templates
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
@@ -119,16 +123,17 @@ def _best(
             break
     supported = [match for match in matches if not least or _is_supported(match, least)]
 
-    def rank(match: Match) -> tuple[float, int]:
+    def rank(match: Match) -> tuple[float, int, int]:
         has_absent_parts = bool(match.candidate.numbers)
-        return match.score, -1 if has_absent_parts else BASES.index(match.candidate.basis)
+        basis = -1 if has_absent_parts else BASES.index(match.candidate.basis)
+        return match.score, -len(match.failed), basis
 
     best = max(supported, key=rank, default=None)  # the first of several with the same rank
     if best is None:
         return Interpretation(letters, None)
     best = _with_direction(best, matches, statements, letters)
     best, is_decided = _with_fewest_slips(best, matches, statements, letters)
-    doubts = {} if is_decided else _doubts(best, matches)
+    doubts = {} if is_decided else _doubts(best, matches, statements, letters)
     return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
 
 
@@ -153,11 +158,27 @@ def _with_direction(
     return min(list(first.values())[:MAX_DIRECTIONS], key=wrong)
 
 
-def _doubts(best: Match, matches: Sequence[Match]) -> dict[int, frozenset[int]]:
-    """Formulas that do not hold, but do by other stated energies with as much support."""
+def _doubts(
+    best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
+) -> dict[int, frozenset[int]]:
+    """Formulas that do not hold, but do by other stated energies with as much support.
+
+    As much is also as many formulas that fail by one term each: the score does not show that one
+    is missing. Equations, which follow from energies, must not contradict more formulas than these.
+    """
+
+    def has_as_few_slips(match: Match) -> bool:
+        if len(match.failed) > len(best.failed) or match.compared < best.compared:
+            return False
+        results = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
+        wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
+        return len(wrong) <= len(best.failed) and all(len(one.corrections) == 1 for one in wrong)
+
     result: dict[int, frozenset[int]] = {}
-    for match in matches if best.failed else ():
-        if match.candidate.stating and match.score >= best.score - TIE:
+    stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
+    for match in stated:
+        has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
+        if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
             for number in best.failed - match.failed:
                 result.setdefault(number, match.candidate.stating)
     return result
@@ -188,6 +209,8 @@ def _with_fewest_slips(
         verdicts = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
         wrong = [(formula, one) for formula, one in verdicts if one.verdict.verdict == "wrong"]
         own = [formula for formula, one in wrong if FOLLOWS not in one.verdict.note]
+        if is_contradicted and match.candidate.basis == "energies":  # by wrong positions
+            own = [one for one in own if not POINT.match(one.subject.removesuffix("_dot"))]
         if len(own) == 1 and own[0].subject in _abbreviations(statements, letters):
             return -1  # all that contains it is right
         return len(own) + (is_contradicted and match.candidate.basis == "energies")

@@ -105,13 +105,27 @@ def fits(
     and contain no momentum, multiplier or acceleration that the source does not contain, but for
     the accelerations in the derived equation that is closest to the wrong one.
     """
-    system, motions, context = model.derivation.system, model.motions, model.context
-    unknown = (*system.qddot, *system.multipliers)
     values = [*_values(model, [printed, changed])]
     if len(values) < 2:
         return False
     old, new = values
-    if not any(depends_on(value.xreplace(model.momenta), unknown) for value in values):
+    try:
+        return _fits(model, old, new, closest, others)
+    except ExpressionError:  # the change divides by what is zero at a state
+        return False
+
+
+def _fits(
+    model: ReferenceSystem,
+    old: sp.Expr,
+    new: sp.Expr,
+    closest: sp.Expr | None,
+    others: Sequence[str],
+) -> bool:
+    """Whether `new` fits in place of `old`, as in `fits`."""
+    system, motions, context = model.derivation.system, model.motions, model.context
+    unknown = (*system.qddot, *system.multipliers)
+    if not any(depends_on(value.xreplace(model.momenta), unknown) for value in (old, new)):
         return True  # it states a constraint or a momentum
     own = [new.diff(a) for a in unknown]
     if not context.is_small(*(c.diff(a) for c in own for a in unknown)):

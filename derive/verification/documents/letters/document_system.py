@@ -50,7 +50,7 @@ def system_letters(candidate: SystemCandidate) -> SystemLetters:
         name = valid_name(letter) if letter else own.name + UNNAMED
         values[own] = sp.Symbol(name, **own._assumptions_orig)
         units[name] = parameter.unit
-        defaults[name] = parameter.default if template.conditions else 1.0
+        defaults[name] = parameter.default
         if letter:
             symbols[letter] = values[own]
     for offset in candidate.offsets:

@@ -29,6 +29,8 @@ from derive.verification.documents.statements import DocumentFormula, definition
 Stated = Mapping[str, Sequence[tuple[sp.Expr, int]]]
 #: Most values of an energy that are tried, and rounds in which definitions are sought.
 MOST, ROUNDS = 3, 3
+#: The value of a mass that is larger than the others.
+LARGE = 10.0
 
 
 @dataclass(frozen=True)
@@ -84,20 +86,25 @@ def stated_system(
     forces: Sequence[sp.Expr] = (),
     others: Sequence[sp.Expr] = (),
 ) -> System | None:
-    """A system by its mass matrix, with the parameters of other values; None if it is none."""
+    """A system by its mass matrix, with the parameters of other values; None if it is none.
+
+    A mass can be larger than others, as M in place of m_1 + m_2 is.
+    """
     used = sp.Tuple(matrix, potential, *forces, *others).free_symbols
     names = {valid_name(one): one for one in letters.parameters}
     own = sorted((s for s in used if s.name in names and s not in q), key=str)
-    with suppress(SystemDefinitionError, ValueError):
-        system = System(
-            name, title, [Coordinate(one, "m", "a coordinate") for one in q],
-            [Parameter(s, "m" if is_length(names[s.name]) else "1", 1.0, "a parameter")
-             for s in own],
-            [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
-            potential=potential, gravity=(sp.S.Zero, sp.S.Zero), forces=[*forces],
-        )  # fmt: skip
-        derivation(system)
-        return system
+    masses = [s for s in own if names[s.name] in letters.of_kind("mass")]
+    for largest in (None, *masses):
+        with suppress(SystemDefinitionError, ValueError):
+            system = System(
+                name, title, [Coordinate(one, "m", "a coordinate") for one in q],
+                [Parameter(s, "m" if is_length(names[s.name]) else "1",
+                           LARGE if s is largest else 1.0, "a parameter") for s in own],
+                [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
+                potential=potential, gravity=(sp.S.Zero, sp.S.Zero), forces=[*forces],
+            )  # fmt: skip
+            derivation(system)
+            return system
     return None
 
 

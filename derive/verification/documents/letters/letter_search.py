@@ -328,6 +328,8 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         others -= OPERATORS
         moves = any(orders.get(one) for one in others)
         is_solution = orders.get(name) and not moves
+        # x = p_x/m has lost a dot: no coordinate is defined by its own momentum
+        lost_dot = orders.get(name) and any(_coordinate(one, [name]) for one in others)
         last = formula.sides[-1]
         if last.text.replace(".", "").isdigit():  # a value, such as m = l = 1
             continue
@@ -335,7 +337,12 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
             continue
         # m_2 = h*f(t, w) is about another quantity with the name of a mass
         is_foreign = name in mechanical and not moves and not others <= mechanical
-        if name and not order(name) and name not in others and not is_solution and not is_foreign:
+        if (
+            name
+            and not order(name)
+            and name not in others
+            and not (is_solution or lost_dot or is_foreign)
+        ):
             defined.add(name)
         # theta_dot = omega defines omega
         is_name = last.text.isidentifier() and not order(last.text) and len(formula.sides) == 2

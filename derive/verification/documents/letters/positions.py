@@ -140,10 +140,14 @@ def _points(
         assert match
         axis = AXES.index(match[1].lower())
         points.setdefault(match[2] or "", {})[axis] = value
+    # beside a point in the plane, a mass can move along one axis alone
+    indices = {name.partition("_")[2] for name in letters.of_kind("mass")} - {""}
+    has_plane = any(len(axes) > 1 for axes in points.values())
     result = {
         index: tuple(axes.get(k, sp.S.Zero) for k in range(3 if 2 in axes else 2))
         for index, axes in points.items()
-        if len(axes) > 1 and any(value.free_symbols & moving for value in axes.values())
+        if (len(axes) > 1 or (has_plane and index in indices))
+        and any(value.free_symbols & moving for value in axes.values())
     }
     return result or columns
 

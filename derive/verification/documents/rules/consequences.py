@@ -187,12 +187,12 @@ def weighed(
         if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
             result = plain("context", formula, UNSTATED)
         elif verdict.verdict == "wrong" and number in doubts and not decides:
-            other = _lines(lines[k] for k in doubts[number])
-            note = f"it contradicts {given or 'the system'} and agrees with {other}: {UNDECIDED}"
+            other = _lines(lines[k] for k in doubts[number] - {number})
+            beside = f" and agrees with {other}" if other else ""
+            note = f"it contradicts {given or 'the system'}{beside}: {UNDECIDED}"
             result = plain("context", formula, note)
         elif verdict.verdict == "wrong" and formula.subject in unused:
-            note = f"it contradicts line {unused[formula.subject]}: {UNDECIDED}"
-            result = plain("context", formula, note)
+            result = plain("context", formula, opposed(unused[formula.subject]))
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
         elif (
@@ -251,6 +251,11 @@ def _is_conservative(formulas: Sequence[DocumentFormula]) -> bool:
     q = {name: sp.Symbol(name, positive=True) for name in rows}
     curls = (values[a].diff(q[b]) - values[b].diff(q[a]) for a, b in combinations(rows, 2))
     return all(abs(one.subs(point).evalf(30)) < 1e-20 for one in curls)
+
+
+def opposed(line: int) -> str:
+    """The note on a formula that contradicts another one, which can be wrong as well."""
+    return f"it contradicts line {line}: {UNDECIDED}"
 
 
 def _lines(numbers: Iterable[int]) -> str:

@@ -14,7 +14,7 @@ from derive.system.symbols import TIME
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
-from derive.verification.documents.rules.consequences import Consequences
+from derive.verification.documents.rules.consequences import Consequences, opposed
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
@@ -111,6 +111,8 @@ class Judge:
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:
+                if (definition := self._positions.opposite(formula.subject)) is not None:
+                    return plain("context", formula, opposed(definition.occurrence.line))
                 return self._first_side(formula) or result
         if unknown:
             return self._not_understood(formula, unknown)

@@ -10,6 +10,8 @@ from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.letters.positions import COLUMN, POINT
 from derive.verification.documents.rules.known_values import DocumentNamespace
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.judging.reference_system import time_derivative
 
 #: The components of a point: names and values. An entry of a column has that column's name.
 Point = Sequence[tuple[str, int, sp.Expr]]
@@ -20,6 +22,7 @@ class MassPositions:
 
     def __init__(self, namespace: DocumentNamespace) -> None:
         self._namespace = namespace
+        self._rates = _rates(namespace)
         #: Correct values of wrong components, by name and index in a column.
         self._required: dict[tuple[str, int], sp.Expr] = {}
         for point in _points(namespace):
@@ -35,6 +38,21 @@ class MassPositions:
     def required(self, name: str, index: int = 0) -> sp.Expr | None:
         """The value of a wrong component; None if it is correct, or not known."""
         return self._required.get((name, index))
+
+    def opposite(self, rate: str) -> DocumentFormula | None:
+        """The definition of a component whose stated `rate` has the opposite sign.
+
+        None if another formula contains the component: kinetic energies have the same value with
+        either sign, so that nothing else decides which of both is wrong.
+        """
+        name = rate.removesuffix("_dot")
+        defining = self._namespace.defining.get(name)
+        if name == rate or name not in self._rates or not POINT.match(name) or not defining:
+            return None
+        others = (one for one in self._namespace.formulas if one is not defining[0])
+        is_used = any(name in one.words for one in others)
+        own = self._rate(self._namespace.names[name])
+        return None if is_used or not self._is_zero(self._rates[name] + own) else defining[0]
 
     def _corrected(self) -> Iterator[tuple[str, Value]]:
         for (name, index), required in self._required.items():
@@ -52,42 +70,84 @@ class MassPositions:
         """The components that are not those of a mass; None if it is another mass."""
         if len(position) != len(point):
             return None
-        fewest: list[tuple[str, int, sp.Expr]] | None = None
+        possible: list[list[tuple[str, int, sp.Expr]]] = []
         for order in permutations(position):  # the same axes first
             pairs = list(zip(point, order, strict=True))
             right = [r for (_, _, value), r in pairs if self._agrees(value, r)]
             wrong = [
-                (name, index, _signed(r, value))
+                (name, index, self._signed(r, name, value))
                 for (name, index, value), r in pairs
                 if not any(r is one for one in right)
             ]
             moving = {*self._namespace.derivation.system.q}
             is_known = any(r.free_symbols & moving for r in right)
             is_known &= all(value.free_symbols & moving for *_, value in wrong)
-            if is_known and len(wrong) < 2 and (fewest is None or len(wrong) < len(fewest)):
-                fewest = wrong
-        return None if fewest is None else {(name, k): value for name, k, value in fewest}
+            if is_known and len(wrong) < 2:
+                possible.append(wrong)
+        if not possible:
+            return None
+
+        def rank(wrong: list[tuple[str, int, sp.Expr]]) -> tuple[int, int]:
+            return len(wrong), -sum(self._contradicts_rate(name) for name, *_ in wrong)
+
+        first = min(possible, key=rank)
+        names = {name for name, *_ in first}
+        if any({n for n, *_ in one} != names for one in possible if rank(one) == rank(first)):
+            return {}  # of two equal components, either can be wrong
+        return {(name, k): value for name, k, value in first}
+
+    def _contradicts_rate(self, name: str) -> bool:
+        """Whether the stated rate of a component is not that of its value."""
+        stated = self._rates.get(name)
+        return stated is not None and not self._is_zero(
+            stated - self._rate(self._namespace.names[name])
+        )
 
     def _agrees(self, value: sp.Expr, position: sp.Expr) -> bool:
         """Whether a value is a component of a position up to its sign and a constant."""
-        system, is_zero = self._namespace.derivation.system, self._namespace.model.context.is_zero
+        q = self._namespace.derivation.system.q
+        return any(
+            all(self._is_zero((value - sign * position).diff(one)) for one in q) for sign in (1, -1)
+        )
+
+    def _signed(self, position: sp.Expr, name: str, value: sp.Expr) -> sp.Expr:
+        """A component with the sign of its stated rate.
+
+        Without one it is that with which it shares more terms with the written value.
+        """
+        stated = self._rates.get(name)
+        if stated is not None:
+            for one in (position, -position):
+                if self._is_zero(stated - self._rate(one)):
+                    return one
+        written = {*sp.Add.make_args(sp.expand(value))}
+
+        def shared(signed: sp.Expr) -> tuple[int, int]:
+            terms = written & {*sp.Add.make_args(sp.expand(signed))}
+            return len(terms), sum(one.is_Symbol for one in terms)
+
+        return -position if shared(-position) > shared(position) else position
+
+    def _rate(self, value: sp.Expr) -> sp.Expr:
+        return time_derivative(self._namespace.derivation.system, value)
+
+    def _is_zero(self, value: sp.Expr) -> bool:
         with suppress(ExpressionError, NotImplementedError):
-            return any(
-                all(is_zero((value - sign * position).diff(q)) for q in system.q)
-                for sign in (1, -1)
-            )
+            return self._namespace.model.context.is_zero(value)
         return False
 
 
-def _signed(position: sp.Expr, value: sp.Expr) -> sp.Expr:
-    """A component with the sign with which it shares more terms with the written value."""
-    written = {*sp.Add.make_args(sp.expand(value))}
-
-    def shared(signed: sp.Expr) -> tuple[int, int]:
-        terms = written & {*sp.Add.make_args(sp.expand(signed))}
-        return len(terms), sum(one.is_Symbol for one in terms)
-
-    return -position if shared(-position) > shared(position) else position
+def _rates(namespace: DocumentNamespace) -> dict[str, sp.Expr]:
+    """The rates that a document states for components, by their names."""
+    result: dict[str, sp.Expr] = {}
+    for formula in namespace.formulas:
+        name = formula.subject.removesuffix("_dot")
+        if name != formula.subject and POINT.match(name):
+            with suppress(ExpressionError, NotImplementedError):
+                value = namespace.value(formula.sides[-1].text)
+                if not isinstance(value, sp.MatrixBase):
+                    result[name] = value
+    return result
 
 
 def _points(namespace: DocumentNamespace) -> Iterator[Point]:

@@ -69,11 +69,13 @@ class Roles:
             return inside
         if system.conditions and self._is_relation(first):
             return self.equation(first, side)
-        if left in system.qdot and depends_on(right, system.p) and not system.conditions:
-            left = self._by_momenta(left)
+        if (canonical := self._canonical(subject, left, right)) is not None:
+            return self.value(side, subject, canonical)
         if not depends_on((left - right).xreplace(self._model.momenta), system.qddot):
             return self.value(side, subject, left)
-        if subject.isidentifier():
+        # d/dt(∂L/∂q̇) is a name for its value where the other side has accelerations
+        is_rate = (4, len(subject) - 1) in _rates(subject) and depends_on(right, system.qddot)
+        if subject.isidentifier() or is_rate:
             result = self.value(side, subject, left)
             if result.verdict.corrections:
                 return result
@@ -154,12 +156,25 @@ class Roles:
                 break
         return SideVerdict(verdict, ((0, side),), "value")
 
-    def _by_momenta(self, rate: sp.Expr) -> sp.Expr:
-        """A velocity as a function of momenta, where the mass matrix is not too large."""
-        system, d = self._namespace.derivation.system, self._namespace.derivation
-        if len(system.q) > LARGEST_INVERSE:
-            return rate
-        return d.hamilton_equations[0][system.qdot.index(rate)]
+    def _canonical(self, subject: str, left: sp.Expr, right: sp.Expr) -> sp.Expr | None:
+        """The right-hand side of a canonical equation, in the variables that a document uses.
+
+        None if the formula is none, or the mass matrix is too large. The rate of a momentum is
+        a function of velocities, too: ∂L/∂q and the forces.
+        """
+        d, names = self._namespace.derivation, self._namespace.all_names
+        system, has_momenta = d.system, depends_on(right, d.system.p)
+        if system.conditions or (has_momenta and len(system.q) > LARGEST_INVERSE):
+            return None
+        if left in system.qdot and has_momenta:
+            return d.hamilton_equations[0][system.qdot.index(left)]
+        momentum = names.get(stem(subject)) if order(subject) == 1 else None
+        if momentum not in system.p or depends_on(right, system.qddot):
+            return None
+        k = system.p.index(momentum)
+        if has_momenta:
+            return d.hamilton_equations[1][k]
+        return self._model.lagrangian.diff(system.q[k]) + self._model.forces[k]
 
     def _partners(self, side: FormulaText) -> Iterator[str]:
         """Names that differ from those of a side by their index alone."""
