@@ -152,9 +152,18 @@ def random_slip(document: WrittenDocument, seed: int) -> Slip | None:
     for kind in pick.sample(kinds, len(kinds)):
         group = [one for one in places if one.kind == kind]
         for one in pick.sample(group, min(8, len(group))):
-            if document.is_right(one.wrong) is False:
+            if document.is_right(one.wrong) is False and not _is_mirrored(document, one):
                 return one
     return None
+
+
+def _is_mirrored(document: WrittenDocument, slip: Slip) -> bool:
+    """Whether a slip turns an axis around, which no other statement of the document has."""
+    steps = dict(document.steps)
+    if "velocities" in steps or document.statements[slip.index] not in steps.get("positions", ()):
+        return False
+    name, _, value = slip.wrong.partition("=")
+    return document.is_right(f"{name} = -\\left({value}\\right)") is True
 
 
 def _changes(latex: str, document: WrittenDocument) -> Iterator[tuple[str, int, int, str]]:

@@ -161,11 +161,11 @@ class Search:
                     yield Change(piece, new, 1.5 - sign / 2 + self._size(piece))
 
     def _size(self, piece: FormulaPart) -> float:
-        """A small cost of long pieces, and of those with accelerations."""
+        """A small cost of long pieces, and in equations of motion of those with accelerations."""
         names = (node.id for node in ast.walk(piece.node) if isinstance(node, ast.Name))
         values = [self._namespace.get(name) for name in names]  # True is none in a condition
         accelerated = any(depends_on(x, self._qddot) for x in values if isinstance(x, sp.Expr))
-        return 0.01 * (piece.end - piece.start) + accelerated
+        return 0.01 * (piece.end - piece.start) + (self.is_equation and accelerated)
 
     def _identified(self, piece: FormulaPart, values: Numbers) -> Iterator[Monomial]:
         """The monomials with these values: along motions, accelerations depend on the rest."""
