@@ -70,6 +70,11 @@ def test_the_rate_of_a_letter_has_a_dot_and_its_index(letter: str, text: str) ->
     assert latex(syntax_tree("q_dot"), {"q": letter}) == text
 
 
+@pytest.mark.parametrize("letter", [r"\frac{d x}{dt}", "x'"])
+def test_the_square_of_a_rate_with_another_notation_has_brackets(letter: str) -> None:
+    assert latex(syntax_tree("m*x_dot**2"), {"x_dot": letter}) == rf"m \left({letter}\right)^2"
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
     [

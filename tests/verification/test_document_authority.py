@@ -356,6 +356,15 @@ def test_a_potential_is_not_accused_by_an_equation_that_lacks_a_term(tmp_path: P
     assert "agrees with line 1: nothing else" in formulas[1].note
 
 
+def test_two_known_systems_that_refute_different_formulas_decide_nothing(tmp_path: Path) -> None:
+    text = r"""$$ x_1 = x_1, \qquad x_2 = x_2 $$
+    $$ T = \frac{m_1\dot x_1^2}{2} + \frac{m_2\dot x_2^2}{2} $$
+    $$ V = \frac{x_1^2 (k_1 + k_2)}{2} - k_2 x_1 x_2 + \frac{2 k_2 x_2^2}{2} $$
+    $$ m_1\ddot x_1 + (k_1 + k_2) x_1 - k_2 x_2 = 0 $$
+    $$ m_2\ddot x_2 - k_2 x_1 + k_2 x_2 = 0 $$"""
+    assert wrong(judged(tmp_path, text)) == []
+
+
 def test_a_mass_in_place_of_a_sum_is_larger_than_the_others(tmp_path: Path) -> None:
     text = r"""With $M = m_1 + m$, $$ T = \frac12 M\dot x^2 + m l\dot\theta\dot x\cos\theta
     + \frac12 m l^2\dot\theta^2 $$ $$ V = -m g l\cos\theta $$

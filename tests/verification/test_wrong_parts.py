@@ -50,6 +50,16 @@ $$L = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2
 $$m_1\ddot x_1 + (k_1 + k_2) x_1 - k_2 x_2 = 0$$
 $$m_2\ddot x_2 - k_2 x_1 + k_2 x_2 = 0$$
 """
+TRACK = r"""
+$$L = \frac12 m\dot r^2\left(\frac{a^2}{r^4} + 1\right)$$
+$$\frac{d}{dt}\frac{\partial L}{\partial\dot r}
+  = -\frac{4 a^2 m\dot r^2}{r^5} + m\ddot r (\frac{a^2}{r^4} + 1)$$
+"""
+SPHERE = r"""
+$$L = \frac12 m l^2\left(\dot\theta^2 + \dot\phi^2\sin^2\theta\right) + m g l\cos\theta$$
+$$m l^2\ddot\theta = -m g l\sin\theta + m l^2\dot\phi^2\sin\theta\cos\theta$$
+$$p_\phi = m l^2\dot\phi\sin^2\theta$$
+"""
 
 
 def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
@@ -62,7 +72,7 @@ def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
-@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS, POLAR, SPRINGS])
+@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS, POLAR, SPRINGS, TRACK, SPHERE])
 def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
 
@@ -88,8 +98,10 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
         (FIELD, r"(E + \frac kr", r"(E - \frac kr", r"- \frac kr", r"\frac{k}{r}"),
         (POLAR, r"\dot r} = m\ddot", r"\dot r} = 2 m\ddot", r"2 m\ddot r", r"= m "),
         (POLAR, r"\frac{1}{m r^3}", r"\frac{1}{2 m r^3}", r"\frac{1}{2 m r^3}", r"{m r^3}"),
-        (POLAR, r"$$\dot r = \frac", r"$$r = \frac", "", ""),
+        (POLAR, r"$$\dot r = \frac", r"$$r = \frac", "r", r"\dot r = "),
         (SPRINGS, r"- k_2 x_1 + k_2 x_2 =", r"- k_2 x_1 =", "", r"+ k_2 x_2 = 0"),
+        (TRACK, r"+ m\ddot r (", r"+ a\ddot r (", r"a\ddot r", r"m \ddot"),
+        (SPHERE, r"$$m l^2\ddot", r"$$m l^5\ddot", r"m l^5\ddot\theta", r"l^2 m"),
     ],
 )  # fmt: skip
 def test_the_wrong_part_is_found(

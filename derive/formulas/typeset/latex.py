@@ -45,7 +45,10 @@ class _Writer:
             case ast.Constant():
                 return str(node.value), ATOM
             case ast.Name(id=name):
-                return self._name(name), ATOM
+                text = self._name(name)
+                if text.startswith(r"\frac"):  # a rate can be a fraction, or have primes
+                    return text, PRODUCT
+                return text, POWER if "'" in text else ATOM
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return f"-{self.operand(operand, PRODUCT)}", SUM
             case ast.BinOp() if is_sum(node):

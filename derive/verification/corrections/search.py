@@ -139,7 +139,9 @@ class Search:
             else:
                 new = sp.sstr(self._names.parse(source) * ratio.expression)
             longer = max(0, len(new) - len(source))
-            yield Change(piece, new, ratio.change + 0.1 * longer + self._size(piece))
+            several = is_sum(piece.node)  # all terms of a sum are less likely to be wrong than one
+            cost = ratio.change + 0.1 * longer + self._size(piece) + several
+            yield Change(piece, new, cost)
 
     def _additions(self, piece: FormulaPart) -> Iterator[Change]:
         """A monomial that is missing in the piece."""

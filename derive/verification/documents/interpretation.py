@@ -28,6 +28,7 @@ from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
+from derive.verification.judging.verdict import Verdict
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
 #: so many hold.
@@ -40,6 +41,8 @@ UNUSUAL = 0.4
 BASES = ("equations", "energies", "catalogue", "positions")
 #: Formulas that contain an abbreviation.
 SEVERAL = 2
+#: Formulas that hold, from which on a complete known system decides which one is wrong.
+DECISIVE = 3
 #: The largest difference of scores that decides nothing.
 TIE = 0.25
 #: Most work of a search: characters of formulas, times candidates, times coordinates. Documents
@@ -167,21 +170,47 @@ def _doubts(
     is missing. Equations, which follow from energies, must not contradict more formulas than these.
     """
 
-    def has_as_few_slips(match: Match) -> bool:
-        if len(match.failed) > len(best.failed) or match.compared < best.compared:
-            return False
+    def judged(match: Match) -> list[Verdict]:
+        """The verdicts on formulas that are not correct."""
         results = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
-        wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
-        return len(wrong) <= len(best.failed) and all(len(one.corrections) == 1 for one in wrong)
+        return [one.verdict for _, one in results if one.verdict.verdict not in CORRECT]
 
-    result: dict[int, frozenset[int]] = {}
+    def has_as_few_slips(match: Match) -> bool:
+        explains_less = match.compared < best.compared  # such as no positions
+        is_less = explains_less and not match.candidate.is_of_equations
+        if is_less or len(match.failed) > len(best.failed):
+            return False
+        wrong = judged(match)
+        return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(judged(best))
+
     stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
+    if (
+        stated
+        and _is_decisive(best, matches)
+        and [one.verdict for one in judged(best)].count("wrong") == 1
+    ):
+        return {}
+    result: dict[int, frozenset[int]] = {}
     for match in stated:
         has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
         if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
             for number in best.failed - match.failed:
                 result.setdefault(number, match.candidate.stating)
     return result
+
+
+def _is_decisive(best: Match, matches: Sequence[Match]) -> bool:
+    """Whether a known system fits most formulas, and no other one fits as well in another way."""
+    return (
+        best.candidate.basis == "catalogue"
+        and not best.candidate.lacking
+        and best.compared - len(best.failed) >= DECISIVE
+        and all(
+            match.failed == best.failed or match.score < best.score - TIE
+            for match in matches
+            if match.candidate.basis == "catalogue"
+        )
+    )
 
 
 def _with_fewest_slips(

@@ -27,8 +27,6 @@ OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "ha
 FOLLOWS = "it follows from line"
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
-#: Formulas that hold, from which on a complete known system decides which one is wrong.
-SEVERAL = 3
 
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
@@ -152,7 +150,6 @@ def weighed(
     single body, and the accelerations as written have no potential of their own; and more formulas
     that hold than such with more than one wrong term, and than slips if one is in an energy.
     With a partial search for it, none is wrong.
-    If it is complete, and several formulas hold and one does not, it decides that this is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -171,7 +168,6 @@ def weighed(
     )
     slips = max(misfits, len(terms) if has_energy else 0)
     is_weak = is_known and (is_partial or not has_all or slips > max(1, holding))
-    decides = is_known and candidate.lacking == 0 and len(wrong) == 1 and holding >= SEVERAL
     is_guess = is_known and holding < 2 and candidate.is_turned
     independent = sum(FOLLOWS not in one.note for one in wrong)
     is_tie = candidate.is_of_equations and (independent != 1 or holding < 2 or misfits > 0)
@@ -186,7 +182,7 @@ def weighed(
         verdict = result.verdict
         if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
             result = plain("context", formula, UNSTATED)
-        elif verdict.verdict == "wrong" and number in doubts and not decides:
+        elif verdict.verdict == "wrong" and number in doubts:
             other = _lines(lines[k] for k in doubts[number] - {number})
             beside = f" and agrees with {other}" if other else ""
             note = f"it contradicts {given or 'the system'}{beside}: {UNDECIDED}"

@@ -38,6 +38,7 @@ from derive.verification.documents.statements import (
 from derive.verification.documents.text import FormulaText
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on
+from derive.verification.judging.verdict import Correction
 
 #: A number with a decimal point.
 DECIMAL = re.compile(r"\d\.\d")
@@ -155,8 +156,19 @@ class Judge:
         return False
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
-        """The verdict on the first side if all others agree, so that it is the wrong one."""
+        """The verdict on the first side if all others agree, so that it is the wrong one.
+
+        A coordinate that is equal to its rate lacks a dot.
+        """
         first, *others = formula.sides
+        rate = f"{first.text}_dot"
+        if first.text in self._namespace.letters.coordinates and len(others) == 1:
+            with suppress(ExpressionError, NotImplementedError):
+                values = [self._namespace.value(text) for text in (rate, others[0].text)]
+                if self._model.agreement(values[0] - values[1]) is not None:
+                    result = self._roles.value(first, "first_side", values[1])
+                    dotted = Correction(first.text, rate, (0, len(first.text)))
+                    return replace(result, verdict=replace(result.verdict, corrections=(dotted,)))
         if len(others) < 2 or "~" in formula.relations or self._unknown(others):
             return None
         with suppress(ExpressionError, NotImplementedError):
