@@ -54,11 +54,20 @@ TRACK = r"""
 $$L = \frac12 m\dot r^2\left(\frac{a^2}{r^4} + 1\right)$$
 $$\frac{d}{dt}\frac{\partial L}{\partial\dot r}
   = -\frac{4 a^2 m\dot r^2}{r^5} + m\ddot r (\frac{a^2}{r^4} + 1)$$
+$$m (\frac{a^2}{r^4} + 1) \ddot r = \frac{2 a^2 m\dot r^2}{r^5}$$
 """
 SPHERE = r"""
 $$L = \frac12 m l^2\left(\dot\theta^2 + \dot\phi^2\sin^2\theta\right) + m g l\cos\theta$$
 $$m l^2\ddot\theta = -m g l\sin\theta + m l^2\dot\phi^2\sin\theta\cos\theta$$
 $$p_\phi = m l^2\dot\phi\sin^2\theta$$
+"""
+STRETCHED = r"""
+$$L = a k r + g m r\cos\theta - \frac{k r^2}{2}
+  + \frac{m r^2\dot\theta^2}{2} + \frac{m\dot r^2}{2}$$
+$$\frac{\partial L}{\partial r} = a k + g m\cos\theta - k r + m r\dot\theta^2$$
+$$\frac{\partial L}{\partial\dot\theta} = m r^2\dot\theta$$
+$$-a k - g m\cos\theta + k r - m r\dot\theta^2 + m\ddot r = 0$$
+$$g m r\sin\theta + m r^2\ddot\theta + 2 m r\dot r\dot\theta = 0$$
 """
 
 
@@ -67,12 +76,12 @@ def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
     path = folder / "document.md"
     path.write_text(text)
     formulas = judge_file(str(path), order)[0].formulas
-    assert {one.verdict for one in formulas} <= {"verified", "definition", "wrong"}
+    assert {one.verdict for one in formulas} <= {"verified", "equivalent", "definition", "wrong"}
     return [(one.wrong_term, one.correction) for one in formulas if one.verdict == "wrong"]
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
-@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS, POLAR, SPRINGS, TRACK, SPHERE])
+@pytest.mark.parametrize("text", [CART, FIELD, POSITIONS, POLAR, SPRINGS, TRACK, SPHERE, STRETCHED])
 def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
 
@@ -101,6 +110,8 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
         (POLAR, r"$$\dot r = \frac", r"$$r = \frac", "r", r"\dot r = "),
         (SPRINGS, r"- k_2 x_1 + k_2 x_2 =", r"- k_2 x_1 =", "", r"+ k_2 x_2 = 0"),
         (TRACK, r"+ m\ddot r (", r"+ a\ddot r (", r"a\ddot r", r"m \ddot"),
+        (STRETCHED, r"\frac{m r^2\dot\theta^2}", r"\frac{m r^3\dot\theta^2}",
+         r"\frac{m r^3\dot\theta^2}{2}", r"+ \frac{m r^2 \dot\theta^2}{2} + \frac{m\dot r^2}"),
         (SPHERE, r"$$m l^2\ddot", r"$$m l^5\ddot", r"m l^5\ddot\theta", r"l^2 m"),
     ],
 )  # fmt: skip

@@ -11,7 +11,7 @@ from derive.verification.judging.derived import QUANTITIES, foreign_symbols
 from derive.verification.judging.reference_system import ReferenceSystem, depends_on, variables
 
 #: Quantities with an arbitrary constant.
-UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian")
+UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian", "lagrangian")
 
 
 @dataclass(frozen=True)
