@@ -322,6 +322,10 @@ x := y  ⟶  x := y
 x \equiv y  ⟶  x = y
 x \coloneqq y  ⟶  x := y
 x =: y  ⟶  x = y
+\binom{a + b}{c}  ⟶  [(a + b); c]
+(E_1): & x = y + z \checkmark  ⟶  x = (y + z)
+\theta:\quad \ddot\theta = 0  ⟶  theta.. = 0
+[4] \to [3]: F = a  ⟶  F = a
 x \approx y \simeq z  ⟶  x ~ y ~ z
 a \leq b < c  ⟶  a <= b < c
 x \neq 0  ⟶  x != 0
@@ -459,6 +463,5 @@ x/\Delta t  ⟶  unreadable: what stands below the slash is ambiguous without br
 \frac{a}{b}(3)  ⟶  unreadable: a number in brackets, which may be that of the equation
 \frac{\partial d}{\partial dt} x  ⟶  unreadable: ∂ outside of a derivative
 {}^{S}J  ⟶  unreadable: '^' cannot stand here
-\binom{a}{b}  ⟶  unreadable: the command \binom is not known
 \lambda = \pm i  ⟶  unreadable: two signs at once
 """

@@ -83,7 +83,7 @@ DELIMITERS = [
     ("a.md", "the length ![](https://latex.codecogs.com/png.latex?«l») is", "image", True),
     ("a.txt", "so $$«x = 1»$$", "$$", False),
     ("a.rst", ".. math:: «x = 1»", ".. math::", False),
-    ("a.rst", ".. note::\n\n  .. math::\n\n     «x\n\n     y»\n\n  more", ".. math::", False),
+    ("a.rst", ".. note::\n\n  .. math::\n\n     «x\n     y»\n\n  more", ".. math::", False),
     ("a.rst", ".. math::\n   :label: a\n   :nowrap:\n\n   «x»\n", ".. math::", False),
     ("a.rst", "so :math:`«x = 1»`, ``:math:`y```", ":math:", True),
     ("a.html", "<p>$$«x = 1»$$</p>", "$$", False),
@@ -152,7 +152,11 @@ def test_text_that_is_no_formula(tmp_path: Path, name: str, text: str) -> None:
         ("a.md", r"$$a \\* b &lt; c$$", r"a \\* b    < c"),
         ("a.md", "> $$\n> x\n> = 1\n> $$", "x\n  = 1"),
         ("a.html", "<p>$$a &amp;= b<br>c &#x3B8;$$", "a     &= b    c       θ"),
-        ("a.rst", ".. math:: x = 1\n   :label: a\n\n   y = 2", "x = 1\n            \n\n   y = 2"),
+        (
+            "a.rst",
+            ".. math:: x = 1\n   :label: a\n\n   y = 2",
+            "x = 1\n            \n\n\\\\ y = 2",
+        ),
     ],
 )
 def test_spaces_replace_characters_that_are_not_latex(

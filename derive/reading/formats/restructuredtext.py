@@ -11,6 +11,8 @@ CODE = (
     "testcode|testsetup|testoutput|plot|jupyter-execute|csv-table|graphviz|tikz"
 )
 OPTION = re.compile(r"^[ \t]*+:[\w-]++:[^\n]*+$", re.M)
+#: Blank lines between two equations, and two places before the second one.
+BLANK = re.compile(r"(?<=\S)([ \t]*\n(?:[ \t]*\n)+)[ \t]{2}(?=[ \t]*\S)")
 
 
 def _block_end(opening: re.Match[str]) -> str:
@@ -38,8 +40,11 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:
-    """The LaTeX without the options of a directive; the length stays the same."""
-    return options_removed(text[excerpt.start : excerpt.end])
+    """The LaTeX without the options of a directive; the length stays the same.
+
+    Behind blank lines a row begins, as Sphinx reads them.
+    """
+    return BLANK.sub(r"\1\\\\", options_removed(text[excerpt.start : excerpt.end]))
 
 
 def prose(text: str) -> str:

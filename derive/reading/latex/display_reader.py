@@ -33,7 +33,7 @@ from derive.reading.latex.grammar.written_nodes import Symbol
 from derive.reading.latex.layout.layout_removal import Layout
 from derive.reading.latex.layout.macro_expansion import expanded
 from derive.reading.latex.layout.macros import Macro, macros_of
-from derive.reading.latex.layout.pairs import pairs
+from derive.reading.latex.layout.pairs import inside, pairs
 from derive.reading.latex.layout.rows import flattened, statements
 from derive.reading.latex.layout.spellings import with_new_fonts, with_unicode_scripts
 from derive.reading.latex.layout.tokens import Token, UnreadError, tokenize
@@ -88,6 +88,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
 
 def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
     """A statement without its unreadable sides, and these."""
+    tokens = _without_label(tokens)
     sides, relations = _sides(tokens)
     whole = _span(tokens, (0, len(latex)))
     nodes: list[Node] = []
@@ -109,6 +110,15 @@ def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
         yield from failures
     else:
         yield Unreadable(failures[0].reason, whole)
+
+
+def _without_label(tokens: list[Token]) -> list[Token]:
+    r"""The tokens behind a label such as ``(E_1):`` or ``\theta:`` before an equation."""
+    partner = pairs(tokens)
+    whole = inside(-1, len(tokens), partner)
+    colons = [at for at in whole if tokens[at].kind == "relation" and tokens[at].text == ":"]
+    behind = [tokens[at].text for at in whole if colons and at > colons[0]]
+    return tokens[colons[0] + 1 :] if len(colons) == 1 and "=" in behind else tokens
 
 
 def _sides(tokens: list[Token]) -> tuple[list[list[Token]], list[str]]:

@@ -59,7 +59,7 @@ LAYOUT = {
         allowbreak nobreak noindent strut mathstrut hfill hfil hline centering relax middle protect
         normalsize small footnotesize scriptsize large Large break nobreakspace null
         boxed fbox cancel bcancel xcancel mathop mathrel mathbin mathord mathopen mathclose
-        mathinner ensuremath smash mathpunct qedhere""".split(),
+        mathinner ensuremath smash mathpunct qedhere qed checkmark square blacksquare""".split(),
         0,
     ),
     **dict.fromkeys(

@@ -106,6 +106,8 @@ class Layout(Cursor):
             return self._plain_matrix(token, at)
         elif name in TEXT or name in ("intertext", "shortintertext") or name in UPRIGHT:
             return self._text(token, at)
+        elif name in ("binom", "dbinom", "tbinom"):
+            return self._column(token, at)
         elif name in ("underbrace", "overbrace"):
             return self._brace(token, at)
         elif name in ("stackrel", "overset", "underset"):
@@ -209,6 +211,20 @@ class Layout(Cursor):
         self.result.append(Token("begin", token.text, token.span))
         self.result += Layout(self.tokens[start + 1 : end - 1]).tokens_without_layout()
         self.result.append(Token("end", token.text, last))
+        return end
+
+    def _column(self, token: Token, at: int) -> int:
+        r"""The column of two entries that ``\binom{a}{b}`` is in mechanics, as an environment."""
+        middle = self.end_of_argument(at)
+        end = self.end_of_argument(middle)
+        last = self.tokens[end - 1].span
+        self.result.append(Token("begin", "pmatrix", token.span))
+        for start, stop in ((at, middle), (middle, end)):
+            inner = self.tokens[self.skip(start) : stop]
+            inner = inner[1:-1] if inner[0].kind == "{" else inner
+            self.result += Layout(inner).tokens_without_layout()
+            self.result.append(Token("row", "", (inner[-1].span[1],) * 2))
+        self.result[-1] = Token("end", "pmatrix", last)
         return end
 
     def _text(self, token: Token, at: int) -> int:
