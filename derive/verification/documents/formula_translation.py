@@ -58,6 +58,7 @@ class LetterNotation:
     matrices: frozenset[str] = frozenset()  # identifiers of matrices and columns
     count: int = 1  # values of an index without bounds
     primes_are_rates: bool = False
+    primed: frozenset[str] = frozenset()  # letters whose primes are rates beside dots of others
     calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
     factors: frozenset[str] = frozenset()  # identifiers before brackets that hold a column
 
@@ -80,7 +81,8 @@ class FormulaTranslator:
 
     def name(self, letter: Letter) -> str:
         """The identifier of a letter with its dots."""
-        primes = letter.primes if self.notation.primes_are_rates else 0
+        are_rates = self.notation.primes_are_rates or letter.name in self.notation.primed
+        primes = letter.primes if are_rates else 0
         name = identifier(letter) + "_prime" * (letter.primes - primes)
         name = f"{name}_column" if letter.is_bold else name
         return name + RATES[letter.dots + primes]

@@ -50,6 +50,8 @@ TIE = 0.25
 MAX_WORK = 1_000_000_000
 #: Most potential energies of stated positions that are compared by their verdicts.
 MAX_DIRECTIONS = 4
+#: Most stated systems that are tried by all verdicts where numbers support none.
+MAX_VERIFIED = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
@@ -116,11 +118,13 @@ def _best(
     formulas, derivatives = statements.formulas, statements.derivatives
     trivial = trivial_comparisons(letters, formulas, derivatives)
     matches: list[Match] = []
+    stated: list[Match] = []
     for tried in (tried for group in groups for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
             break
         result = best_matches(tried, letters, formulas, derivatives, trivial)
         held = [match for match in result if match.holding or not least]
+        stated += [match for match in held if match.candidate.stating]
         matches += [match for match in held if not match.is_circular]
         if any(match.is_stated_by_positions for match in result):
             break
@@ -133,11 +137,25 @@ def _best(
 
     best = max(supported, key=rank, default=None)  # the first of several with the same rank
     if best is None:
-        return Interpretation(letters, None)
+        return Interpretation(letters, _verified(stated, statements, letters))
     best = _with_direction(best, matches, statements, letters)
     best, is_decided = _with_fewest_slips(best, matches, statements, letters)
     doubts = {} if is_decided else _doubts(best, matches, statements, letters)
     return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
+
+
+def _verified(stated: Sequence[Match], statements: Translated, letters: Letters) -> Match | None:
+    """A match of a stated system of which another formula follows, such as for small angles."""
+    matches = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
+    fitting = (one for one in matches if fits(statements, letters, one.candidate))
+    return next(fitting, None)
+
+
+def fits(statements: Translated, letters: Letters, candidate: SystemCandidate) -> bool:
+    """Whether a formula is verified by a system, and none is wrong."""
+    verdicts = judge_of(statements, letters, candidate).verdicts(statements.formulas)
+    kinds = {one.verdict.verdict for _, one in verdicts}
+    return "verified" in kinds and "wrong" not in kinds
 
 
 def _with_direction(

@@ -3,15 +3,25 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 from derive.reading.document import Display, Document
+from derive.reading.headings import divided
 from derive.reading.latex.display_reader import formulas, macros_of
-from derive.reading.latex.tree import Derivative, Letter, Statement, Unreadable
-from derive.reading.latex.walking import nodes, with_letters
+from derive.reading.latex.tree import Derivative, Letter, Node, Statement, Unreadable
+from derive.reading.latex.walking import (
+    DIFFERENCE,
+    letters,
+    nodes,
+    with_differences,
+    with_letters,
+)
 from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.interpretation import (
+    Interpretation,
     Work,
     alternatives,
+    fits,
     interpretation,
     judge_of,
     unopposed,
@@ -21,6 +31,7 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import implied_rates, letters_of
 from derive.verification.documents.letters.positions import sections
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
+from derive.verification.documents.numbers.matching import Match
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -35,6 +46,7 @@ from derive.verification.documents.statements import (
     IMPLIED,
     DocumentFormula,
     Occurrence,
+    Translated,
     translated,
 )
 from derive.verification.documents.text import RATES, stem
@@ -66,7 +78,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     """Judge every formula of a document.
 
     A document can treat several systems: another is sought for the formulas with letters that
-    have no meaning in those before.
+    have no meaning in those before, then for such below each heading.
     """
     occurrences, judged = _read(document)
     statements = implied_rates(translated(occurrences))
@@ -75,15 +87,19 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
-    work = Work()
-    for section in sections(statements.formulas):
-        remaining, count = section, 0
+    work, before = Work(), list[Match]()
+    subjects = [*sections(statements.formulas)]
+    while subjects:
+        remaining, count = subjects.pop(0), 0
         while remaining and count < (1 if hints else MAX_SYSTEMS):
             count += 1
             part = replace(statements, formulas=remaining)
             found = interpretation(part, hints, work)
             if found.match is None:
+                found = _continued(part, found, before)
+            if found.match is None:
                 break
+            before.append(found.match)
             candidate = found.match.candidate
             judge = judge_of(part, found.letters, candidate)
             titles.append(candidate.title)
@@ -95,8 +111,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             others += contrary
             verdicts = [*unopposed(verdicts, contrary)]
             for formula, result in verdicts:
-                before = results.get(formula.occurrence)
-                if before is None or _is_graver(result, before[1]):
+                earlier = results.get(formula.occurrence)
+                if earlier is None or _is_graver(result, earlier[1]):
                     results[formula.occurrence] = formula, result
                     is_known = candidate.basis == "catalogue" and hints is None
                     (known.add if is_known else known.discard)(formula.occurrence)
@@ -105,6 +121,9 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
                 one for one, result in verdicts
                 if not result.is_understood and bound.isdisjoint(map(stem, one.words))
             )  # fmt: skip
+        if remaining and not hints:
+            below = divided(document.text, remaining, lambda one: one.occurrence.start)
+            subjects += below if len(below) > 1 else []
     note = "no system was found for which its formulas hold"
     if work.left < 0:
         note = (
@@ -128,6 +147,15 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     )
 
 
+def _continued(part: Translated, found: Interpretation, before: Sequence[Match]) -> Interpretation:
+    """The last of the systems before that fits formulas of which none follows."""
+    for match in reversed(before):
+        own = replace(match.candidate, stating=frozenset())
+        if not own.constraints and fits(part, found.letters, own):
+            return replace(found, match=replace(match, candidate=own, failed=frozenset()))
+    return found
+
+
 def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
     """All statements of a document, and those that cannot be read."""
     macros = macros_of("\n".join(document.definitions))
@@ -140,7 +168,7 @@ def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
                     unreadable.append(_plain(place, "unreadable", one.reason))
             elif one.relations or not display.is_inline:
                 occurrences.append(place)
-    return _with_lengths(occurrences), unreadable
+    return _with_differences(_with_lengths(occurrences)), unreadable
 
 
 #: The name of a plain letter L beside the Lagrangian in script.
@@ -162,16 +190,26 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     if len(found) < 2:
         return [*occurrences]
 
-    def renamed(place: Occurrence) -> Occurrence:
-        def change(letter: Letter) -> Letter:
-            is_length = letter.name == "L" and is_plain(place, letter)
-            return replace(letter, name=LENGTH) if is_length else letter
+    def change(place: Occurrence, letter: Letter) -> Letter:
+        is_length = letter.name == "L" and is_plain(place, letter)
+        return replace(letter, name=LENGTH) if is_length else letter
 
-        sides = with_letters(place.sides, change)
-        tree = replace(place.tree, sides=sides) if sides else place.tree
-        return replace(place, tree=tree)
+    return [_with_sides(one, with_letters(one.sides, partial(change, one))) for one in occurrences]
 
-    return [*map(renamed, occurrences)]
+
+def _with_sides(place: Occurrence, sides: tuple[Node, ...]) -> Occurrence:
+    """A statement with other sides."""
+    return replace(place, tree=replace(place.tree, sides=sides)) if sides else place
+
+
+def _with_differences(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
+    r"""The statements with one letter for ``\Delta x``, unless Δ stands alone somewhere."""
+    trees = [one.sides for one in occurrences]
+    joined = [with_differences(sides) for sides in trees]
+    is_alone = any(one.name == DIFFERENCE for sides in joined for one in letters(sides))
+    if is_alone or joined == trees:
+        return [*occurrences]
+    return [_with_sides(one, sides) for one, sides in zip(occurrences, joined, strict=True)]
 
 
 def _occurrence(document: Document, display: Display, tree: Statement | Unreadable) -> Occurrence:

@@ -26,6 +26,8 @@ from derive.verification.documents.formula_translation import (
 from derive.verification.documents.text import FormulaText, stem
 
 WORD = re.compile(r"[A-Za-z_]\w*")
+#: The square of a name.
+SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
 CONSTANT = ("const", "constant", "konst", "konstant", "constante", "costante")
 #: Relations of statements that can hold or not.
@@ -151,6 +153,10 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     everything = [letter for tree in trees for letter in letters(tree)]
     dotted = {letter.name for letter in everything if letter.dots}
     primed = any(letter.primes for letter in everything)
+    # a letter with dots and with primes has its rates in both notations, if one is the second
+    marked = {letter.name for letter in everything if letter.primes and letter.dots}
+    twice = {letter.name for letter in everything if letter.primes == 2}
+    both = (dotted & twice) - marked
     indices = [int(one.index) for one in everything if one.index.isdecimal() and one.name in dotted]
     functions = {
         plain.name(node.head)
@@ -179,6 +185,7 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         frozenset(matrices),
         min(count, 9),
         primed and not dotted,
+        frozenset(dotted - marked if both else ()),
     )
 
 
@@ -219,7 +226,7 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     first, *others = formula.sides
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
-    if square := re.fullmatch(r"(\w+)\*\*2", first.text):  # a frequency, usually
+    if square := SQUARE.fullmatch(first.text):  # a frequency, usually
         yield from ((square[1], f"sqrt({side.text})") for side in others)
     if first.entries:
         for side in others:

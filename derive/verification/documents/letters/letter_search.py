@@ -31,6 +31,7 @@ from derive.verification.documents.letters.stated_constraints import (
 )
 from derive.verification.documents.statements import (
     IMPLIED,
+    SQUARE,
     DocumentFormula,
     Occurrence,
     Translated,
@@ -348,6 +349,10 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         is_name = last.text.isidentifier() and not order(last.text) and len(formula.sides) == 2
         if name and order(name) and is_name and orders.get(last.text, 0) < 2:
             defined.add(last.text)
+        # v_1**2 = x_dot**2 + y_dot**2 defines a speed, omega**2 = g/l a frequency
+        square = SQUARE.fullmatch(formula.sides[0].text)
+        if square and others and not orders.get(square[1]) and square[1] not in others:
+            defined.add(square[1])
     return defined
 
 

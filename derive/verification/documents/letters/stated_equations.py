@@ -21,7 +21,7 @@ from derive.verification.documents.letters.candidates import (
     BY_POTENTIAL,
     SystemCandidate,
 )
-from derive.verification.documents.letters.document_system import valid_name
+from derive.verification.documents.letters.document_system import is_length, valid_name
 from derive.verification.documents.letters.energies import (
     letter_symbols,
     stated_system,
@@ -73,6 +73,8 @@ class StatedEquations:
         left_out = {*letters.coordinates} - {*self._coordinates}
         symbols = {name: one for name, one in self._symbols.items() if name not in left_out}
         _, self._names = stated_values(letters, formulas, {**symbols, **self._reactions})
+        others = {*self._others()}
+        self._reactions = {n: one for n, one in self._reactions.items() if one not in others}
         # coordinates of which no equation has an acceleration
         rows = [*self._equations([*map(acceleration, self._q)])]
         used = [k for k in range(len(self._q)) if any(one.coefficients[k] for one in rows)]
@@ -100,6 +102,20 @@ class StatedEquations:
                         yield candidate
             if has_system:
                 return
+
+    def _others(self) -> Iterator[sp.Symbol]:
+        """Letters of reactions that equations are not linear in, lengths times another, periods."""
+        letters = [*self._reactions.values()]
+        for formula in self._formulas:
+            if formula.subject in self._reactions and "pi" in formula.words:
+                yield self._reactions[formula.subject]
+            with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                first, *others = (parse(side.text, self._names) for side in formula.sides)
+                for name, one in self._reactions.items():
+                    slope = sp.Tuple(*((first - other).diff(one) for other in others))
+                    partners = [other for other in letters if is_length(name) or other is one]
+                    if slope.has(*partners):
+                        yield one
 
     def _choices_of_reactions(self) -> Iterator[Mapping[str, sp.Symbol]]:
         """All letters of reactions, those but multipliers, or none."""

@@ -93,7 +93,9 @@ class Numbers:
 
     def comparisons(self, formula: DocumentFormula) -> Iterator[tuple[str, Votes]]:
         """Yield the sides of a formula, and whether each agrees with the first with a value."""
-        if formula.is_update or {*formula.relations} - {*EQUALITIES} or self._is_value(formula):
+        if formula.is_update or {*formula.relations} - {*EQUALITIES}:
+            return
+        if self._is_value(formula) or self._is_solution(formula):
             return
         kind = self._letters.quantities.get(formula.subject)
         exact = formula.relations.index("~") + 1 if "~" in formula.relations else None
@@ -157,6 +159,12 @@ class Numbers:
         *names, last = (side.text for side in formula.sides)
         moving = {q + ending for q in self._letters.coordinates for ending in RATES[:2]}
         return {*names} <= {*moving, *self._letters.parameters} and not WORD.search(last)
+
+    def _is_solution(self, formula: DocumentFormula) -> bool:
+        """Whether it states a coordinate as a function of time alone, as x = A*cos(omega*t)."""
+        coordinates = {*self._letters.coordinates}
+        moving = [word for word in map(stem, formula.words) if word in coordinates]
+        return moving == [formula.subject] and "t" in formula.words
 
     def _is_definition(self, formula: DocumentFormula, text: str) -> bool:
         return any(
