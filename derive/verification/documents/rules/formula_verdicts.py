@@ -16,6 +16,7 @@ from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import Consequences, opposed
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
+from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
 from derive.verification.documents.rules.partial_energies import PartialEnergies
@@ -31,6 +32,7 @@ from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,
+    SQUARE,
     WORD,
     DocumentFormula,
     Occurrence,
@@ -60,6 +62,7 @@ class Judge:
         linear = SmallMotions(namespace.derivation)
         # these give names their correct values, and the scope another model
         self._positions = MassPositions(namespace)
+        self._linear = linear
         self._matrices, self._energies = (
             DerivedMatrices(namespace, linear),
             PartialEnergies(namespace),
@@ -67,6 +70,7 @@ class Judge:
         self._namespace, self._model = namespace, namespace.model
         self._roles = Roles(namespace, linear)
         self._comparison = SideComparison(namespace, linear, self._roles)
+        self._frequencies = Frequencies(namespace, linear, self._roles)
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
@@ -92,6 +96,8 @@ class Judge:
         if formula.subject in INDICES or self._is_special(formula):
             return plain("context", formula, "it states a value")
         if self._prescribes(formula):
+            if self._solves(formula):
+                return plain("verified", formula, "it solves the equation of small motions")
             return plain("context", formula, "it prescribes a coordinate")
         if formula.occurrence in self._given:
             return plain("definition", formula, STATES)
@@ -222,6 +228,18 @@ class Judge:
             )
         return False
 
+    def _solves(self, formula: DocumentFormula) -> bool:
+        """Whether the sides of a coordinate solve its equation, for any other letters."""
+        first, system = formula.sides[0].text, self._namespace.derivation.system
+        if self._namespace.all_names[first] not in system.q:
+            return False
+        constants = {one: sp.Symbol(one, positive=True) for one in self._unknown(formula.sides)}
+        with suppress(ExpressionError, NotImplementedError):
+            names = {**self._namespace.all_names, **constants}
+            values = [parse(side.text, names) for side in formula.sides[1:]]
+            return all(map(self._linear.is_solution, values))
+        return False
+
     def _constant_of_motion(self, formula: DocumentFormula) -> str:
         """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.
 
@@ -254,6 +272,11 @@ class Judge:
             return self._position(formula, side) or self._definition(formula, side)
         if first.entries and (position := self._position(formula, side)):
             return position
+        if square := SQUARE.fullmatch(first.text):
+            defined = self._namespace.defining.get(square[1])
+            if defined and defined[0] is formula and defined[1] == f"sqrt({side.text})":
+                result = self._frequencies.verdict(formula, square[1], side, 2)
+                return result or plain("definition", formula, "")
         last = self._namespace.defining.get(side.text)
         if last and last[0] is formula:
             return plain("definition", formula, "")
@@ -280,6 +303,8 @@ class Judge:
     def _definition(self, formula: DocumentFormula, side: FormulaText) -> SideVerdict:
         """The verdict on a definition, which can be that of a matrix of the system."""
         name, entries = formula.subject, side.entries
+        if (frequency := self._frequencies.verdict(formula, name, side, 1)) is not None:
+            return frequency
         if (value := self._abbreviations.required(name)) is not None:
             return self._roles.value(side, name, value)
         required = self._matrices.required(name)

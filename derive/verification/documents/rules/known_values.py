@@ -77,6 +77,8 @@ class DocumentNamespace:
                 break
         #: Parameters with the numbers that the document sets them to.
         self.special_values = self._special_values(formulas)
+        #: Parameters that the document sets to zero, each with the first formula that does.
+        self.vanishing = self._vanishing(formulas)
         equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
         if system_letters.multipliers:
             self.model = ReferenceSystem(self.derivation, self.names)
@@ -109,6 +111,16 @@ class DocumentNamespace:
             is_value = {*formula.relations} == {"="} and last.isdigit() and int(last)
             if is_value and all(name in self._system.params for name in names):
                 result |= dict.fromkeys(names, sp.Integer(last))
+        return result
+
+    def _vanishing(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, DocumentFormula]:
+        """Parameters in statements such as I = 0, from where on a formula can hold for this."""
+        result: dict[sp.Symbol, DocumentFormula] = {}
+        for formula in formulas:
+            first, *others = formula.sides
+            name = self.names.get(first.text)
+            if name in self._system.params and [one.text for one in others] == ["0"]:
+                result.setdefault(name, formula)
         return result
 
     def _add_letters(self, system_letters: SystemLetters) -> None:

@@ -1,6 +1,7 @@
 """Verdicts on two sides of a formula, from their values."""
 
 import ast
+from collections.abc import Iterator
 from dataclasses import replace
 
 import sympy as sp
@@ -90,7 +91,7 @@ class SideComparison:
                 return plain("verified", formula, "it holds for one sign of the root")
             is_relation = result.kind == "euler_lagrange"
             result = inside if inside.verdict.corrections and not is_relation else result
-        if values := self._special_values(first, left, right):
+        if values := self._special_values(formula, first, left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
         return result
@@ -128,19 +129,21 @@ class SideComparison:
         return result
 
     def _special_values(
-        self, first: FormulaText, left: Value, right: Value
+        self, formula: DocumentFormula, first: FormulaText, left: Value, right: Value
     ) -> dict[sp.Symbol, sp.Expr]:
         """Values of parameters for which two sides are equal; empty if there are none.
 
-        They are those that the document states, or units, if neither side is written with
-        parameters.
+        They are those that the document states, zeros before the formula, or units, if neither
+        side is written with parameters.
         """
         difference = (left - right).xreplace(self._model.momenta)
-        if stated := self._namespace.special_values:
-            moving = difference
-            for values in self._model.motions.substitutions:
-                moving = moving.xreplace(values)
-            if self._agree(moving.xreplace(stated)):
+        moving = difference
+        for values in self._model.motions.substitutions:
+            moving = moving.xreplace(values)
+        for stated in self._stated_values(formula):
+            # a zero that leaves nothing of the sides tests nothing
+            is_empty = not any(stated.values()) and right.subs(stated) == 0
+            if not is_empty and self._agree(moving.subs(stated)):
                 return stated
         parameters = left.free_symbols & {*self._namespace.derivation.system.params}
         units = dict.fromkeys(sorted(parameters, key=str), sp.S.One)
@@ -153,6 +156,20 @@ class SideComparison:
         if len(parameters) > 1 and not written & parameters:
             return units if self._agree(difference.xreplace(units)) else {}
         return {}
+
+    def _stated_values(self, formula: DocumentFormula) -> Iterator[dict[sp.Symbol, sp.Expr]]:
+        """Yield values of parameters that the document states before a formula, or anywhere."""
+        numbers = self._namespace.special_values
+        zeros = [
+            name
+            for name, one in self._namespace.vanishing.items()
+            if one.occurrence.span < formula.occurrence.span
+        ]
+        if numbers:
+            yield numbers
+        for names in (*([one] for one in zeros), zeros):
+            if names:
+                yield {**numbers, **dict.fromkeys(names, sp.S.Zero)}
 
     def _agree(self, difference: sp.Expr) -> bool:
         """Whether a difference is zero, by proof or at states between which it keeps its form."""

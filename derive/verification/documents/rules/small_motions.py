@@ -7,6 +7,7 @@ import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
+from derive.system.symbols import TIME
 from derive.verification.documents.letters.letters import KINDS
 from derive.verification.judging.reference_system import ReferenceSystem
 
@@ -54,6 +55,16 @@ class SmallMotions:
             return any(is_zero(one) for one in self._combinations(linear))
         except (ExpressionError, NotImplementedError):
             return False
+
+    def is_solution(self, value: sp.Expr) -> bool:
+        """Whether a function of time solves the linear equation of a single coordinate."""
+        system = self._derivation.system
+        if len(system.q) > 1 or not self.is_origin or not value.has(TIME):
+            return False
+        rates = (value, value.diff(TIME), value.diff(TIME, 2))
+        symbols = (*system.q, *system.qdot, *system.qddot)
+        rest = self._equations[0].xreplace(dict(zip(symbols, rates, strict=True)))
+        return bool(sp.simplify(rest) == 0)
 
     def acceleration(self, symbol: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
         """The acceleration of small motions if `value` seems to be one: without functions."""

@@ -1,0 +1,83 @@
+"""Frequencies, periods and solutions that documents state beside their equations."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+
+
+def judged(folder: Path, text: str) -> list[FormulaVerdict]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return [*judge_document(read_document(folder / "a.md")).formulas]
+
+
+PENDULUM = r"""Torques give
+$$ m l^2 \ddot\theta = -m g l \sin\theta $$
+$$ \ddot\theta = -\frac{g}{l} \sin\theta $$
+Small angles oscillate with the frequency and the period
+$$ %s $$
+"""
+
+
+@pytest.mark.parametrize(("formula", "verdict"), [
+    (r"\omega = \sqrt{\frac{g}{l}}", "verified"),
+    (r"\omega = \sqrt{\frac{l}{g}}", "wrong"),
+    (r"\omega_0^2 = \frac{g}{l}", "verified"),
+    (r"\omega_0^2 = \frac{2 g}{l}", "wrong"),
+    (r"T = 2\pi\sqrt{\frac{l}{g}}", "verified"),
+    (r"T = \pi\sqrt{\frac{l}{g}}", "wrong"),
+    (r"f = \frac{1}{2\pi}\sqrt{\frac{g}{l}}", "verified"),
+    (r"f = 2\pi\sqrt{\frac{g}{l}}", "wrong"),
+    (r"\omega = \sqrt{\frac{k}{m}}", "context"),  # of another oscillator
+])  # fmt: skip
+def test_a_frequency_is_that_of_small_motions(formula: str, verdict: str, tmp_path: Path) -> None:
+    assert judged(tmp_path, PENDULUM % formula)[-1].verdict == verdict
+
+
+def test_an_angular_velocity_need_not_be_a_frequency(tmp_path: Path) -> None:
+    text = PENDULUM.replace("Small angles oscillate with the frequency and the period",
+                            "It starts below with just enough to reach the top:")  # fmt: skip
+    assert judged(tmp_path, text % r"\omega = 2\sqrt{\frac{g}{l}}")[-1].verdict == "definition"
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    ("k + 2c", "k + 2c"), ("k + 2c", "k + c"), ("k + 2c", "2k + 2c"),
+])  # fmt: skip
+def test_normal_frequencies_are_eigenvalues(old: str, new: str, tmp_path: Path) -> None:
+    text = r"""$$ T = \frac12 m (\dot x^2 + \dot y^2) $$
+$$ V = \frac12 k x^2 + \frac12 k y^2 + \frac12 c (x - y)^2 $$
+The natural frequencies are
+$$ \omega_1 = \sqrt{\frac{k}{m}}, \quad \omega_2 = \sqrt{\frac{k + 2c}{m}} $$"""
+    verdicts = [one.verdict for one in judged(tmp_path, text.replace(old, new))][-2:]
+    assert verdicts == ["verified", "verified" if old == new else "definition"]
+
+
+OSCILLATOR = r"""$$ m \ddot x = -k x $$
+$$ \ddot x = -\omega^2 x, \quad \omega = \sqrt{\frac{k}{m}} $$
+$$ %s $$"""
+
+
+@pytest.mark.parametrize(("solution", "verdict"), [
+    (r"x = A \cos(\omega t + \phi)", "verified"),
+    (r"x(t) = x_0 \cos(\omega t) + \frac{v_0}{\omega}\sin(\omega t)", "verified"),
+    (r"x(t) = A \cos(2\omega t)", "context"),
+])  # fmt: skip
+def test_a_solution_solves_the_equation(solution: str, verdict: str, tmp_path: Path) -> None:
+    assert judged(tmp_path, OSCILLATOR % solution)[-1].verdict == verdict
+
+
+def test_a_square_is_not_verified_by_itself(tmp_path: Path) -> None:
+    text = OSCILLATOR % r"v^2 = 3 \dot x^2"
+    assert judged(tmp_path, text)[-1].verdict == "definition"
+
+
+def test_a_solution_does_not_hide_the_equation(tmp_path: Path) -> None:
+    text = r"""$$ -m g L \sin\theta = m L^2 \ddot\theta $$ $$ -\frac{g}{L}\theta = \ddot\theta $$
+$$ \theta(t) = \theta_{max}\cos(\omega t + \phi) $$"""
+    verdicts = [one.verdict for one in judged(tmp_path, text)]
+    assert verdicts == ["verified", "verified", "context"]
+    slip = text.replace(r"{g}{L}\theta", r"{2g}{L}\theta")
+    assert judged(tmp_path, slip)[1].verdict != "verified"

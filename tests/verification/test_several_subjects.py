@@ -1,0 +1,123 @@
+"""Documents with several systems below their headings, and cases of one system."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.reading.headings import divided
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+
+
+def judged(folder: Path, text: str) -> list[FormulaVerdict]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return [*judge_document(read_document(folder / "a.md")).formulas]
+
+
+TWO = r"""
+## Point mass
+$$ -m g L \sin\theta = m L^2 \ddot\theta $$
+$$ -\frac{g}{L}\theta = \ddot\theta $$
+## Its motion
+The period is
+$$ T = 2\pi\sqrt{\frac{L}{g}} $$
+## Rigid body
+$$ -m g D \sin\theta = I \ddot\theta $$
+$$ -\frac{m g D}{I}\theta = \ddot\theta $$
+"""
+
+
+def test_each_heading_can_have_its_system(tmp_path: Path) -> None:
+    verdicts = [one.verdict for one in judged(tmp_path, TWO)]
+    assert verdicts == ["definition", "verified", "verified", "definition", "verified"]
+
+
+@pytest.mark.parametrize(("old", "new", "number"), [
+    (r"-\frac{g}{L}\theta", r"-\frac{2 g}{L}\theta", 1),
+    (r"2\pi\sqrt", r"\pi\sqrt", 2),
+    (r"-\frac{m g D}{I}\theta", r"-\frac{m g D}{2 I}\theta", 4),
+])  # fmt: skip
+def test_a_slip_below_a_heading_is_not_verified(
+    old: str, new: str, number: int, tmp_path: Path
+) -> None:
+    assert judged(tmp_path, TWO.replace(old, new))[number].verdict not in ("verified", "definition")
+
+
+@pytest.mark.parametrize("text", [
+    "# A\n@a\n## B\n@b\n# C\n@c\n",
+    "\\section{A}\n@a\n\\subsection{B}\n@b\n\\section{C}\n@c\n",
+    "<h1>A</h1>\n@a\n<h2>B</h2>\n@b\n<h1>C</h1>\n@c\n",
+    "# A\n@a\n**Example 1.** @b\n# C\n@c\n",
+    "A\n===\n@a\n\nProblem 1\n@b\n\nC\n===\n@c\n",
+])  # fmt: skip
+def test_the_highest_headings_divide_a_text(text: str) -> None:
+    def place(name: str) -> int:
+        return text.index(f"@{name}")
+
+    assert divided(text, "abc", place) == [("a", "b"), ("c",)]
+    assert divided(text, "ab", place) == [("a",), ("b",)]
+    assert divided(text, "c", place) == [("c",)]
+
+
+CASE = r"""$$ T = \frac12 m l^2 \dot\theta^2 + \frac12 I \dot\theta^2 $$ $$ V = - m g l \cos\theta $$
+$$ (m l^2 + I) \ddot\theta = - m g l \sin\theta $$
+For a point mass, $I = 0$:
+$$ \ddot\theta = - \frac{g}{l} \sin\theta $$"""
+
+
+def test_a_formula_can_hold_where_a_parameter_vanishes(tmp_path: Path) -> None:
+    assert judged(tmp_path, CASE)[-1].note == "it holds for I = 0"
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    (r"{g}{l}", r"{2 g}{l}"), ("For a point mass, $I = 0$:", ""), (r"{l} \sin", r"{l} \cos"),
+])  # fmt: skip
+def test_a_vanishing_parameter_does_not_excuse_a_slip(old: str, new: str, tmp_path: Path) -> None:
+    assert judged(tmp_path, CASE.replace(old, new))[-1].verdict == "wrong"
+
+
+SPRINGS = r"""Springs are stretched by $\Delta x_1$ and $\Delta x_2$:
+$$ T = \frac12 m_1 \Delta\dot x_1^2 + \frac12 m_2 (\Delta\dot x_1 + \Delta\dot x_2)^2 $$
+$$ U = \frac12 k_1 \Delta x_1^2 + \frac12 k_2 \Delta x_2^2 $$
+$$ m_1 \Delta\ddot x_1 = -k_1 \Delta x_1 + k_2 \Delta x_2 $$
+$$ m_2 \Delta\ddot x_2 = -k_2 \Delta x_2 - m_2 \Delta\ddot x_1 $$"""
+
+
+def test_a_difference_is_a_letter(tmp_path: Path) -> None:
+    formulas = judged(tmp_path, SPRINGS)
+    assert [one.verdict for one in formulas][-2:] == ["verified", "verified"]
+    slip = judged(tmp_path, SPRINGS.replace(r"+ k_2 \Delta", r"- k_2 \Delta"))
+    assert slip[-2].verdict == "wrong"
+    assert slip[-2].wrong_term == r"- k_2 \Delta x_2"
+
+
+def test_a_difference_that_stands_alone_is_no_sign(tmp_path: Path) -> None:
+    text = r"""$$\Delta = \theta_1 - \theta_2$$
+$$T = \frac12 m l^2 (2\dot\theta_1^2 + \dot\theta_2^2 + 2\dot\theta_1\dot\theta_2\cos\Delta)$$
+$$V = -m g l (2\cos\theta_1 + \cos\theta_2)$$
+$$l\ddot\theta_2 + l\ddot\theta_1\cos\Delta - l\sin\Delta\dot\theta_1^2 + g\sin\theta_2 = 0$$"""
+    assert judged(tmp_path, text)[-1].verdict == "verified"
+
+
+PRIMES = r"""$$ v^2 = \dot r^2 + r^2\dot\alpha^2 $$ $$ T = \frac12 m v^2 $$
+$$ V = \frac12 k (r - l)^2 - m g r\cos\alpha $$
+$$ r'' = r\alpha'^2 + g\cos\alpha - \frac{k}{m}(r - l) $$
+$$ \alpha'' = -\frac{1}{r}(2 r'\alpha' + g\sin\alpha) $$"""
+
+
+def test_primes_are_rates_beside_dots_if_there_are_second_ones(tmp_path: Path) -> None:
+    verdicts = [one.verdict for one in judged(tmp_path, PRIMES)]
+    assert verdicts[0] == "definition"
+    assert verdicts[-2:] == ["verified", "verified"]
+    assert judged(tmp_path, PRIMES.replace("(2 r'", "(r'"))[-1].verdict == "wrong"
+
+
+INCLINES = r"""$$ T_1 - m_A g \sin\alpha = m_A a $$ $$ m_B g \sin\beta - T_2 = m_B a $$
+$$ (T_2 - T_1) R = I \frac{a}{R} $$
+$$ a = g \frac{m_B \sin\beta - m_A \sin\alpha}{m_A + m_B + I/R^2} $$"""
+
+
+def test_a_radius_beside_tensions_is_no_reaction(tmp_path: Path) -> None:
+    assert judged(tmp_path, INCLINES)[-1].verdict == "verified"
+    assert judged(tmp_path, INCLINES.replace("+ I/R^2", "+ 2 I/R^2"))[-1].verdict != "verified"
