@@ -60,7 +60,8 @@ def test_the_highest_headings_divide_a_text(text: str) -> None:
     assert divided(text, "c", place) == [("c",)]
 
 
-CASE = r"""$$ T = \frac12 m l^2 \dot\theta^2 + \frac12 I \dot\theta^2 $$ $$ V = - m g l \cos\theta $$
+CASE = r"""$$ T = \frac12 m l^2 \dot\theta^2 + \frac12 I \dot\theta^2 $$
+$$ V = - m g l \cos\theta $$
 $$ (m l^2 + I) \ddot\theta = - m g l \sin\theta $$
 For a point mass, $I = 0$:
 $$ \ddot\theta = - \frac{g}{l} \sin\theta $$"""

@@ -151,8 +151,11 @@ def _continued(part: Translated, found: Interpretation, before: Sequence[Match])
     """The last of the systems before that fits formulas of which none follows."""
     for match in reversed(before):
         own = replace(match.candidate, stating=frozenset())
-        if not own.constraints and fits(part, found.letters, own):
-            return replace(found, match=replace(match, candidate=own, failed=frozenset()))
+        names = dict.fromkeys((*found.letters.parameters, *sorted(own.letters)))
+        parameters = tuple(name for name in names if name not in own.coordinates)
+        letters = replace(found.letters, parameters=parameters)
+        if not own.constraints and fits(part, letters, own):
+            return Interpretation(letters, replace(match, candidate=own, failed=frozenset()))
     return found
 
 

@@ -99,7 +99,7 @@ class SystemCandidate:
     @property
     def basis(self) -> Literal["equations", "energies", "positions", "catalogue"]:
         """What it rests on: statements of the document, or a known system."""
-        if self.stating:
+        if self.stating or self.is_of_equations:
             return "equations" if self.system.name == BY_EQUATIONS else "energies"
         return "positions" if self.system.name == STATED else "catalogue"
 
