@@ -41,6 +41,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
 from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
+from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     IMPLIED,
@@ -124,6 +125,15 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
         if remaining and not hints:
             below = divided(document.text, remaining, lambda one: one.occurrence.start)
             subjects += below if len(below) > 1 else []
+    left = [
+        one for one in statements.formulas
+        if one.occurrence not in results or not results[one.occurrence][1].is_understood
+    ]  # fmt: skip
+    results |= {
+        formula.occurrence: (formula, result)
+        for formula, result in Identities(statements.formulas).verdicts()
+        if formula in left
+    }
     note = "no system was found for which its formulas hold"
     if work.left < 0:
         note = (

@@ -58,9 +58,16 @@ class Enclosures(LetterTokens):
             is_open = self.partner[at] > at
             if token.kind == "open" and self._is_applied(at, result):
                 self.applied |= {at, self.partner[at]}
-            shape = "APPLY" if at in self.applied else SHAPES[token.text]
+            shape = "APPLY" if at in self.applied else SHAPES[self._shape(at)]
             return Symbol(shape + ("_OPEN" if is_open else "_CLOSE"), "", token.span)
         raise UnreadError(REASONS.get(token.kind, f"{token.text!r} cannot stand here"))
+
+    def _shape(self, at: int) -> str:
+        """The shape of a bracket; angles around entries of a column are round brackets."""
+        start, end = sorted((at, self.partner[at]))
+        places = inside(start, end, self.partner)
+        is_column = self.tokens[at].text == "<" and any(self.tokens[k].kind == "," for k in places)
+        return "(" if is_column else self.tokens[at].text
 
     def _is_applied(self, at: int, result: list[Symbol]) -> bool:
         """Whether a bracket holds the arguments of the letter before it.

@@ -1,0 +1,83 @@
+"""Formulas that follow from a document's definitions, whatever the motion is."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.documents import read_document
+from derive.verification.documents.judgement import judge_document
+
+
+def verdicts(folder: Path, text: str, name: str = "a.md") -> list[str]:
+    (folder / name).write_text(text, encoding="utf-8")
+    return [one.verdict for one in judge_document(read_document(folder / name)).formulas]
+
+
+PERIODS = r"""$$ \omega = \sqrt{\frac{k}{m}} $$
+$$ f = \frac{\omega}{2\pi} = \frac{1}{2\pi}\sqrt{\frac{k}{m}} $$
+$$ T = \frac{2\pi}{\omega} = 2\pi\sqrt{\frac{m}{k}} $$"""
+
+
+def test_chains_follow_from_definitions(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, PERIODS) == ["definition", "verified", "verified"]
+
+
+@pytest.mark.parametrize(("old", "new", "expected"), [
+    (r"2\pi\sqrt{\frac{m}{k}}", r"2\pi\sqrt{\frac{k}{m}}", ["definition", "verified", "wrong"]),
+    (r"\frac{1}{2\pi}\sqrt", r"\frac{1}{\pi}\sqrt", ["definition", "wrong", "verified"]),
+    # all others contradict the first one, which can be the right one
+    (r"\omega = \sqrt{\frac{k}{m}}", r"\omega = \sqrt{\frac{m}{k}}", ["context"] * 3),
+    # another oscillator with other letters
+    (r"2\pi\sqrt{\frac{m}{k}}", r"2\pi\sqrt{\frac{l}{g}}", ["definition", "verified", "context"]),
+])  # fmt: skip
+def test_a_chain_is_wrong_if_another_confirms_its_definitions(
+    old: str, new: str, expected: list[str], tmp_path: Path
+) -> None:
+    assert verdicts(tmp_path, PERIODS.replace(old, new)) == expected
+
+
+def test_a_name_with_two_definitions_accuses_nothing(tmp_path: Path) -> None:
+    text = PERIODS.replace(r"\sqrt{\frac{m}{k}}", r"\sqrt{\frac{m}{2 k}}")
+    text += "with two springs, where $\\omega = \\sqrt{\\frac{2 k}{m}}$"
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
+POLAR = r"""$$ \mathbf r = r\,\hat{\mathbf r} $$
+$$ \dot{\mathbf r} = \dot r\,\hat{\mathbf r} + r\dot\theta\,\hat{\boldsymbol\theta} $$
+$$ \ddot{\mathbf r} = (\ddot r - r\dot\theta^2)\,\hat{\mathbf r}
+ + (r\ddot\theta + 2\dot r\dot\theta)\,\hat{\boldsymbol\theta} $$
+$$ \dot{\hat{\mathbf r}} = \dot\theta\,\hat{\boldsymbol\theta} $$"""
+
+
+@pytest.mark.parametrize(("old", "new", "number"), [
+    ("", "", 0),
+    (r"2\dot r\dot\theta", r"\dot r\dot\theta", 2),
+    (r"\ddot r - r", r"\ddot r + r", 2),
+    (r"r\dot\theta\,\hat", r"r^2\dot\theta\,\hat", 1),
+])  # fmt: skip
+def test_velocities_and_accelerations_by_unit_vectors(
+    old: str, new: str, number: int, tmp_path: Path
+) -> None:
+    expected = ["definition", "verified", "verified", "verified"]
+    if old:
+        expected[number] = "wrong"
+    assert verdicts(tmp_path, POLAR.replace(old, new)) == expected
+
+
+def test_unit_vectors_can_be_written_out(tmp_path: Path) -> None:
+    text = r"""
+.. math::
+
+    \mathbf{e_r} = \langle \cos\theta, \sin\theta \rangle
+
+    \mathbf{e_\theta} = \langle -\sin\theta, \cos\theta \rangle
+
+    \mathbf r = r\,\mathbf{e_r}
+
+    \mathbf v = \dot{\mathbf r} = \dot r\,\mathbf{e_r} + r\dot\theta\,\mathbf{e_\theta}
+"""
+    assert verdicts(tmp_path, text, "a.rst")[-1] == "verified"
+    assert verdicts(tmp_path, text.replace(r"{e_r} + r\dot", r"{e_r} - r\dot"), "a.rst")[-1] in (
+        "wrong",
+        "context",
+    )
