@@ -63,6 +63,7 @@ $$ %s $$"""
 @pytest.mark.parametrize(("solution", "verdict"), [
     (r"x = A \cos(\omega t + \phi)", "verified"),
     (r"x(t) = x_0 \cos(\omega t) + \frac{v_0}{\omega}\sin(\omega t)", "verified"),
+    (r"\dot x = -A\omega\sin(\omega t + \phi)", "verified"),
     (r"x(t) = A \cos(2\omega t)", "context"),
 ])  # fmt: skip
 def test_a_solution_solves_the_equation(solution: str, verdict: str, tmp_path: Path) -> None:

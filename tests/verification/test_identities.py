@@ -81,3 +81,24 @@ def test_unit_vectors_can_be_written_out(tmp_path: Path) -> None:
         "wrong",
         "context",
     )
+
+
+GENERAL = r"""$$ %s $$ $$ \dot p_i = -\frac{\partial H}{\partial q_i} $$"""
+
+
+@pytest.mark.parametrize(("formula", "expected"), [
+    (r"\dot q_i = \frac{\partial H}{\partial p_i}", "verified"),
+    (r"\dot q_i = -\frac{\partial H}{\partial p_i}", "context"),
+    (r"\dot q_i = \frac{\partial H}{\partial q_i}", "wrong"),
+])  # fmt: skip
+def test_general_equations_hold_for_any_motion(formula: str, expected: str, tmp_path: Path) -> None:
+    assert verdicts(tmp_path, GENERAL % formula)[0] == expected
+
+
+def test_components_of_a_position_have_its_index(tmp_path: Path) -> None:
+    text = r"""$$ \vec x_p = \begin{pmatrix} x + l\sin\theta \\ -l\cos\theta \end{pmatrix} $$
+$$ T = \frac12 M\dot x^2 + \frac12 m(\dot x^2 + 2 l\dot x\dot\theta\cos\theta + l^2\dot\theta^2) $$
+$$ V = m g y_p = -m g l\cos\theta $$
+$$ \ddot x\cos\theta + l\ddot\theta + g\sin\theta = 0 $$"""
+    assert verdicts(tmp_path, text)[2:] == ["verified", "verified"]
+    assert verdicts(tmp_path, text.replace("= m g y_p", "= 2 m g y_p"))[2] == "wrong"

@@ -137,18 +137,14 @@ def _best(
 
     best = max(supported, key=rank, default=None)  # the first of several with the same rank
     if best is None:
-        return Interpretation(letters, _verified(stated, statements, letters))
+        # of a stated system another formula can follow, such as for small angles
+        stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
+        fitting = (one for one in stated if fits(statements, letters, one.candidate))
+        return Interpretation(letters, next(fitting, None))
     best = _with_direction(best, matches, statements, letters)
     best, is_decided = _with_fewest_slips(best, matches, statements, letters)
     doubts = {} if is_decided else _doubts(best, matches, statements, letters)
     return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
-
-
-def _verified(stated: Sequence[Match], statements: Translated, letters: Letters) -> Match | None:
-    """A match of a stated system of which another formula follows, such as for small angles."""
-    matches = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
-    fitting = (one for one in matches if fits(statements, letters, one.candidate))
-    return next(fitting, None)
 
 
 def fits(statements: Translated, letters: Letters, candidate: SystemCandidate) -> bool:

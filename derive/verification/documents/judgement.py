@@ -31,7 +31,7 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import implied_rates, letters_of
 from derive.verification.documents.letters.positions import sections
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.numbers.matching import Match
+from derive.verification.documents.numbers.matching import Match, trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -42,7 +42,7 @@ from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
 from derive.verification.documents.rules.identities import Identities
-from derive.verification.documents.rules.side_verdict import SideVerdict
+from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import (
     IMPLIED,
     DocumentFormula,
@@ -125,15 +125,10 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
         if remaining and not hints:
             below = divided(document.text, remaining, lambda one: one.occurrence.start)
             subjects += below if len(below) > 1 else []
-    left = [
-        one for one in statements.formulas
-        if one.occurrence not in results or not results[one.occurrence][1].is_understood
-    ]  # fmt: skip
-    results |= {
-        formula.occurrence: (formula, result)
-        for formula, result in Identities(statements.formulas).verdicts()
-        if formula in left
-    }
+    understood = {place for place, (_, result) in results.items() if result.is_understood}
+    left = {one for one in statements.formulas if one.occurrence not in understood}
+    follow = *_general(statements), *Identities(statements.formulas, left).verdicts()
+    results |= {one.occurrence: (one, result) for one, result in follow if one in left}
     note = "no system was found for which its formulas hold"
     if work.left < 0:
         note = (
@@ -155,6 +150,16 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     return DocumentVerdicts(
         document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
+
+
+def _general(statements: Translated) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
+    """Yield statements with an index that hold for any motion, such as q̇_i = ∂H/∂p_i."""
+    general = tuple(one for one in statements.formulas if one.index)
+    letters = letters_of(general, statements.derivatives)
+    trivial = trivial_comparisons(letters, general, statements.derivatives)
+    for number, formula in enumerate(general):
+        if all((number, side.text) in trivial for side in formula.sides[1:]):
+            yield formula, plain("verified", formula, "it holds for any motion")
 
 
 def _continued(part: Translated, found: Interpretation, before: Sequence[Match]) -> Interpretation:
@@ -212,7 +217,8 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
 
 def _with_sides(place: Occurrence, sides: tuple[Node, ...]) -> Occurrence:
     """A statement with other sides."""
-    return replace(place, tree=replace(place.tree, sides=sides)) if sides else place
+    is_read = isinstance(place.tree, Statement)
+    return replace(place, tree=replace(place.tree, sides=sides)) if is_read else place
 
 
 def _with_differences(occurrences: Sequence[Occurrence]) -> list[Occurrence]:

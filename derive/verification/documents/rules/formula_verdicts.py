@@ -95,8 +95,8 @@ class Judge:
             return plain("context", formula, "it is a step in time")
         if formula.subject in INDICES or self._is_special(formula):
             return plain("context", formula, "it states a value")
-        if self._prescribes(formula):
-            if self._solves(formula):
+        if values := self._prescribed(formula):
+            if all(map(self._linear.is_solution, values)):
                 return plain("verified", formula, "it solves the equation of small motions")
             return plain("context", formula, "it prescribes a coordinate")
         if formula.occurrence in self._given:
@@ -205,40 +205,29 @@ class Judge:
         words = WORD.findall(side.text)
         return bool(DECIMAL.search(side.text)) and (not words or bool(self._unknown([side])))
 
-    def _prescribes(self, formula: DocumentFormula) -> bool:
-        """Whether a formula states a coordinate or its rate as a function of time, as φ = ω t.
+    def _prescribed(self, formula: DocumentFormula) -> list[sp.Expr]:
+        """The functions of time that a formula states a coordinate or its rate to be, as φ = ω t.
 
         Further sides are other forms of the function, as its number in φ̇ = ω = 3.
         """
         system, names = self._namespace.derivation.system, self._namespace.all_names
         first, *others = formula.sides
         if not others or {*formula.relations} != {"="}:
-            return False
+            return []
         if names.get(first.text) not in (*system.q, *system.qdot):
-            return False
+            return []
         with suppress(ExpressionError):
             moving = (*system.q, *system.qdot, *system.qddot, *system.p)
             # letters without a meaning, such as ω, are constants
-            constants = dict.fromkeys(self._unknown(others), sp.S.One)
+            constants = {one: sp.Symbol(one, positive=True) for one in self._unknown(others)}
             values = [parse(side.text, {**names, **constants}) for side in others]
-            return all(
+            if all(
                 not isinstance(value, sp.MatrixBase)
                 and (TIME in value.free_symbols or not depends_on(value, moving))
                 for value in values
-            )
-        return False
-
-    def _solves(self, formula: DocumentFormula) -> bool:
-        """Whether the sides of a coordinate solve its equation, for any other letters."""
-        first, system = formula.sides[0].text, self._namespace.derivation.system
-        if self._namespace.all_names[first] not in system.q:
-            return False
-        constants = {one: sp.Symbol(one, positive=True) for one in self._unknown(formula.sides)}
-        with suppress(ExpressionError, NotImplementedError):
-            names = {**self._namespace.all_names, **constants}
-            values = [parse(side.text, names) for side in formula.sides[1:]]
-            return all(map(self._linear.is_solution, values))
-        return False
+            ):
+                return values
+        return []
 
     def _constant_of_motion(self, formula: DocumentFormula) -> str:
         """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.

@@ -1,7 +1,6 @@
 """Frequencies and periods of small motions that a document states by parameters alone."""
 
 import re
-from collections.abc import Callable
 
 import sympy as sp
 
@@ -12,11 +11,11 @@ from derive.verification.documents.rules.small_motions import MAX_INVERSE, Small
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import FormulaText
 
-#: Letters of angular frequencies, frequencies and periods, with the angular frequency of each.
-KINDS: dict[str, Callable[[sp.Expr], sp.Expr]] = {
-    **dict.fromkeys(("omega", "Omega", "w"), lambda value: value),
-    **dict.fromkeys(("f", "nu"), lambda value: 2 * sp.pi * value),
-    **dict.fromkeys(("T", "P", "tau"), lambda value: 2 * sp.pi / value),
+#: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
+KINDS: dict[str, tuple[sp.Expr, int]] = {
+    **dict.fromkeys(("omega", "Omega", "w"), (sp.S.One, 1)),
+    **dict.fromkeys(("f", "nu"), (1 / (2 * sp.pi), 1)),
+    **dict.fromkeys(("T", "P", "tau"), (2 * sp.pi, -1)),
 }
 #: Words of sentences about them.
 ABOUT = re.compile(
@@ -47,7 +46,8 @@ class Frequencies:
         if value == 0 or not value.free_symbols <= {*system.params}:
             return None
         M, D, K, _ = self._linear.matrices
-        square = KINDS[letter](value ** sp.Rational(1, power)) ** 2
+        factor, sign = KINDS[letter]
+        square = (value ** sp.Rational(1, power) / factor) ** (2 * sign)
         is_zero = self._namespace.model.context.is_zero
         if is_zero((K - square * M).det()):
             return plain("verified", formula, NOTE)
@@ -61,10 +61,8 @@ class Frequencies:
             return None
         if sp.cancel(square).free_symbols != sp.cancel(required).free_symbols:
             return None  # that of another motion
-        root = sp.sqrt(required)
-        correct = {"f": root / (2 * sp.pi), "T": 2 * sp.pi / root}
-        kind = {"nu": "f", "P": "T", "tau": "T"}.get(letter, letter)
-        result = self._roles.value(side, name, correct.get(kind, root) ** power)
+        correct = factor * sp.sqrt(required) ** sign
+        result = self._roles.value(side, name, correct**power)
         return result if result.verdict.verdict == "wrong" else None
 
     def _is_only_one(self, square: sp.Expr) -> bool:
@@ -72,10 +70,8 @@ class Frequencies:
 
         These are forces that depend on the coordinate alone but for a factor, as g sin(θ)/l does.
         """
-        (q,), d = self._namespace.derivation.system.q, self._namespace.derivation
-        potential = d.potential_energy.diff(q)
-        force = sp.simplify(potential / potential.diff(q).subs(q, 0)) if potential else sp.S.Zero
-        is_known = force in (q, sp.sin(q)) and not d.kinetic_energy.xreplace(
-            dict.fromkeys(d.system.qdot, sp.S.Zero)
-        )
+        d = self._namespace.derivation
+        (q,), (v,) = d.system.q, d.system.qdot
+        force = -d.lagrangian.subs(v, 0).diff(q)
+        is_known = bool(force) and sp.simplify(force / force.diff(q).subs(q, 0)) in (q, sp.sin(q))
         return self._linear.is_origin and is_known and not square.could_extract_minus_sign()

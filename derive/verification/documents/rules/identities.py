@@ -5,7 +5,7 @@ of polar coordinates.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import sympy as sp
 
@@ -21,18 +21,20 @@ from derive.verification.documents.text import RATES, order, stem
 UNIT = re.compile(r"(?:(?:e|ehat|u|uhat)_([a-zA-Z]+)|([a-zA-Z]+)hat)(?:_column)?\Z")
 RADII, ANGLES = ("r", "R", "rho", "s"), ("theta", "phi", "varphi", "alpha", "vartheta")
 #: What cannot be computed.
-ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, ZeroDivisionError)
+ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, IndexError)
 
 
 class Identities:
     """The formulas of a document as identities in letters, which may be any functions of time."""
 
-    def __init__(self, formulas: Sequence[DocumentFormula]) -> None:
-        self._formulas = formulas
+    def __init__(
+        self, formulas: Sequence[DocumentFormula], left: Collection[DocumentFormula]
+    ) -> None:
+        self._formulas, self._left = formulas, left
         words = {word for one in formulas for word in one.words}
         self._moving = {stem(word) for word in words if order(word)}
-        units = {name: match[1] or match[2] for name in map(stem, words)
-                 if (match := UNIT.match(name))}  # fmt: skip
+        matches = {name: match for name in map(stem, words) if (match := UNIT.match(name))}
+        units = {name: match[1] or match[2] for name, match in matches.items()}
         angles = {one for one in units.values() if one in ANGLES}
         self._values: dict[str, Value] = {}
         if len(angles) == 1:
@@ -47,21 +49,20 @@ class Identities:
     def verdicts(self) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
         """Yield the formulas that hold, the definitions that they use, and contradictions.
 
-        A side is wrong if it has the letters of the side before it, and if other formulas hold by
-        each of the definitions that both contain, of which there is one for each name.
+        A side is wrong if it has the letters of the side before it, and each name in both has a
+        single definition, by which other formulas hold.
         """
         confirmed, failed = set[str](), list[tuple[DocumentFormula, set[str]]]()
         defining: dict[str, list[DocumentFormula]] = {}
         verified: list[DocumentFormula] = []
         for formula in self._formulas:
-            if {*formula.relations} <= {"=", ":="}:
-                results = [*self._compared(formula)]
-                used = {name for _, names in results for name in names}
-                if results and all(holds for holds, _ in results):
-                    confirmed |= used
-                    verified.append(formula)
-                elif any(holds is False for holds, _ in results):
-                    failed.append((formula, used))
+            results = [*self._compared(formula)] if formula in self._left else []
+            used = {name for _, names in results for name in names}
+            if results and all(holds for holds, _ in results):
+                confirmed |= used
+                verified.append(formula)
+            elif any(holds is False for holds, _ in results):
+                failed.append((formula, used))
             for name, text in definitions(formula):
                 if not order(name) and name not in WORD.findall(text):
                     self._texts[name] = text
@@ -75,41 +76,37 @@ class Identities:
             yield formula, plain("verified", formula, "it follows whatever the motion is")
         for formula, used in failed:
             if used and used <= confirmed and used <= {*single, *self._values}:
-                lines = sorted({single[name].occurrence.line for name in used & {*single}})
-                note = f"it contradicts line {', '.join(map(str, lines))}" if lines else ""
-                yield formula, plain("wrong", formula, note or "it contradicts its unit vectors")
+                note = f"it contradicts the definition of {', '.join(sorted(used))}"
+                yield formula, plain("wrong", formula, note)
 
     def _compared(self, formula: DocumentFormula) -> Iterator[tuple[bool | None, set[str]]]:
         """Yield whether neighbouring sides are equal, and the names whose definitions they use.
 
         None is for sides that can be equal along a motion; nothing for a definition.
         """
-        names = {*self._values, *self._texts}
+        if {*formula.relations} - {"=", ":="}:
+            return
         for one, other in zip(formula.sides, formula.sides[1:], strict=False):
             words = {stem(w) for side in (one, other) for w in WORD.findall(side.text)}
-            is_definition = any(
-                side.text.isidentifier() and not order(side.text) for side in (one, other)
-            )
-            used = words & names
+            used = words & {*self._values, *self._texts}
+            texts = one.text, other.text
+            is_definition = any(text.isidentifier() and not order(text) for text in texts)
+            holds: bool | None = None
             try:
-                left, right = (self._value(side.text) for side in (one, other))
-                difference = left - right
-                entries = [*difference] if isinstance(difference, sp.MatrixBase) else [difference]
-                holds = all(map(is_small, entries))
+                left, right = map(self._value, texts)
+                rest = left - right
+                holds = all(map(is_small, rest if isinstance(rest, sp.MatrixBase) else [rest]))
+                if not holds and (left.free_symbols != right.free_symbols or not used):
+                    holds = None
             except ERRORS:
-                if not is_definition:
-                    yield None, used
-                continue
-            if holds and one.text != other.text and (used or "ddt" in words):
-                yield True, used
-            elif not holds and not is_definition:
-                is_alike = left.free_symbols == right.free_symbols
-                yield False if is_alike and used else None, used
+                pass
+            if not is_definition or (holds and texts[0] != texts[1] and (used or "ddt" in words)):
+                yield holds, used
 
     def _value(self, text: str, depth: int = 0) -> Value:
-        words = {word for word in WORD.findall(text) if word not in FUNCTIONS}
         functions = {**FUNCTIONS, "ddt": self._rate}
-        return parse(text, {**functions, **{w: self._name(w, depth) for w in words - {"ddt"}}})
+        words = {*WORD.findall(text)} - {*functions}
+        return parse(text, {**functions, **{word: self._name(word, depth) for word in words}})
 
     def _name(self, word: str, depth: int) -> Value:
         """The value of a name: that of its definition, or a symbol."""
@@ -132,8 +129,7 @@ class Identities:
     def _rate(self, value: Value) -> Value:
         result = value.diff(TIME)
         for one in value.free_symbols:
-            if stem(one.name) in self._moving:
-                result += value.diff(one) * self._symbol(
-                    stem(one.name) + RATES[order(one.name) + 1]
-                )
+            name = stem(one.name)
+            if name in self._moving:
+                result += value.diff(one) * self._symbol(name + RATES[order(one.name) + 1])
         return result

@@ -17,6 +17,7 @@ from derive.system.symbols import TIME, acceleration, velocity
 from derive.verification.documents.letters.document_system import SystemLetters
 from derive.verification.documents.letters.entries import composed
 from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.positions import AXES, COLUMN
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 from derive.verification.documents.text import RATES, stem
 from derive.verification.judging.reference_system import (
@@ -75,10 +76,8 @@ class DocumentNamespace:
             self._add_derivatives()
             if len(self.names) == known:
                 break
-        #: Parameters with the numbers that the document sets them to.
+        #: Parameters with the numbers that the document sets them to, and the formulas that do.
         self.special_values = self._special_values(formulas)
-        #: Parameters that the document sets to zero, each with the first formula that does.
-        self.vanishing = self._vanishing(formulas)
         equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
         if system_letters.multipliers:
             self.model = ReferenceSystem(self.derivation, self.names)
@@ -102,25 +101,17 @@ class DocumentNamespace:
             self._set(name, value)
         self.model = ReferenceSystem(self.derivation, self.names)
 
-    def _special_values(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, sp.Expr]:
-        """Parameters in statements such as m = l = 1."""
-        result: dict[sp.Symbol, sp.Expr] = {}
+    def _special_values(
+        self, formulas: Sequence[DocumentFormula]
+    ) -> dict[sp.Symbol, tuple[sp.Expr, DocumentFormula]]:
+        """Parameters in statements such as m = l = 1 or I = 0."""
+        result: dict[sp.Symbol, tuple[sp.Expr, DocumentFormula]] = {}
         for formula in formulas:
             last = formula.sides[-1].text
             names = [self.names.get(side.text) for side in formula.sides[:-1]]
-            is_value = {*formula.relations} == {"="} and last.isdigit() and int(last)
+            is_value = {*formula.relations} == {"="} and last.isdigit()
             if is_value and all(name in self._system.params for name in names):
-                result |= dict.fromkeys(names, sp.Integer(last))
-        return result
-
-    def _vanishing(self, formulas: Sequence[DocumentFormula]) -> dict[sp.Symbol, DocumentFormula]:
-        """Parameters in statements such as I = 0, from where on a formula can hold for this."""
-        result: dict[sp.Symbol, DocumentFormula] = {}
-        for formula in formulas:
-            first, *others = formula.sides
-            name = self.names.get(first.text)
-            if name in self._system.params and [one.text for one in others] == ["0"]:
-                result.setdefault(name, formula)
+                result |= dict.fromkeys(names, (sp.Integer(last), formula))
         return result
 
     def _add_letters(self, system_letters: SystemLetters) -> None:
@@ -308,6 +299,15 @@ class DocumentNamespace:
                 continue
             self.defining[name] = formula, text
             self._add(name, value)
+            if (
+                isinstance(value, sp.MatrixBase)
+                and value.cols == 1
+                and (point := COLUMN.match(name))
+            ):
+                for axis, entry in zip(AXES, value, strict=False):
+                    component = f"{axis}_{point[1]}"
+                    if point[1] and component not in self.all_names:
+                        self._add(component, entry)
 
     def _add(self, name: str, value: Value) -> None:
         """Add a name, and its rates unless they are known."""

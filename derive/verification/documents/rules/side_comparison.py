@@ -159,17 +159,15 @@ class SideComparison:
 
     def _stated_values(self, formula: DocumentFormula) -> Iterator[dict[sp.Symbol, sp.Expr]]:
         """Yield values of parameters that the document states before a formula, or anywhere."""
-        numbers = self._namespace.special_values
+        stated = self._namespace.special_values
+        numbers = {name: value for name, (value, _) in stated.items() if value}
+        here = formula.occurrence.span
         zeros = [
-            name
-            for name, one in self._namespace.vanishing.items()
-            if one.occurrence.span < formula.occurrence.span
+            s for s, (value, one) in stated.items() if not value and one.occurrence.span < here
         ]
-        if numbers:
-            yield numbers
-        for names in (*([one] for one in zeros), zeros):
-            if names:
-                yield {**numbers, **dict.fromkeys(names, sp.S.Zero)}
+        for names in ([], *([one] for one in zeros), zeros):
+            if values := {**numbers, **dict.fromkeys(names, sp.S.Zero)}:
+                yield values
 
     def _agree(self, difference: sp.Expr) -> bool:
         """Whether a difference is zero, by proof or at states between which it keeps its form."""

@@ -57,7 +57,10 @@ class SmallMotions:
             return False
 
     def is_solution(self, value: sp.Expr) -> bool:
-        """Whether a function of time solves the linear equation of a single coordinate."""
+        """Whether a function of time solves the linear equation of a single coordinate.
+
+        So does the rate of such a function.
+        """
         system = self._derivation.system
         if len(system.q) > 1 or not self.is_origin or not value.has(TIME):
             return False
