@@ -96,7 +96,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             count += 1
             part = replace(statements, formulas=remaining)
             found = interpretation(part, hints, work)
-            if found.match is None:
+            if found.match is None and count == 1:
                 found = _continued(part, found, before)
             if found.match is None:
                 break
@@ -168,7 +168,7 @@ def _continued(part: Translated, found: Interpretation, before: Sequence[Match])
         own = replace(match.candidate, stating=frozenset())
         names = dict.fromkeys((*found.letters.parameters, *sorted(own.letters)))
         parameters = tuple(name for name in names if name not in own.coordinates)
-        letters = replace(found.letters, parameters=parameters)
+        letters = replace(found.letters, parameters=parameters, ordered=own.coordinates)
         if not own.constraints and fits(part, letters, own):
             return Interpretation(letters, replace(match, candidate=own, failed=frozenset()))
     return found

@@ -44,6 +44,8 @@ MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
 PARTNERS = {"K": "P", "T": "Pi"}
 #: A multiple of a quantity on the left, such as that in 2 T = m v**2.
 MULTIPLE = re.compile(r"\d+\*(\w+)")
+#: A number, perhaps with a unit.
+NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d+\*[msN]\b.*")
 #: Letters of accelerations of documents without any rate, and of velocities.
 ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
 #: The letter of gravity.
@@ -332,7 +334,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         # x = p_x/m has lost a dot: no coordinate is defined by its own momentum
         lost_dot = orders.get(name) and any(_coordinate(one, [name]) for one in others)
         last = formula.sides[-1]
-        if last.text.replace(".", "").isdigit():  # a value, such as m = l = 1
+        if NUMBER.fullmatch(last.text):  # a value, such as m = l = 1
             continue
         if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue

@@ -73,8 +73,12 @@ class StatedEquations:
         left_out = {*letters.coordinates} - {*self._coordinates}
         symbols = {name: one for name, one in self._symbols.items() if name not in left_out}
         _, self._names = stated_values(letters, formulas, {**symbols, **self._reactions})
-        others = {*self._others()}
-        self._reactions = {n: one for n, one in self._reactions.items() if one not in others}
+        others, rows = {*self._others()}, [*self._equations([*self._reactions.values()])]
+        self._reactions = {
+            name: one
+            for k, (name, one) in enumerate(self._reactions.items())
+            if one not in others and any(row.coefficients[k] for row in rows)
+        }
         # coordinates of which no equation has an acceleration
         rows = [*self._equations([*map(acceleration, self._q)])]
         used = [k for k in range(len(self._q)) if any(one.coefficients[k] for one in rows)]

@@ -299,14 +299,10 @@ class DocumentNamespace:
                 continue
             self.defining[name] = formula, text
             self._add(name, value)
-            if (
-                isinstance(value, sp.MatrixBase)
-                and value.cols == 1
-                and (point := COLUMN.match(name))
-            ):
+            point = COLUMN.match(name.removesuffix("_column"))
+            if point and point[1] and isinstance(value, sp.MatrixBase) and value.cols == 1:
                 for axis, entry in zip(AXES, value, strict=False):
-                    component = f"{axis}_{point[1]}"
-                    if point[1] and component not in self.all_names:
+                    if (component := f"{axis}_{point[1]}") not in self.all_names:
                         self._add(component, entry)
 
     def _add(self, name: str, value: Value) -> None:
