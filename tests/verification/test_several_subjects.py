@@ -124,13 +124,6 @@ def test_a_radius_beside_tensions_is_no_reaction(tmp_path: Path) -> None:
     assert judged(tmp_path, INCLINES.replace("+ I/R^2", "+ 2 I/R^2"))[-1].verdict != "verified"
 
 
-def test_columns_below_a_heading_need_a_definition(tmp_path: Path) -> None:
-    text = (
-        TWO + "## Columns\n$$ \\mathbf M\\ddot{\\mathbf q} - \\mathbf G = \\mathbf B\\mathbf u $$"
-    )
-    assert judged(tmp_path, text)[-1].verdict == "context"
-
-
 NUMBERS = r"""$m_A = 4.0\,\text{kg}$, $m_B = 6.0\,\text{kg}$, $\alpha = 30^\circ$.
 $$ T - m_A g \sin\alpha = m_A a $$ $$ m_B g - T = m_B a $$
 $$ a = g\frac{m_B - m_A\sin\alpha}{m_A + m_B} $$

@@ -139,7 +139,7 @@ def _best(
     if best is None:
         # of a stated system another formula can follow, such as for small angles
         stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
-        fitting = (one for one in stated if fits(statements, letters, one.candidate))
+        fitting = (one for one in stated if _fits(statements, letters, one.candidate))
         return Interpretation(letters, next(fitting, None))
     best = _with_direction(best, matches, statements, letters)
     best, is_decided = _with_fewest_slips(best, matches, statements, letters)
@@ -147,7 +147,7 @@ def _best(
     return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
 
 
-def fits(statements: Translated, letters: Letters, candidate: SystemCandidate) -> bool:
+def _fits(statements: Translated, letters: Letters, candidate: SystemCandidate) -> bool:
     """Whether a formula is verified by a system, and none is wrong."""
     verdicts = judge_of(statements, letters, candidate).verdicts(statements.formulas)
     kinds = {one.verdict.verdict for _, one in verdicts}

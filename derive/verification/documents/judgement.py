@@ -18,10 +18,8 @@ from derive.reading.latex.walking import (
 )
 from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.interpretation import (
-    Interpretation,
     Work,
     alternatives,
-    fits,
     interpretation,
     judge_of,
     unopposed,
@@ -31,7 +29,7 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import implied_rates, letters_of
 from derive.verification.documents.letters.positions import sections
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.numbers.matching import Match, trivial_comparisons
+from derive.verification.documents.numbers.matching import trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -88,7 +86,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
-    work, before = Work(), list[Match]()
+    work = Work()
     subjects = [*sections(statements.formulas)]
     while subjects:
         remaining, count = subjects.pop(0), 0
@@ -96,11 +94,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             count += 1
             part = replace(statements, formulas=remaining)
             found = interpretation(part, hints, work)
-            if found.match is None and count == 1:
-                found = _continued(part, found, before)
             if found.match is None:
                 break
-            before.append(found.match)
             candidate = found.match.candidate
             judge = judge_of(part, found.letters, candidate)
             titles.append(candidate.title)
@@ -112,8 +107,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             others += contrary
             verdicts = [*unopposed(verdicts, contrary)]
             for formula, result in verdicts:
-                earlier = results.get(formula.occurrence)
-                if earlier is None or _is_graver(result, earlier[1]):
+                before = results.get(formula.occurrence)
+                if before is None or _is_graver(result, before[1]):
                     results[formula.occurrence] = formula, result
                     is_known = candidate.basis == "catalogue" and hints is None
                     (known.add if is_known else known.discard)(formula.occurrence)
@@ -160,18 +155,6 @@ def _general(statements: Translated) -> Iterator[tuple[DocumentFormula, SideVerd
     for number, formula in enumerate(general):
         if all((number, side.text) in trivial for side in formula.sides[1:]):
             yield formula, plain("verified", formula, "it holds for any motion")
-
-
-def _continued(part: Translated, found: Interpretation, before: Sequence[Match]) -> Interpretation:
-    """The last of the systems before that fits formulas of which none follows."""
-    for match in reversed(before):
-        own = replace(match.candidate, stating=frozenset())
-        names = dict.fromkeys((*found.letters.parameters, *sorted(own.letters)))
-        parameters = tuple(name for name in names if name not in own.coordinates)
-        letters = replace(found.letters, parameters=parameters, ordered=own.coordinates)
-        if not own.constraints and fits(part, letters, own):
-            return Interpretation(letters, replace(match, candidate=own, failed=frozenset()))
-    return found
 
 
 def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:

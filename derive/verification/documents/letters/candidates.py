@@ -99,7 +99,7 @@ class SystemCandidate:
     @property
     def basis(self) -> Literal["equations", "energies", "positions", "catalogue"]:
         """What it rests on: statements of the document, or a known system."""
-        if self.stating or self.is_of_equations:
+        if self.stating:
             return "equations" if self.system.name == BY_EQUATIONS else "energies"
         return "positions" if self.system.name == STATED else "catalogue"
 
