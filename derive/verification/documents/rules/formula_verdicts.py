@@ -115,6 +115,7 @@ class Judge:
             known = [k for k in known if k == 1]  # others have the numbers of an example
             if not known:
                 return plain("context", formula, "it states a value")
+            unknown = self._unknown(formula.sides[:2])
         results = [self._side(formula, k) for k in known]
         for result in results:
             if result.verdict.verdict not in CORRECT:

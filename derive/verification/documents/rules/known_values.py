@@ -111,7 +111,7 @@ class DocumentNamespace:
             names = [self.names.get(side.text) for side in formula.sides[:-1]]
             is_value = {*formula.relations} == {"="} and last.isdigit()
             if is_value and all(name in self._system.params for name in names):
-                result |= dict.fromkeys(names, (sp.Integer(last), formula))
+                result = {**dict.fromkeys(names, (sp.Integer(last), formula)), **result}
         return result
 
     def _add_letters(self, system_letters: SystemLetters) -> None:
