@@ -200,8 +200,8 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
 
 def _with_sides(place: Occurrence, sides: tuple[Node, ...]) -> Occurrence:
     """A statement with other sides."""
-    is_read = isinstance(place.tree, Statement)
-    return replace(place, tree=replace(place.tree, sides=sides)) if is_read else place
+    tree = place.tree
+    return replace(place, tree=replace(tree, sides=sides)) if isinstance(tree, Statement) else place
 
 
 def _with_differences(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
