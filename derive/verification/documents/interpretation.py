@@ -362,6 +362,16 @@ def judge_of(statements: Translated, letters: Letters, candidate: SystemCandidat
     return Judge(namespace, given, stating)
 
 
+def general_verdicts(statements: Translated) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
+    """Yield statements with an index that hold for any motion, such as q̇_i = ∂H/∂p_i."""
+    general = tuple(one for one in statements.formulas if one.index)
+    letters = letters_of(general, statements.derivatives)
+    trivial = trivial_comparisons(letters, general, statements.derivatives)
+    for number, formula in enumerate(general):
+        if all((number, side.text) in trivial for side in formula.sides[1:]):
+            yield formula, plain("verified", formula, "it holds for any motion")
+
+
 def _with_order(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Letters:
     """The letters in the order of the rows of M with which most formulas hold."""
     if "mass_matrix" not in letters.quantities.values():

@@ -20,6 +20,7 @@ from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.interpretation import (
     Work,
     alternatives,
+    general_verdicts,
     interpretation,
     judge_of,
     unopposed,
@@ -29,7 +30,6 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_search import implied_rates, letters_of
 from derive.verification.documents.letters.positions import sections
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.numbers.matching import trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -40,12 +40,11 @@ from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrections import corrected
 from derive.verification.documents.rules.corrections import written as latex_of
 from derive.verification.documents.rules.identities import Identities
-from derive.verification.documents.rules.side_verdict import SideVerdict, plain
+from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import (
     IMPLIED,
     DocumentFormula,
     Occurrence,
-    Translated,
     translated,
 )
 from derive.verification.documents.text import RATES, stem
@@ -122,7 +121,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             subjects += below if len(below) > 1 else []
     understood = {place for place, (_, result) in results.items() if result.is_understood}
     left = {one for one in statements.formulas if one.occurrence not in understood}
-    follow = *_general(statements), *Identities(statements.formulas, left).verdicts()
+    follow = *general_verdicts(statements), *Identities(statements.formulas, left).verdicts()
     results |= {one.occurrence: (one, result) for one, result in follow if one in left}
     note = "no system was found for which its formulas hold"
     if work.left < 0:
@@ -145,16 +144,6 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     return DocumentVerdicts(
         document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
-
-
-def _general(statements: Translated) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
-    """Yield statements with an index that hold for any motion, such as q̇_i = ∂H/∂p_i."""
-    general = tuple(one for one in statements.formulas if one.index)
-    letters = letters_of(general, statements.derivatives)
-    trivial = trivial_comparisons(letters, general, statements.derivatives)
-    for number, formula in enumerate(general):
-        if all((number, side.text) in trivial for side in formula.sides[1:]):
-            yield formula, plain("verified", formula, "it holds for any motion")
 
 
 def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:

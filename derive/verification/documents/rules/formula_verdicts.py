@@ -16,12 +16,11 @@ from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import Consequences, opposed
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
-from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
 from derive.verification.documents.rules.partial_energies import PartialEnergies
 from derive.verification.documents.rules.roles import Roles
-from derive.verification.documents.rules.side_comparison import SideComparison
+from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
 from derive.verification.documents.rules.side_verdict import (
     CORRECT,
     SideVerdict,
