@@ -203,3 +203,76 @@ def test_the_reference_is_the_known_state(evidence: Evidence) -> None:
     assert np.abs(evidence.end - expected).max() < 1e-15
     assert evidence.references_apart < 1e-12
     assert evidence.disagreement < 1e-10
+
+
+class Invented(Evidence):
+    """Errors of `size` h^p rad of a method of order p, final angles `apart`, and other numbers."""
+
+    size, apart = 7.0, 0.0
+    end, references_apart, disagreement = np.zeros(4), 0.0, 0.0
+    growth = 1.0
+
+    def error(self, method: str, h: float) -> float:
+        return self.size * h ** int(method[2])
+
+    def motion(self, scene: Scene, times: object = None) -> np.ndarray:
+        return np.full((4, 1), self.apart)
+
+    def stepped(self, *_: object) -> np.ndarray:
+        return np.zeros((4, 1))
+
+    def energy_change(self, *_: object) -> float:
+        return 0.0
+
+    def speed_ratio(self, *_: object) -> float:
+        return 1.0
+
+    def calls(self, *_: object) -> int:
+        return 1
+
+    def divergence(self, _: float, duration: float) -> float:
+        return self.growth**duration
+
+    def exponent(self, **_: float) -> Mean:
+        return Mean(1.0, 0.1)
+
+
+def test_errors_in_verdicts_are_those_of_the_stated_steps() -> None:
+    e = Invented(PROSE, FIRST, SECOND, THIRD)
+    rows = [*objectives(e, EQUATIONS), *claims(e), *recommendations(e)]
+    texts = {claim.id: claim.number for claim in rows}
+    for name, words in (
+        ("1.6-2", "h = 0.01 s the error of RK1 is 0.07 rad and that of RK4 7e-08 rad"),
+        ("3.3c", "h = 0.01 s the errors of methods of orders 1 to 4 are 0.07, 0.0007, 7e-06,"),
+        ("4.2", "h = 0.01 s the error of the energy is 0 % and that of the angles 0.07 rad"),
+        ("4.3", "h = 0.1 s is also smooth, but its error at 5 s is 0.0007 rad"),
+        ("5d", "0.35 rad with h = 0.05 s and 0.0007 rad with h = 0.0001 s"),
+        ("5e", "4.4e-05 and 0.35 rad with h = 0.05 s, 7e-16 and 0.0007 rad with h = 0.0001 s"),
+        ("5e", "with h = 0.1 s that of RK4 is 0.0007 rad"),
+        ("5f", "0.07, 0.007, 0.0007 rad with h = 0.01, 0.001, 0.0001 s"),
+        ("5f", "that of RK4 is 1e-06 rad with h = 0.02 s"),
+    ):
+        assert words in texts[name]
+    listed = re.findall(r"([\d.e-]+) \(h = ([\d.e-]+) s\)", texts["3.3a"])
+    assert all(error == f"{7 * float(h) ** 4:.1g}" for error, h in listed)
+    steps = [float(h) for _, h in listed]
+    assert steps == sorted(steps, reverse=True)
+    assert (steps[0], steps[-1]) == (0.2, 5e-4)
+
+
+@pytest.mark.parametrize(("name", "number", "within", "beyond"), [
+    ("3.1a", "apart", 0.9e-3, 1.1e-3),
+    ("4.2", "size", 11.0, 9.0),  # 0.11 and 0.09 rad with h = 0.01 s
+    ("4.3", "size", 9.0, 11.0),  # 0.9 and 1.1 mrad of RK4 with h = 0.1 s
+    ("5a", "growth", 1.42, 1.40),  # over 20 s
+    ("5b", "disagreement", 0.9e-8, 1.1e-8),
+    ("5d", "size", 2.1, 1.9),  # with h = 0.05 s
+    ("5d", "size", 990.0, 1100.0),  # with h = 0.0001 s
+])  # fmt: skip
+def test_claims_hold_up_to_the_numbers_that_decide(
+    name: str, number: str, within: float, beyond: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for value, verdict in ((within, "supported"), (beyond, "contradicted")):
+        monkeypatch.setattr(Invented, number, value)
+        found = {claim.id: claim.verdict for claim in claims(Invented(PROSE, FIRST, SECOND, THIRD))}
+        assert found[name] == verdict
