@@ -1,8 +1,9 @@
 """Plots show the numbers of their results, where they belong, and say what they are."""
 
 from dataclasses import replace
-from math import inf
+from math import erf, inf, sqrt
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from solvers.player import motion_plots as scene_plots
 from solvers.player.sampled_motion import mass_positions, projected
 from solvers.runge_kutta.method_catalogue import load
 from solvers.runge_kutta.stability_function import StabilityFunction
+from solvers.scenes.fitting import fit_plots
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_output import together
 from solvers.scenes.scene_reading import find
@@ -428,3 +430,96 @@ def test_a_logarithmic_colour_bar_has_round_marks(high: float, marks: list[float
     shown = [x for x in axis.get_major_locator()() if 0.5 <= x <= high]
     assert shown == pytest.approx(marks)
     assert axis.get_major_formatter()(0.02, 0) == "0.02"
+
+
+#: Residuals of two runs of a double pendulum's angle and of a formula, with a gap.
+NOISE = np.array([0.5, 0.1])
+RESIDUALS = [NOISE[:, np.newaxis] * np.random.default_rng(k).normal(size=(2, 60)) for k in (1, 2)]
+RESIDUALS[0][1, 7] = np.nan
+
+
+def invented_fit() -> Any:
+    t = np.linspace(0, 3, 60)
+    fitted = [np.stack([np.sin(k * t), np.cos(k * t)]) for k in (1, 2)]
+    outputs = SimpleNamespace(names=("theta1", "l1*theta2"), units=("rad", ""), module=dp)
+    runs = [SimpleNamespace(t=t + k, name=f"run {k}") for k in (1, 2)]
+    estimate = SimpleNamespace(noise=NOISE)
+    return SimpleNamespace(
+        outputs=outputs, runs=runs, fitted=fitted, residuals=RESIDUALS, estimate=estimate
+    )
+
+
+def test_plots_of_a_fit_show_data_motion_and_residuals() -> None:
+    fit = invented_fit()
+    chart = fit_plots.figure(fit, "title")
+    assert len(chart.axes) == 8
+    for k, label in enumerate((r"$\theta_{1}$ / rad", "l1*theta2")):
+        motion, over_time, histogram, correlation = chart.axes[4 * k : 4 * k + 4]
+        assert (motion.get_ylabel(), over_time.get_ylabel()) == (label, f"residual of {label}")
+        for n, run in enumerate(fit.runs):
+            data, curve = motion.lines[2 * n : 2 * n + 2]
+            values = fit.fitted[n][k] + RESIDUALS[n][k]
+            assert np.array_equal(points(data), np.c_[run.t, values], equal_nan=True)
+            assert np.array_equal(points(curve), np.c_[run.t, fit.fitted[n][k]])
+            left = over_time.lines[n]
+            assert np.array_equal(points(left), np.c_[run.t, RESIDUALS[n][k]], equal_nan=True)
+            assert curve.get_color() == left.get_color()
+        levels = [line.get_ydata()[0] for line in over_time.lines[2:]]
+        assert levels == [-2 * NOISE[k], 2 * NOISE[k], 0]
+        # parts of all values between the edges of bars, and of a normal distribution
+        (curve,), bars = histogram.lines, histogram.patches
+        both = np.concatenate([residuals[k] for residuals in RESIDUALS]) / NOISE[k]
+        for bar in bars:
+            low, high = bar.get_x(), bar.get_x() + bar.get_width()
+            part = bar.get_height() * bar.get_width() * np.isfinite(both).sum()
+            assert part == pytest.approx(((both >= low) & (both < high)).sum(), abs=1.001)
+        x, density = curve.get_data()
+        assert np.trapezoid(density, x) == pytest.approx(erf(x[-1] / sqrt(2)), rel=1e-3)
+        assert (x[-1], erf(x[-1] / sqrt(2))) == pytest.approx((-x[0], 1 - 2e-4), rel=1e-6)
+        # against NumPy's correlation of each run with itself
+        values = [np.nan_to_num(residuals[k]) for residuals in RESIDUALS]
+        sums = sum(np.correlate(one, one, "full")[len(one) - 1 :] for one in values)
+        (drawn_lags,) = correlation.collections
+        ends = np.array([path.vertices for path in drawn_lags.get_paths()])
+        lags = np.arange(1, fit_plots.LAGS + 1)
+        assert ends[:, 1] == pytest.approx(np.c_[lags, (sums / sums[0])[lags]])
+        assert ends[:, 0] == pytest.approx(np.c_[lags, 0 * lags])
+        bound = 2 / sqrt(np.isfinite(both).sum())
+        levels = [line.get_ydata()[0] for line in correlation.lines]
+        assert levels == pytest.approx([-bound, bound, 0])
+    assert [text.get_text() for text in chart.axes[0].get_legend().get_texts()] == [
+        "run 1",
+        "run 2",
+    ]
+    assert all(panel.get_legend() is None for panel in chart.axes[1:])
+
+
+def test_plots_of_predictions_show_the_selected_model_and_all_residuals() -> None:
+    fit = invented_fit()
+    names = ("plain", "with friction")
+    candidates = [
+        SimpleNamespace(name=name, fit=fit, predictions=[
+            SimpleNamespace(run=run, begin=2.5, predicted=(n + 1) * motion, residuals=n + rest)
+            for run, motion, rest in zip(fit.runs, fit.fitted, RESIDUALS, strict=True)
+        ])
+        for n, name in enumerate(names)
+    ]  # fmt: skip
+    comparison: Any = SimpleNamespace(selected=candidates[1], candidates=candidates)
+    chart = fit_plots.prediction_figure(comparison, "title")
+    assert len(chart.axes) == 8
+    for row in range(4):
+        motion, rest = chart.axes[2 * row : 2 * row + 2]
+        run, k = divmod(row, 2)
+        one = candidates[1].predictions[run]
+        data, curve = (points(line) for line in motion.lines)
+        values = one.predicted[k] + one.residuals[k]
+        assert np.array_equal(data, np.c_[one.run.t, values], equal_nan=True)
+        assert np.array_equal(curve, np.c_[one.run.t, one.predicted[k]])
+        assert motion.get_title() == f"run {run + 1}: kept back"
+        for line, candidate in zip(rest.lines, candidates, strict=True):
+            own = candidate.predictions[run].residuals[k]
+            assert np.array_equal(points(line), np.c_[one.run.t, own], equal_nan=True)
+        for panel in (motion, rest):  # values before the prediction are shaded
+            (span,) = panel.patches
+            assert (span.get_x(), span.get_x() + span.get_width()) == (run + 1, 2.5)
+        assert (rest.get_legend() is None) == (row > 0)

@@ -1,5 +1,8 @@
 """Mistakes in sweep files are reported with the key, its value and the allowed values."""
 
+import tomllib
+from contextlib import suppress
+from dataclasses import MISSING, fields
 from pathlib import Path
 
 import pytest
@@ -8,7 +11,9 @@ from sweep_file import FILE, write_sweep
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.io.toml_input import InputError
+from solvers.sweeps.definition import map_kinds
 from solvers.sweeps.definition.axes import Random
+from solvers.sweeps.definition.map_table import MapTable
 from solvers.sweeps.definition.sweep_reading import find
 
 
@@ -99,3 +104,19 @@ def test_random_axes_have_the_count_and_the_seed_of_the_file(tmp_path: Path) -> 
         random = f"[random]\ncount = {count}\n{line}\n[axes]"
         axes = find(str(write_sweep(tmp_path, text.replace("[axes]", random))), load_module).axes
         assert axes == Random({"theta1": (-3, 3), "theta2": (-3, 3)}, count, seed)
+
+
+def test_keys_that_may_be_omitted_have_the_defaults_of_python() -> None:
+    omitted = {}
+    for name in map_kinds.names():
+        kind = map_kinds.load(name)
+        given = tomllib.loads(f"example = {{ {kind.example} }}")["example"]
+        module = load_module("duffing" if "every" in kind.example else "double_pendulum")
+        for field in fields(kind):
+            if field.name in given and field.default is not MISSING:
+                table = {key: value for key, value in given.items() if key != field.name}
+                with suppress(InputError):  # a key that a file must have
+                    read = kind.read(MapTable("maps.a", module, table))
+                    omitted[name, field.name] = getattr(read, field.name) == field.default
+    assert len(omitted) >= 9
+    assert all(omitted.values())
