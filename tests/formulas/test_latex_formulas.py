@@ -2,6 +2,7 @@
 
 import pytest
 import sympy as sp
+from matplotlib.mathtext import MathTextParser
 
 from derive.formulas.syntax import syntax_tree
 from derive.formulas.typeset.latex import latex
@@ -132,3 +133,18 @@ def test_long_formulas_are_broken_before_signs(formula: str) -> None:
     whole = " ".join(rows)
     assert whole.count("igl(") == whole.count("igr)")
     assert whole.count(r"\cos") == formula.count("cos")
+
+
+FORMULAS = ["x", "theta1", "123", "-(a + b)", "a + b - c", "a*b*c*d*x", "a*(b + c)", "a/(c*d*x*y)",
+    "(a + b)/m", "a**2", "x**n_spring", "(a + b)**12", "sin(x)", "arctan(x)", "sqrt(a + b)",
+    "ddt(x + y)", "d(L, theta1_dot)", "d(L + x*y*m, x)", "k_spring", "l12", "M_1_12", "latitude",
+    "-a*b + c/d - sin(x)*cos(y)**2"]  # fmt: skip
+
+
+def test_formulas_are_at_most_as_wide_as_estimated_and_at_least_half() -> None:
+    """Against Matplotlib, which typesets formulas with the letters of another font."""
+    parse = MathTextParser("path").parse
+    digit = parse(f"${'0' * 100}$").width / 100
+    for formula in FORMULAS:
+        tree = syntax_tree(formula)
+        assert 0.95 < width_of(tree) * digit / parse(f"${latex(tree)}$").width < 2.1, formula

@@ -118,18 +118,37 @@ def test_derivatives_of_residues_are_those_of_formulas(formula: sp.Expr) -> None
     pytest.fail("no point has all roots")
 
 
-def derivatives_agree(formula: sp.Expr, seed: int) -> bool:
+def at_random(seed: int) -> tuple[np.ndarray, Evaluation]:
+    """A series x(t) with its derivative by x, and the evaluation there, where c is constant."""
     point, rows = RandomResidues(seed), np.zeros((2, 6), np.int64)
     rows[0], rows[1, 0] = [point.residue(k) for k in range(6)], 1
     constant = np.zeros((2, 6), np.int64)
     constant[0, 0] = point.residue("c")
-    evaluate = Evaluation({x: ResidueSeries(rows), c: ResidueSeries(constant)}, point)
+    return rows, Evaluation({x: ResidueSeries(rows), c: ResidueSeries(constant)}, point)
+
+
+def derivatives_agree(formula: sp.Expr, seed: int) -> bool:
+    rows, evaluate = at_random(seed)
     values, slopes = evaluate(formula).rows[1], evaluate(sp.diff(formula, x)).rows[0]
     # the series in time of f(x(t)) has the derivative f'(x) x'
     series, n = evaluate(formula).rows[0], np.arange(6)
     rate = ResidueSeries(slopes[np.newaxis]) * ResidueSeries(np.roll(rows[:1] * n % PRIME, -1))
     in_time = ((series * n)[1:] % PRIME == rate.rows[0][:-1]).all()
     return bool(in_time and (values == slopes).all())
+
+
+@pytest.mark.parametrize("zero", [
+    sp.sin(x + c) - sp.sin(x) * sp.cos(c) - sp.cos(x) * sp.sin(c),
+    sp.cos(x - 2 * c) - sp.cos(x) * sp.cos(2 * c) - sp.sin(x) * sp.sin(2 * c),
+    sp.sin(x / 2) ** 2 + sp.cos(x / 2) ** 2 - 1,
+    sp.exp(x + c / 3) - sp.exp(x) * sp.exp(c / 3),
+    sp.sign(x - c) + sp.sign(c - x),
+    sp.Abs(x - c) - (x - c) * sp.sign(x - c),
+], ids=str)  # fmt: skip
+def test_residues_obey_the_equations_of_functions(zero: sp.Expr) -> None:
+    _, evaluate = at_random(1)
+    assert not evaluate(zero).rows.any()
+    assert evaluate(zero.args[0]).rows.any()
 
 
 def test_rows_modulo_a_prime_have_the_null_space_of_rationals() -> None:
