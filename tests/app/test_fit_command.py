@@ -3,7 +3,10 @@
 import csv
 import json
 import tomllib
+from argparse import Namespace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ import pytest
 import generated.single_pendulum as single
 from solvers import integrate, run_scene
 from solvers.app.cli import main
+from solvers.app.commands.fit import _system
 
 T = np.arange(0, 5, 1 / 30)
 
@@ -134,3 +138,20 @@ def test_unknown_models_and_missing_files_are_refused(capsys: pytest.CaptureFixt
     assert "did you mean 'single_pendulum'?" in capsys.readouterr().err
     assert main(["fit", "single_pendulum", "none.csv"]) == 2
     assert main(["fit", "none.toml", "swing.csv"]) == 2
+
+
+@pytest.mark.parametrize(("system", "named"), [
+    ('system = "single_pendulum"', "single_pendulum"),
+    ('system = "../mine.toml"', "../mine.toml"),
+    ("", "../scenes/given.toml"),  # the file is that of a system
+])  # fmt: skip
+def test_the_new_scene_names_the_system_of_the_old_one(
+    system: str, named: str, folder: Path
+) -> None:
+    Path("scenes").mkdir()
+    Path("scenes/given.toml").write_text(system)
+    arguments = Namespace(scene="scenes/given.toml", output=folder / "results")
+    fitted: Any = SimpleNamespace(outputs=SimpleNamespace(module=single))
+    assert _system(arguments, fitted) == named
+    arguments.scene = "single"
+    assert _system(arguments, fitted) == "single_pendulum"

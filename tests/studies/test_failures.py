@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from math import log, pi, sqrt
+from math import inf, log, pi, sqrt
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,7 +20,11 @@ from solvers.studies.failure_modes.chaos import (
     CHAOTIC,
     LONG_RUNS,
     OFFSET,
+    Chaos,
     ChaosResults,
+    Horizon,
+    Separation,
+    Statistics,
     horizon,
     reference_motion,
     separation,
@@ -386,7 +390,29 @@ COSTS = [stiffness.Cost("one", method, ratio, 7, 9, ratio * seconds, 1e-4)
          for method, seconds in (("rk4", 2e-6), ("gauss2", 3e-6))]  # fmt: skip
 DRIFT = Drift("rk4", "lagrangian", 60, np.array([0.0, 1.0, 2.0, 3.0]),
     np.array([0.0, 2e-6, -5e-6, 3e-6]), *(0.5,) * 6)  # fmt: skip
+ACHIEVED = [tolerances.ToleranceAccuracy(method, 10.0**-k, k, 10.0 * k + n, 1.0)
+            for n, method in enumerate(("dp54", "rk4")) for k in (4, 7, 10)]  # fmt: skip
+APART = Separation(np.array([0.0, 2.0, 4.0]), np.array([1e-12, 3e-11, 0.5]),
+    np.array([1e-12, 4e-11, 6.0]), 0.85)  # fmt: skip
+CHAOS = ChaosResults(
+    Mean(0.5, 0.01), APART,
+    [Horizon("dp54", 1e-4, 20.0, 19.0, 0.1), Horizon("dp54", 1e-8, 40.0, inf, 1e-3)],
+    [Statistics("rk4", -0.07, Mean(30.0, 0.5), Mean(0.25, 0.01))],
+)  # fmt: skip
 PLOTS = {
+    "tolerances": (
+        tolerances.Tolerances(),
+        ACHIEVED,
+        {(n + 0.15 * k, m) for n in (0, 1) for k, m in ((-1, 4.0), (0, 7.0), (1, 10.0))}
+        | {(0.0, 1.0), (1.0, 1.0)},  # the requested error, over the whole width
+    ),
+    "chaos": (
+        Chaos(),
+        CHAOS,
+        {*zip(APART.t, APART.distance, strict=True), *zip(APART.t, APART.predicted, strict=True)}
+        | {(t, OFFSET * np.exp(0.5 * t)) for t in APART.t}
+        | {(1e-4, 19.0), (1e-4, 20.0), (1e-8, 40.0)},
+    ),
     "separatrix": (
         separatrix.Separatrix(),
         separatrix.SeparatrixResults(SENSITIVITIES, [], separatrix.Upright(1e-16, 17.0, 17.0)),
@@ -433,3 +459,31 @@ def test_the_summary_of_stiff_scenes_names_the_cheapest_of_each_kind() -> None:
     assert re.search(r"one +10 +7 steps, 20 µs, rk4 +7 steps, 30 µs, gauss2\n", lines)
     assert re.search(r"one +1000 +7 steps, 2000 µs, rk4 +7 steps, 3000 µs, gauss2\n", lines)
     assert lines.endswith("one: implicit methods do not become cheaper")
+
+
+def test_bars_reach_from_the_median_to_the_worst_error() -> None:
+    (axes,) = tolerances.Tolerances().plot(ACHIEVED).axes
+    bars = [path.vertices.tolist() for one in axes.collections for path in one.get_paths()]
+    places = [n + 0.15 * k for k in (-1, 0, 1) for n in (0, 1)]
+    ends = [(k, 10.0 * k + n) for k in (4, 7, 10) for n in (0, 1)]
+    assert bars == [[[x, low], [x, high]] for x, (low, high) in zip(places, ends, strict=True)]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["dp54", "rk4"]
+
+
+def test_chaos_is_summarised_while_differences_are_small() -> None:
+    text = "\n".join(Chaos().summary(CHAOS))
+    assert "a difference of 1e-12 grows as e^(0.850 t) while it is small, for 2.0 s;" in text
+    assert text.count("relative error of the variational equations 0.2") == 1  # 3e-11 of 4e-11
+    assert re.search(r"\n +1e-04 +20\.0 +19\.0\n +1e-08 +40\.0 +later\n", text)
+
+
+def test_rk3_and_rk4_are_studied_on_both_sides_of_their_limits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(oscillation, "growth", lambda _, *case: case)
+    *growing, above3, below3, above4, below4 = oscillation.Oscillation().run(load)
+    assert {method for method, _ in growing} == {"rk1", "midpoint"}
+    for (name, above), (_, below), limit in (
+        (above3, below3, 2 * pi / sqrt(3)), (above4, below4, 2 * pi / sqrt(8)),
+    ):  # fmt: skip
+        assert (above, below) == pytest.approx((1.02 * limit, 0.98 * limit)), name
