@@ -10,6 +10,7 @@ import generated.cart_3 as cart
 import generated.double_pendulum as dp
 import generated.elastic_pendulum as elastic
 import generated.heavy_top as top
+import generated.swinging_atwood as atwood
 from holonomic import build
 from solvers import ensemble, integrate, load_scene, prepare
 
@@ -58,6 +59,8 @@ def test_a_coordinate_that_matters_is_missing() -> None:
         integrate(dp, (0, 1), {"theta1": 1.0}, {})
     with pytest.raises(ValueError, match="y0 lacks theta, on which the motion depends"):
         integrate(elastic, (0, 1), {}, {})
+    with pytest.raises(ValueError, match=r"y0 lacks r, on which .*motion depends"):
+        integrate(atwood, (0, 1), {"theta": 1.0}, {})  # a length, but no equilibrium is known
 
 
 def test_a_scene_states_what_it_completed(tmp_path: Path) -> None:

@@ -190,6 +190,7 @@ def test_rods_and_springs_are_distinguished_by_their_lengths() -> None:
     rods, spring = tracks(together([*runs]))
     assert rods.links == (("rod", (-1, 0)), ("rod", (0, 1)))
     assert spring.links == (("spring", (-1, 0)),)
+    assert len(rods.points) == len(spring.points) == 0  # links end at masses and the origin
 
 
 @pytest.mark.parametrize(("system", "initial", "rods"), [
