@@ -21,7 +21,7 @@ from solvers.app.cli import main
 from solvers.app.commands.options import selected_scenes
 from solvers.app.modules import load as load_module
 from solvers.app.modules import specialiser
-from solvers.equations.module import equations_of_motion
+from solvers.equations.module import equations_of_motion, title
 from solvers.io.figure_names import symbol
 from solvers.player.motion_plots import _labelled, default_pictures, figure
 from solvers.player.sampled_motion import ELEVATION, projected, tracks
@@ -239,6 +239,11 @@ Equations of motion:
     module = SimpleNamespace(__doc__=text)
     assert equations_of_motion(module) == ("m*x_ddot - 2*rod*x = 0", "x**2 + y**2 - l**2 = 0")
     assert equations_of_motion(SimpleNamespace(__doc__="Title.\n\nMasses:\n    m")) == ()
+
+
+def test_the_title_of_a_module_is_its_first_line_without_a_full_stop() -> None:
+    assert title(SimpleNamespace(__doc__="A rod. And more.\n\nMasses:\n    m")) == "A rod. And more"
+    assert title(SimpleNamespace(__doc__="A rod")) == "A rod"
 
 
 def test_motions_in_space_are_projected_obliquely() -> None:

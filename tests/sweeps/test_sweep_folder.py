@@ -29,7 +29,7 @@ from solvers.sweeps.definition.axes import Grid, Random
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import pool, worker
-from solvers.sweeps.execution.folder import Folder, FolderError
+from solvers.sweeps.execution.folder import Folder, FolderError, _difference
 from solvers.sweeps.execution.pool import LostWorkersError, Pool
 from solvers.sweeps.execution.sweep_run import partial_results, sweep
 from solvers.sweeps.execution.worker import run_chunk
@@ -249,6 +249,19 @@ def test_a_folder_of_another_sweep_is_refused(
     with pytest.raises(FolderError, match=words):
         sweep(Sweep(dp, **definition), tmp_path)
     assert files(tmp_path) == expected
+
+
+@pytest.mark.parametrize(("other", "own", "words"), [
+    ({"a": {"b": [1, {"c": 2.0}]}}, {"a": {"b": [1, {"c": 2.5}]}}, "a.b.1.c 2.0, not 2.5"),
+    ({"a": [1, 2]}, {"a": [1, 2, 3]}, "a [1, 2], not [1, 2, 3]"),
+    ({"a": {"b": 1}}, {"a": {}}, "a.b is in the folder only"),
+    ({"a": {}}, {"a": {"b": 1}}, "a.b is in the definition only"),
+    ({"a": {"b": 1}}, {"a": 1}, "a {'b': 1}, not 1"),
+    ({"a": 1}, {"a": {"b": 1}}, "a 1, not {'b': 1}"),
+    ({"a": [1], "b": 2}, {"b": 2, "a": [1]}, ""),
+])  # fmt: skip
+def test_the_first_difference_of_two_definitions_is_named(other: Any, own: Any, words: str) -> None:
+    assert _difference(other, own) == words
 
 
 @pytest.mark.long("more cases of the same kind", keep=4)

@@ -155,3 +155,22 @@ def test_colours_of_exponents_begin_at_zero_or_below(results: Results) -> None:
     for values, lowest in (([0.5, 1.0, 1.5], 0.0), ([-0.5, -0.5, 1.5], -0.5)):
         _, scale = quantity.colours(np.array(values))
         assert scale.vmin == lowest
+
+
+def test_attractors_are_described_by_their_first_state_their_turns_and_their_share(
+    results: Results,
+) -> None:
+    states = [{"theta": 0.51234, "theta_dot": -2.0}, {"theta": 9.0, "theta_dot": 9.0}]
+    records = [
+        {"number": 1, "kind": "period 2", "states": states, "turns": {"theta": 0}, "motions": 3},
+        {"number": 2, "kind": "period 1", "states": states[1:], "turns": {"theta": -1},
+         "motions": 1},
+    ]  # fmt: skip
+    found = replace(results, records={"low": records})
+    _, _, _, first, second, *others = summary(found, None, {})
+    assert first == "low 1: period 2, theta = 0.5123, theta_dot = -2; 75.0% of the motions"
+    assert second == (
+        "low 2: period 1, -1 turns of theta, theta = 9, theta_dot = 9; 25.0% of the motions"
+    )
+    assert len(others) == 4  # of the other maps
+    assert not any(line.startswith("low") for line in others)
