@@ -8,6 +8,8 @@ import sympy as sp
 from constrained_systems import START, lifted, pinned, swing, two_rods
 
 import generated.double_pendulum as dp
+import generated.four_bar as four_bar
+import generated.rolling_disc as rolling_disc
 import generated.single_pendulum as pendulum
 from derive import Coordinate, Parameter, RigidBody, System, quaternion
 from holonomic import build, integrate
@@ -72,6 +74,22 @@ def test_a_step_onto_constraints_squares_residuals(make: Callable[[], System]) -
     for part in (slice(0, count), slice(count, None)):  # of coordinates and of velocities
         assert after[0][part].max() < 3e-4
         assert after[1][part].max() < 2e-2 * after[0][part].max()
+
+
+@pytest.mark.parametrize("module", [four_bar, rolling_disc])
+def test_sines_and_cosines_are_moved_onto_constraints_as_angles_are(
+    module: GeneratedModule,
+) -> None:
+    y = on_constraints(module, 0.0, 3)
+    changes = 1e-6 * np.random.default_rng(4).normal(size=(3, len(y)))
+    angles, sines = (Form(module, name, module.DEFAULTS) for name in ("lagrangian", "rational"))
+    for one in changes:
+        moved = angles.projected(0.0, y + one)
+        expected = sines.from_ordinary(0.0, moved)
+        assert np.abs(moved - y - one).max() > 1e-8
+        # of steps of 1e-6 both agree to their squares
+        found = sines.projected(0.0, sines.from_ordinary(0.0, y + one))
+        assert np.abs(found - expected).max() < 1e-11
 
 
 @pytest.mark.parametrize("name", ["variational", "sensitivity"])
