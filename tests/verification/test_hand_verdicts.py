@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
 from derive import Derivation, load
 from derive.verification.hand import judge
 from derive.verification.judging.engine import IN_NUMBERS, UNDECIDED
+from derive.verification.judging.other_solutions import without_outer_function
 from derive.verification.judging.reference_system import ReferenceSystem
 from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula
@@ -538,3 +540,29 @@ def test_high_powers_of_sums_are_judged(sum_: str) -> None:
         (f"{power}*(l*theta_ddot - g*sin(theta))", "euler_lagrange", "wrong"),
     ):
         assert judge_formula(model, "", text, kind).verdict == verdict
+
+
+def test_outer_functions_are_removed_if_they_vanish_with_their_argument_alone() -> None:
+    """Against the number that decides, by hand; a factor does not matter."""
+    model = ReferenceSystem(Derivation(load("single_pendulum")), {})
+    system = model.derivation.system
+    (theta,), (rate,), (acceleration,) = system.q, system.qdot, system.qddot
+    g, h = acceleration + 2 * sp.sin(theta), rate**2 + 1
+    for value, inner in (
+        (g**3, g), (sp.sqrt(g), g), (sp.Abs(g), g), (sp.sinh(g), g), (3 * sp.log(1 + g), g),
+        (sp.exp(g) - 1, g), (1 - sp.exp(g), g), (2 * sp.exp(g) - 3, g - sp.log(sp.Rational(3, 2))),
+        (sp.exp(g) - sp.exp(h), g - h), (2 * sp.log(g) - 2 * sp.log(h), g - h),
+        (5 * sp.atan(g) + 5 * sp.atan(h), g + h), (sp.tanh(h) - sp.tanh(g), h - g),
+        (sp.Mul(g, (3 * g) ** 3, evaluate=False), g), (h * sp.sinh(g) ** 3, g),
+        (sp.Abs(sp.exp(g) - 1), g),
+    ):  # fmt: skip
+        found = without_outer_function(model, value)
+        assert found is not None, value
+        ratio = sp.simplify(found / inner)
+        assert ratio != 0, value
+        assert acceleration not in ratio.free_symbols, value
+    for value in (
+        g**-2, sp.cosh(g) - 1, sp.sin(g), sp.exp(g) + 1, sp.exp(g) + sp.exp(h), sp.exp(h),
+        sp.exp(g) - 2 * sp.exp(h), sp.log(g) + sp.log(h), sp.sinh(g) + 2 * sp.sinh(h), g * (g + h),
+    ):  # fmt: skip
+        assert without_outer_function(model, value) is None, value
