@@ -26,7 +26,7 @@ from solvers.equations.module_cache import cached_module
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.kernel import kernel
 from solvers.integration.integrate import integrate
-from solvers.io import build_cache
+from solvers.io import atomic_write, build_cache
 from solvers.io.atomic_write import write_text
 from solvers.io.build_cache import ABANDONED, DIGESTS, NoPlaceError, built_folder, cache_folder
 
@@ -411,3 +411,21 @@ def test_threads_that_write_one_file_all_succeed(tmp_path: Path) -> None:
         assert [*threads.map(lambda text: write_text(path, text), texts)] == [path] * 8
     assert path.read_text() in texts
     assert [*tmp_path.iterdir()] == [path]
+
+
+def test_files_of_ended_processes_are_removed_even_if_others_do_so_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = subprocess.Popen(["true"])
+    ended.wait()
+    kept = [tmp_path / "a.txt", tmp_path / f".a.txt.{os.getpid()}"]
+    names = [f".{name}.{ended.pid}" for name in "ab"]
+    for path in (*kept, *(tmp_path / name for name in names)):
+        path.write_text("")
+    assert [atomic_write.is_temporary(path) for path in kept] == [False, True]
+    atomic_write.remove_abandoned(tmp_path)
+    assert sorted(tmp_path.iterdir()) == sorted(kept)
+    # another process removes a file between the question and the removal
+    monkeypatch.setattr(atomic_write, "is_abandoned", lambda path: path.unlink() is None)
+    atomic_write.remove_abandoned(tmp_path)
+    assert not [*tmp_path.iterdir()]

@@ -1,5 +1,7 @@
 """Each step of a derivation against an independent calculation."""
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -11,6 +13,7 @@ from derive import TIME, Coordinate, Derivation, Parameter, PointMass, RigidBody
 from derive.codegen.module_functions import contents
 from derive.formulas.proofs.zero import vanishes
 from derive.mechanics.energies.reduction import collected, reduced
+from derive.mechanics.linearisation.closed_form_equilibria import _roots
 from derive.system.parts import SystemDefinitionError
 
 Motion = dict[sp.Symbol, sp.Expr]
@@ -362,3 +365,25 @@ def test_missing_gravity_beside_another_potential_is_an_error() -> None:
     assert system(potential=x**2, gravity=(0, -g)).potential_energy.has(g)
     with pytest.raises(SystemDefinitionError, match="give the components"):
         PointMass(mass, x)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("force", "count"), [
+    (lambda q: 2 * q - 3, 1), (lambda q: q**2 - 3, 2), (lambda q: q**2 + 1, 0),
+    (lambda q: 2 * sp.sin(q) - 1, 2), (lambda q: sp.cos(q) ** 2 - sp.cos(q), 3),
+    (lambda q: sp.sin(q - 1), 2),
+    (lambda q: q**3 - q - 1, None), (lambda q: sp.cos(q) - q, None),
+    (lambda q: sp.sin(q) ** 3 - sp.sin(q), None),
+    (lambda q: sp.sin(q) * sp.cos(q) + sp.cos(q) - 2 * sp.sin(q), None),
+    (lambda q: sp.sin(2 * q) + 2 * sp.sin(q) - 1, None),
+])  # fmt: skip
+def test_roots_of_linear_and_quadratic_forces_have_closed_forms(
+    force: Callable[[sp.Symbol], sp.Expr], count: int | None
+) -> None:
+    factor = force(x)
+    if count is None:
+        with pytest.raises(SystemDefinitionError, match="no closed form of the equilibria of 'a'"):
+            _roots(factor, x, "a")
+        return
+    roots = _roots(factor, x, "a")
+    assert all(sp.simplify(factor.subs(x, root)) == 0 for root in roots)
+    assert len({round(float(root) % math.tau, 9) % round(math.tau, 9) for root in roots}) == count

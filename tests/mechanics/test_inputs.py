@@ -191,3 +191,12 @@ def test_a_document_lists_inputs() -> None:
     text = page(document(Derivation(cart_pole)))
     assert "The inputs may change during a motion." in text
     assert "force on the cart" in text
+
+
+def test_inputs_in_positions_are_named_in_order() -> None:
+    forces = [Symbol(name, real=True) for name in "abcdef"]
+    moved = System("moved", "Moved", [Coordinate(x, "m", "")], [],
+        [PointMass(1, (x, sum(one**2 for one in forces)))], potential=0,
+        inputs=[Input(one, "m", "") for one in forces])  # fmt: skip
+    with pytest.raises(SystemDefinitionError, match=f"depend on {', '.join('abcdef')}, whose"):
+        Derivation(moved)

@@ -355,3 +355,12 @@ def test_constraints_keep_their_order(make: Callable[[], System]) -> None:
     for given in permutations(make().conditions):
         both = reduced(replace(make(), constraints=given)).all_conditions
         assert [one.name for one in both] == [one.name for one in given]
+
+
+def test_formulas_with_other_functions_vanish_if_their_expansions_do() -> None:
+    a, b = sp.symbols("a b", real=True)
+    for formula in (sp.exp(a) * (b + 1) - sp.exp(a) * b - sp.exp(a), sp.sin(a) ** 2 - sp.S.One
+                    + sp.cos(a) ** 2):  # fmt: skip
+        assert implementation._vanishes(formula)
+        assert not implementation._vanishes(formula + sp.exp(b))
+        assert not implementation._vanishes(formula + 1)

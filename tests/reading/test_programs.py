@@ -11,11 +11,18 @@ import sympy as sp
 
 from derive import Derivation, load
 from derive.formulas.expression import FUNCTIONS, parse
+from derive.reading.programs.evaluation.counted_loops import bound
 from derive.reading.programs.findings.degrees import starts_in_degrees
 from derive.reading.programs.program import Finding, Program
 from derive.reading.programs.program_reader import read_program
 from derive.reading.programs.syntax.formula_text import cleaned
-from derive.reading.programs.syntax.trees import Name, NumberLiteral
+from derive.reading.programs.syntax.trees import (
+    FunctionCall,
+    Member,
+    Name,
+    NumberLiteral,
+    OperatorExpression,
+)
 
 
 @cache
@@ -405,3 +412,18 @@ def test_a_start_in_degrees_is_found_through_names_of_names() -> None:
     (found,) = starts_in_degrees("theta", Name(3, "start"), values, "main")
     assert "theta starts at 120" in found.text
     assert not [*starts_in_degrees("theta", Name(3, "other"), values, "main")]
+
+
+def test_lengths_of_one_array_are_one_bound_in_every_language() -> None:
+    y, one = Name(0, "y"), NumberLiteral(0, "1")
+    lengths = [
+        *(FunctionCall(0, Name(0, name), (y,)) for name in ("len", "length", "numel", "size")),
+        *(FunctionCall(0, Member(0, y, name), ()) for name in ("size", "length")),
+        *(Member(0, y, name) for name in ("length", "size")),
+    ]
+    for tree in lengths:
+        assert bound(tree) == bound(OperatorExpression(0, "+", (tree, one))) == "len(y)"
+    assert bound(y) == "y"
+    assert bound(NumberLiteral(0, "4")) == "4"
+    for other in (FunctionCall(0, Name(0, "sum"), (y,)), FunctionCall(0, Member(0, y, "sum"), ())):
+        assert bound(other) != "len(y)"

@@ -487,3 +487,14 @@ def test_rk3_and_rk4_are_studied_on_both_sides_of_their_limits(
         (above3, below3, 2 * pi / sqrt(3)), (above4, below4, 2 * pi / sqrt(8)),
     ):  # fmt: skip
         assert (above, below) == pytest.approx((1.02 * limit, 0.98 * limit)), name
+
+
+@pytest.mark.parametrize("name", PLOTS)
+def test_labelled_curves_of_a_study_differ_in_their_looks(name: str) -> None:
+    study, results, _ = PLOTS[name]
+    for axes in study.plot(results).axes:
+        lines = [line for line in axes.lines if not str(line.get_label()).startswith("_")]
+        looks = {(one.get_color(), one.get_linestyle(), one.get_marker()) for one in lines}
+        assert len(looks) == len({one.get_label() for one in lines})
+        if legend := axes.get_legend():
+            assert not legend.get_frame_on()

@@ -174,3 +174,19 @@ def test_attractors_are_described_by_their_first_state_their_turns_and_their_sha
     )
     assert len(others) == 4  # of the other maps
     assert not any(line.startswith("low") for line in others)
+
+
+@pytest.mark.parametrize(("values", "colours", "limits"), [
+    ([-1.0, 0.5, 3.0], "RdBu_r", (-3.0, 3.0)),  # zero is in the middle
+    ([-4.0, 0.5, 3.0], "RdBu_r", (-4.0, 4.0)),
+    ([0.5, 1.0, 3.0], "viridis", (0.5, 3.0)),
+    ([-3.0, -1.0, -0.5], "viridis", (-3.0, -0.5)),
+    ([0.0, 2.0], "viridis", (0.0, 2.0)),
+])  # fmt: skip
+def test_colours_of_values_of_both_signs_are_symmetrical(
+    values: list[float], colours: str, limits: tuple[float, float], results: Results
+) -> None:
+    rate = Quantity(results, "end", (1,))
+    found, scale = rate.colours(np.array([*values * 100, np.nan, np.inf]))
+    assert found == colours
+    assert (scale.vmin, scale.vmax) == pytest.approx(limits)

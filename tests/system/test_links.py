@@ -236,6 +236,9 @@ def test_outlines_are_lines_in_the_plane_of_view() -> None:
     assert_allclose([spring[0], spring[-1]], [[0, 0], [3, 4]])
     across = spring @ [-0.8, 0.6]
     assert np.abs(across).max() == pytest.approx(0.1)
+    teeth = across[2:-2]  # to both sides in turn, ever further along the spring
+    assert (teeth[1:] * teeth[:-1] < 0).all()
+    assert (np.diff(spring @ [0.6, 0.8]) > 0).all()
     moved = outline("spring", np.array([[1.0, -2], [4, 2]]), 5)
     assert_allclose(moved, spring + np.array([1, -2]))
     start, end = outline("rail", np.array([[0.0, 1], [2, 1]]), 3)

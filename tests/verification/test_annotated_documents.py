@@ -328,6 +328,15 @@ def test_the_copy_of_a_document_has_notes_at_its_formulas(tmp_path: Path) -> Non
     assert r"\label" not in end
 
 
+def test_details_are_those_of_wrong_formulas_and_of_notes(tmp_path: Path) -> None:
+    text = r"\documentclass{article}\begin{document}$a = 1$ $b = 1$ $c = 1$ $d = 1$\end{document}"
+    read = document(tmp_path, text)
+    rows = [("a = 1", {"verdict": "wrong"}), ("b = 1", {"note": "known"}), ("c = 1", {}),
+        ("d = 1", {"verdict": "wrong", "note": "seen"})]  # fmt: skip
+    details = latex_notes(judged(read, *rows), read).split(r"\clearpage")[1]
+    assert re.findall(r"[abcd] = 1", details) == ["a = 1", "b = 1", "d = 1"]
+
+
 def test_notes_name_the_line_and_the_display_of_a_wrong_formula(tmp_path: Path) -> None:
     read = document(
         tmp_path, "Energies:\n$$ T = 1 $$\nand, in a line, $V = 2$, then\n$$ E = 3 $$\n"
