@@ -1,11 +1,13 @@
 """Families of periodic orbits in a parameter, beside closed forms and SciPy's integrators."""
 
 from collections.abc import Mapping
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 import sympy as sp
+from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipk, mathieu_a, mathieu_b
@@ -15,6 +17,7 @@ import generated.duffing as duffing
 import generated.single_pendulum as single
 from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
 from solvers.app.modules import build
+from solvers.integration.orbits import special_points
 from solvers.integration.orbits.family import SpecialOrbit
 from solvers.integration.orbits.orbit_family import orbit_family
 from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart
@@ -329,3 +332,37 @@ def test_a_table_of_a_family() -> None:
     assert {len(column) for column in table.values()} == {len(family.orbits)}
     assert "period doubling at 0.0680894450" in repr(family)
     assert "unstable" in repr(family.orbits[-1])
+
+
+def test_multipliers_decide_on_special_orbits() -> None:
+    rng = np.random.default_rng(5)
+    basis = rng.normal(size=(4, 4))
+
+    def node(*multipliers: complex) -> Any:
+        blocks = np.zeros((4, 4))
+        k = 0
+        for value in multipliers:
+            if isinstance(value, complex):  # and its conjugate
+                blocks[k : k + 2, k : k + 2] = [[value.real, value.imag], [-value.imag, value.real]]
+            else:
+                blocks[k, k] = value
+            k += 1 + isinstance(value, complex)
+        matrix = basis @ blocks @ np.linalg.inv(basis)
+        shot, point = SimpleNamespace(monodromy=matrix), SimpleNamespace(y=np.zeros(4))
+        return SimpleNamespace(shot=shot, point=point, reduced=matrix)
+
+    one = node(-2.0, 0.5, -1.0, -0.4)
+    direction = special_points.doubling_direction(one)
+    assert np.linalg.norm(direction) > 0.1
+    assert direction[4:].tolist() == [0.0, 0.0]
+    assert_allclose(one.shot.monodromy @ direction[:4], -direction[:4], atol=1e-12)
+    assert special_points.period_doubling(one) == pytest.approx(0.0, abs=1e-12)
+    one = node(-2.0, 0.5, -0.9, -0.4)
+    assert special_points.period_doubling(one) == pytest.approx(-1.0 * 1.5 * 0.1 * 0.6)
+    # a pair on the circle, inside and outside
+    pairs = [node(size * np.exp(0.7j), 0.3, -0.2) for size in (0.9, 1.0, 1.1)]
+    inside, on, outside = map(special_points.neimark_sacker, pairs)
+    assert on == pytest.approx(0.0, abs=1e-12)
+    assert inside * outside < 0
+    others = np.prod([abs(value * 1.1 * np.exp(0.7j) - 1) ** 2 for value in (0.3, -0.2)])
+    assert outside == pytest.approx((1.21 - 1) * (-0.06 - 1) * others)

@@ -1,6 +1,7 @@
 """Fits recover parameters from noisy data, as closed forms and other programs do."""
 
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 from scipy.special import stdtrit
+from scipy.stats import sem
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
@@ -19,6 +21,7 @@ from solvers import Measurement, build, compare, fit, integrate
 from solvers.app.fitting import _model
 from solvers.equations.module import GeneratedModule
 from solvers.scenes.fitting import least_squares as shooting_steps
+from solvers.scenes.fitting import prediction
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.measurement import Outputs
 from solvers.scenes.fitting.multiple_shooting import MultipleShooting, segments
@@ -263,3 +266,38 @@ def test_leverages_add_up_to_the_rank_that_exceeds_rounding() -> None:
     triangle = np.linalg.qr(jacobian, mode="r")
     assert triangle[1, 1] != 0
     assert leverages(jacobian, triangle).sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("close", "selected", "reason"), [
+    (0.02, "close", "close, with 2 unknown parameters, predicts as well as best, within the error"),
+    (0.4, "best", "best, with 3 unknown parameters, predicts best; simpler models predict "
+     "significantly worse"),
+])  # fmt: skip
+def test_the_simplest_model_that_predicts_within_two_standard_errors_is_selected(
+    close: float, selected: str, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng, t = np.random.default_rng(9), np.arange(400.0)
+    left = rng.normal(size=(1, 400))
+    run: Any = SimpleNamespace(t=t)
+    rest = {"best": left, "close": left + close * rng.normal(size=(1, 400)), "wide": 3 * left}
+    fits: Any = {
+        name: SimpleNamespace(unknown=("m", "l", "g")[:count], name=name,
+            estimate=SimpleNamespace(noise=np.array([noise])))
+        for name, count, noise in (("best", 3, 0.5), ("close", 2, 0.7), ("wide", 1, 0.9))
+    }  # fmt: skip
+    monkeypatch.setattr(prediction, "predicted", lambda fit, run, begin: prediction.Prediction(
+        run, begin, 0 * left, rest[fit.name]))  # fmt: skip
+    found = prediction.compared(fits, [(run, 100.0)])
+    # squares of what is predicted, in units of the least noise, and SciPy's error of block means
+    squares = {name: (values[0, 100:] / 0.5) ** 2 for name, values in rest.items()}
+    for one in found.candidates:
+        excess = squares[one.name] - squares["best"]
+        means = [block.mean() for block in np.array_split(excess, prediction.BLOCKS)]
+        assert one.error == pytest.approx(np.sqrt(squares[one.name].mean()))
+        assert one.excess == pytest.approx(excess.mean(), abs=1e-12)
+        assert one.excess_error == pytest.approx(sem(means), abs=1e-12)
+        assert one.name != "close" or (one.excess < 2 * sem(means)) == (selected == "close")
+    assert found.selected.name == selected
+    assert found.reason == reason
+    alone = prediction.compared({"best": fits["best"]}, [(run, 100.0)])
+    assert alone.reason == "best, with 3 unknown parameters, predicts best"
