@@ -278,3 +278,13 @@ def test_sweeps_complete_states_at_their_first_time(lifted: GeneratedModule) -> 
     assert not status.any()
     lengths = np.hypot(states[:, 0], states[:, 1])
     assert lengths == pytest.approx([0.8, 0.8], rel=1e-13)  # that of the thread at t = 0
+
+
+def test_many_starts_are_those_at_the_initial_time(lifted: GeneratedModule) -> None:
+    # the length at 2 s is 0.8 m + 0.2 m, and grows by 0.1 m/s
+    places = np.array([0.1, 0.6])
+    batch = ensemble(lifted, (2.0, 2.0), {"x": places, "x_dot": 0.0}, {}, backend="python")
+    angles = np.arctan2(batch.y[1], batch.y[0])
+    assert np.hypot(*batch.y[:2]) == pytest.approx(1.0, abs=1e-14)
+    radial = batch.y[2] * np.cos(angles) + batch.y[3] * np.sin(angles)
+    assert radial == pytest.approx(0.1, abs=1e-14)

@@ -330,6 +330,13 @@ def test_blank_exercises_show_no_derived_formula(documents, name: str) -> None:
     assert BLANK not in page(documents(name))
 
 
+def test_blank_exercises_state_the_positions_from_which_all_follows(documents, derivation) -> None:
+    exercises, _ = with_exercises(documents("double_pendulum"), "blank", 0)
+    stated = [equation.value for equation in exercises.equations if not equation.is_blank]
+    for mass in derivation("double_pendulum").system.masses:
+        assert sp.Matrix(mass.position) in stated
+
+
 @pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("name", SYSTEMS)
