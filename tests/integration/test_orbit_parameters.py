@@ -17,7 +17,7 @@ import generated.duffing as duffing
 import generated.single_pendulum as single
 from derive import TIME, Coordinate, Parameter, PointMass, System, velocity
 from solvers.app.modules import build
-from solvers.integration.orbits import special_points
+from solvers.integration.orbits import continuation
 from solvers.integration.orbits.family import SpecialOrbit
 from solvers.integration.orbits.orbit_family import orbit_family
 from solvers.integration.orbits.orbit_shooting import OrbitConditions, OrbitStart
@@ -352,16 +352,16 @@ def test_multipliers_decide_on_special_orbits() -> None:
         return SimpleNamespace(shot=shot, point=point, reduced=matrix)
 
     one = node(-2.0, 0.5, -1.0, -0.4)
-    direction = special_points.doubling_direction(one)
+    direction = continuation.doubling_direction(one)
     assert np.linalg.norm(direction) > 0.1
     assert direction[4:].tolist() == [0.0, 0.0]
     assert_allclose(one.shot.monodromy @ direction[:4], -direction[:4], atol=1e-12)
-    assert special_points.period_doubling(one) == pytest.approx(0.0, abs=1e-12)
+    assert continuation.period_doubling(one) == pytest.approx(0.0, abs=1e-12)
     one = node(-2.0, 0.5, -0.9, -0.4)
-    assert special_points.period_doubling(one) == pytest.approx(-1.0 * 1.5 * 0.1 * 0.6)
+    assert continuation.period_doubling(one) == pytest.approx(-1.0 * 1.5 * 0.1 * 0.6)
     # a pair on the circle, inside and outside
     pairs = [node(size * np.exp(0.7j), 0.3, -0.2) for size in (0.9, 1.0, 1.1)]
-    inside, on, outside = map(special_points.neimark_sacker, pairs)
+    inside, on, outside = map(continuation.neimark_sacker, pairs)
     assert on == pytest.approx(0.0, abs=1e-12)
     assert inside * outside < 0
     others = np.prod([abs(value * 1.1 * np.exp(0.7j) - 1) ** 2 for value in (0.3, -0.2)])
