@@ -370,7 +370,7 @@ def test_missing_gravity_beside_another_potential_is_an_error() -> None:
 @pytest.mark.parametrize(("force", "count"), [
     (lambda q: 2 * q - 3, 1), (lambda q: q**2 - 3, 2), (lambda q: q**2 + 1, 0),
     (lambda q: 2 * sp.sin(q) - 1, 2), (lambda q: sp.cos(q) ** 2 - sp.cos(q), 3),
-    (lambda q: sp.sin(q - 1), 2),
+    (lambda q: sp.sin(q - 1), 2), (lambda q: sp.sin(q) + 2 * sp.cos(q), 2),
     (lambda q: q**3 - q - 1, None), (lambda q: sp.cos(q) - q, None),
     (lambda q: sp.sin(q) ** 3 - sp.sin(q), None),
     (lambda q: sp.sin(q) * sp.cos(q) + sp.cos(q) - 2 * sp.sin(q), None),

@@ -144,11 +144,13 @@ def _roots(factor: sp.Expr, unknown: sp.Symbol, name: str) -> list[sp.Expr]:
     ):
         raise SystemDefinitionError(_no_closed_form(name, factor, [unknown]))
     waves_of = {sine: sp.sin(unknown), cosine: sp.cos(unknown)}
-    return [
-        root
-        for root in sp.solve(expanded.xreplace(waves_of), unknown)
-        if _is_possible(unknown, root)
-    ]
+    if len(variables) == 2 and expanded.xreplace(dict.fromkeys(waves, sp.S.Zero)) == 0:
+        # opposite directions, of which SymPy finds one if the coefficients are numbers
+        first = -sp.atan(sp.cancel(expanded.coeff(cosine) / expanded.coeff(sine)))
+        roots = [first, first + sp.pi]
+    else:
+        roots = sp.solve(expanded.xreplace(waves_of), unknown)
+    return [root for root in roots if _is_possible(unknown, root)]
 
 
 def _no_closed_form(name: str, factor: sp.Expr, unknowns: Sequence[sp.Symbol]) -> str:

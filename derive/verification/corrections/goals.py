@@ -39,8 +39,10 @@ def goals(model: ReferenceSystem, kind: str, name: str, value: sp.Expr) -> Itera
     if not is_expandable(value):
         return
     if kind in UP_TO_A_CONSTANT:
-        shift = _constant(value, model) - _constant(derived, model)
-        if shift:
+        own = _constant(value, model)
+        shift = own - _constant(derived, model)
+        # of a Lagrangian, a constant is rather a wrong term than one that is meant
+        if shift and not (kind == "lagrangian" and own):
             yield Goal(derived + shift, False, foreign)
     if kind == "lagrangian":
         factor = sp.cancel(value.diff(system.qdot[0], 2) / model.derivation.mass_matrix[0, 0])
