@@ -22,7 +22,7 @@ from sharing import Shared
 
 from derive import Derivation, load
 from derive.formulas.expression import Namespace
-from derive.verification import hand
+from derive.verification import hand_derivation_files
 from derive.verification.judging.reference_system import ReferenceSystem
 from solvers.app.modules import load as load_module
 from solvers.integration.checks import predictability
@@ -166,8 +166,8 @@ def shared_references() -> Iterator[None]:
         return models.setdefault(key, ReferenceSystem(derivation, names))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(hand, "Derivation", cache(Derivation))
-        patch.setattr(hand, "ReferenceSystem", model)
+        patch.setattr(hand_derivation_files, "Derivation", cache(Derivation))
+        patch.setattr(hand_derivation_files, "ReferenceSystem", model)
         yield
 
 

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 from typing import NamedTuple
 
 from derive.reading.document import CodeCell, Display, Document
-from derive.reading.documents import known_formats
+from derive.reading.document_formats import known_formats
 
 #: In place of a formula, its number between characters that no text has.
 OPENING, CLOSING = "\ue000", "\ue001"

@@ -25,7 +25,7 @@ from solvers.integration.checks.predictability import (
 )
 from solvers.integration.checks.singularity import SingularityWarning, singularities, singularity
 from solvers.integration.checks.step_stability import StepWarning, mark_unstable, step_instability
-from solvers.integration.loops import compiled_loop, passage
+from solvers.integration.loops import compiled_loop, singular_passage
 from solvers.integration.loops.ensemble_loop import EnsembleRun
 from solvers.integration.problem import validation
 from solvers.integration.problem.events import Extremum
@@ -63,7 +63,7 @@ def single_motion(
     problem = replace(problem, max_steps=limit_steps(problem))
     outcome = Outcome.at_start(problem)
     try:
-        passage.run(problem, outcome, program)
+        singular_passage.run(problem, outcome, program)
     except KeyboardInterrupt as interruption:
         raise Interrupted(_solution(problem, outcome, energy)) from interruption
     instability = step_instability(problem, outcome)

@@ -27,7 +27,7 @@ from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import compiled_loop
-from solvers.integration.loops.passage import rerun
+from solvers.integration.loops.singular_passage import rerun
 from solvers.integration.problem import validation
 from solvers.integration.problem.inputs import given
 from solvers.integration.problem.problem import SHORTEST, Options, Problem

@@ -9,8 +9,8 @@ import pytest
 from mpmath import mp, mpf
 
 from derive.verification.documents.letters.hints import hints
-from derive.verification.files import judge_file
-from derive.verification.hand import judge
+from derive.verification.hand_derivation_files import judge
+from derive.verification.source_files import judge_file
 from solvers.app.modules import load
 from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.extended import integrate_extended

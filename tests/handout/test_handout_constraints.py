@@ -8,7 +8,7 @@ import pytest
 from derive import Derivation, load
 from derive.handout.derivation_document import document, write_document
 from derive.handout.document_model import Paragraph
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict

@@ -15,7 +15,7 @@ from derive.formulas.typeset.lettering import lettering
 from derive.handout.derivation_document import document, with_letters, write_document
 from derive.handout.derived_letters import DerivedLetters
 from derive.handout.formats.tex import equation_rows
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import (
     Application,

@@ -18,7 +18,7 @@ from solvers import Status
 from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.predictability import UnfinishedWarning
 from solvers.integration.compiled.extended import ExtendedError, integrate_extended
-from solvers.integration.loops import passage
+from solvers.integration.loops import singular_passage
 
 #: Bars stand upright; their tips move by 1 m/s.
 UPRIGHT = np.array([*[np.pi / 2] * 3, 0, 0, *[-1.0] * 3, 0, 0])
@@ -230,7 +230,7 @@ def test_an_antiparallelogram_remains_one() -> None:
 def test_without_a_certain_continuation_no_sample_lies_beyond(
     squares: GeneratedModule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(passage, "LARGEST", 0.0)
+    monkeypatch.setattr(singular_passage, "LARGEST", 0.0)
     with pytest.warns(UnfinishedWarning, match="depend on each other"):
         run = integrate(squares, (0, 3), UPRIGHT, {}, energy=True, **TOLERANCES)
     assert run.status is Status.SINGULAR

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.reading import formats
-from derive.reading.documents import kinds, read_document
+from derive.reading.document_formats import kinds, read_document
 from derive.reading.programs import languages
 from derive.reading.programs.program_reader import known_languages, read_program
 

@@ -105,6 +105,14 @@ def test_no_file_defines_a_name_twice() -> None:
     assert structure.repeated_definitions(ast.parse("A, B = 1, 2\nB, C = 3, 4")) == ["B"]
 
 
+def test_no_file_imports_itself() -> None:
+    """Else files were joined without the import between them."""
+    paths = [path for package in ("derive", "solvers") for path in (ROOT / package).rglob("*.py")]
+    own = {path: ".".join(path.relative_to(ROOT).with_suffix("").parts) for path in paths}
+    assert [path for path in paths if own[path] in imported(path.read_text())] == []
+    assert "solvers.io.a" in imported("from solvers.io import a, b")
+
+
 def test_rooms_for_documents_have_few_arrows() -> None:
     row = Folder.of(ROOT / "derive" / "verification" / "documents")
     assert (row.floors, row.files) == (7, 7)

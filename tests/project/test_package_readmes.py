@@ -16,7 +16,7 @@ import generated.double_pendulum as dp
 from derive.codegen.module_files import GeneratedFiles
 from derive.verification.documents.pages.verdict_table import document_record
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
-from derive.verification.hand import EQUATIONS, HEADER
+from derive.verification.hand_derivation_files import EQUATIONS, HEADER
 from derive.verification.judging.verdict import Verdict, VerdictName
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module

@@ -12,7 +12,7 @@ from counting import assert_linear
 from shared_documents import shared
 
 from derive.reading.document import Document
-from derive.reading.documents import MAX_BYTES, MAX_NOTEBOOK_BYTES, read_document
+from derive.reading.document_formats import MAX_BYTES, MAX_NOTEBOOK_BYTES, read_document
 from solvers.io.toml_input import InputError
 
 KINDS = {"$$": "$$", "```math": "fence", ".. math::": "rst-math"}

@@ -16,7 +16,7 @@ from latex_trees import show
 from latex_writing import written_trees
 from shared_documents import shared
 
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.reading.latex import display_reader
 from derive.reading.latex.display_reader import formulas, macros_of
 from derive.reading.latex.tree import Node, Unreadable

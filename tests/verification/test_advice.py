@@ -14,10 +14,10 @@ from formula_mutants import mutants
 from formula_truth import formulas, is_right
 
 from derive import Derivation, load
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.corrections.advice import MAX_LENGTH
 from derive.verification.documents.judgement import judge_document
-from derive.verification.hand import judge
+from derive.verification.hand_derivation_files import judge
 from derive.verification.judging.reference_system import ReferenceSystem
 from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula

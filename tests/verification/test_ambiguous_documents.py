@@ -7,7 +7,7 @@ import pytest
 
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
-from derive.verification.files import judge_file
+from derive.verification.source_files import judge_file
 from solvers.app.cli import main
 from solvers.runge_kutta.order_conditions import order
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from derive.reading.document import Document
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import macros_of
 from derive.verification.documents.pages.annotation import annotate, check_annotation
 from derive.verification.documents.pages.latex_notes import latex_notes

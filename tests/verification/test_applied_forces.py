@@ -6,7 +6,7 @@ import pytest
 
 from derive.formulas.expression import parse
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
-from derive.verification.files import judge_file
+from derive.verification.source_files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
 ROBOT = r"""

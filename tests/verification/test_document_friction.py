@@ -4,7 +4,7 @@ from pathlib import Path
 
 from derive import Derivation, load
 from derive.handout.derivation_document import write_document
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
-from derive.verification.files import judge_file
+from derive.verification.source_files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
 CART = r"""

@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from derive.reading.document import Document
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import formulas
 from derive.verification.documents import judgement
-from derive.verification.documents.interpretation import Work
 from derive.verification.documents.judgement import judge_document
-from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.letter_meanings import Work
+from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.statements import Occurrence, Translated, translated
 

@@ -10,11 +10,11 @@ from derivations import DERIVATIONS
 from document_mutants import Mutant, mutants
 from shared_documents import shared
 
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.pages.verdict_page import page
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
-from derive.verification.files import judge_file
+from derive.verification.source_files import judge_file
 from solvers.io.toml_input import InputError
 from solvers.runge_kutta.order_conditions import order
 

@@ -17,8 +17,8 @@ from mutation import Mutation
 from derive import Derivation, load, names
 from derive.system.files.shipped import large_names
 from derive.system.files.system_catalogue import published
-from derive.verification import hand, quantity_verdicts
-from derive.verification.hand import EQUATIONS, HEADER, judge
+from derive.verification import hand_derivation_files, quantity_verdicts
+from derive.verification.hand_derivation_files import EQUATIONS, HEADER, judge
 from derive.verification.judging.reference_system import ReferenceSystem
 from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula
@@ -52,7 +52,7 @@ QUICK = [name for name in names() if name not in SLOW]
 def without_advice(monkeypatch: pytest.MonkeyPatch) -> None:
     """Verdicts without corrections, which have tests of their own; files share a system."""
     monkeypatch.setattr(quantity_verdicts, "advised", lambda verdict, *_: verdict)
-    monkeypatch.setattr(hand, "load", cache(hand.load))
+    monkeypatch.setattr(hand_derivation_files, "load", cache(hand_derivation_files.load))
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.hand import judge
+from derive.verification.hand_derivation_files import judge
 from derive.verification.judging.verdict import Verdict
 
 MASS = """

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.hand import EQUATIONS, judge
+from derive.verification.hand_derivation_files import EQUATIONS, judge
 from solvers.app.cli import main
 from solvers.io.toml_input import InputError
 

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from derive import Derivation, load
-from derive.verification.hand import judge
+from derive.verification.hand_derivation_files import judge
 from derive.verification.judging.engine import IN_NUMBERS, UNDECIDED
 from derive.verification.judging.other_solutions import without_outer_function
 from derive.verification.judging.reference_system import ReferenceSystem

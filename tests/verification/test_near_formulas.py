@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from derive.verification.documents.jets import Jet, evaluated
 from derive.verification.documents.numbers.single_mistakes import is_near
-from derive.verification.documents.rules.corrections import in_brackets, inserted
+from derive.verification.documents.rules.corrected_formulas import in_brackets, inserted
 from derive.verification.judging.verdict import Correction
 
 SPEED = np.linspace(0.3, 1.7, 8)[None]

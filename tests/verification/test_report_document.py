@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from shared_documents import shared
 
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import Statement
 from derive.verification.documents.formula_translation import FormulaTranslator, LetterNotation

@@ -11,10 +11,10 @@ from derive.formulas.evaluation.generic_values import is_small, sample
 from derive.formulas.evaluation.numeric import Evaluator
 from derive.handout.derivation_document import write_document
 from derive.mechanics.routhian import Routhian
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import hints
-from derive.verification.hand import judge
+from derive.verification.hand_derivation_files import judge
 from derive.verification.judging.verdict import Verdict
 
 r, phi, g = sp.symbols("r phi g", real=True)

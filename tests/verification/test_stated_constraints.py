@@ -7,11 +7,11 @@ import sympy as sp
 
 from derive import Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.handout.derivation_document import write_document
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import _read, judge_document
 from derive.verification.documents.letters.energies import has_rotations
 from derive.verification.documents.letters.hints import hints
-from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.statements import translated
 

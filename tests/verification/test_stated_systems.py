@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from derivations import DERIVATIONS
 
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.system.files.system_catalogue import load
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.hints import Hints, hints

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from derive.verification.files import judge_file
+from derive.verification.source_files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
 CART = r"""

@@ -15,6 +15,7 @@ from derive.formulas.budget import is_expandable
 from derive.formulas.expression import parse
 from derive.mechanics.energies.reduction import reduced
 from derive.verification.corrections.goals import Goal, goals
+from derive.verification.corrections.mistake_search import Search
 from derive.verification.corrections.replacement import (
     applied,
     correction,
@@ -22,7 +23,6 @@ from derive.verification.corrections.replacement import (
     is_unique,
     replaced,
 )
-from derive.verification.corrections.search import Search
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.judging.derived import printed_formula
 from derive.verification.judging.motion_verdicts import fits

@@ -4,8 +4,8 @@ import ast
 import re
 
 from derive.formulas.syntax import is_sum, syntax_tree
+from derive.verification.corrections.mistake_search import Change
 from derive.verification.corrections.pieces import FormulaPart
-from derive.verification.corrections.search import Change
 from derive.verification.judging.verdict import Correction
 
 

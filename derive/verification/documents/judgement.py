@@ -17,7 +17,7 @@ from derive.reading.latex.walking import (
     with_letters,
 )
 from derive.verification.documents.formula_translation import FormulaTranslator
-from derive.verification.documents.interpretation import (
+from derive.verification.documents.letter_meanings import (
     Work,
     alternatives,
     general_verdicts,
@@ -27,9 +27,9 @@ from derive.verification.documents.interpretation import (
 )
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
-from derive.verification.documents.letters.letter_search import implied_rates, letters_of
-from derive.verification.documents.letters.positions import sections
+from derive.verification.documents.letters.letter_roles import implied_rates, letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
+from derive.verification.documents.letters.stated_positions import sections
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -37,8 +37,8 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
 )
 from derive.verification.documents.rules.consequences import weighed
-from derive.verification.documents.rules.corrections import corrected
-from derive.verification.documents.rules.corrections import written as latex_of
+from derive.verification.documents.rules.corrected_formulas import corrected
+from derive.verification.documents.rules.corrected_formulas import written as latex_of
 from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import (

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Finding, Program, ProgramEquation
-from derive.verification.documents.interpretation import (
+from derive.verification.documents.letter_meanings import (
     alternatives,
     interpretation,
     judge_of,
@@ -20,7 +20,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
 )
 from derive.verification.documents.rules.consequences import weighed
-from derive.verification.documents.rules.corrections import inserted, source_span
+from derive.verification.documents.rules.corrected_formulas import inserted, source_span
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.documents.text import FormulaText

@@ -4,7 +4,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from derive.reading.documents import read_document
+from derive.reading.document_formats import read_document
 from derive.verification.report.details import DETAILS
 from derive.verification.report.equation import Details, ReportEquation
 

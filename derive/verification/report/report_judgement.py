@@ -14,7 +14,7 @@ from derive.verification.judging.verdict import Verdict
 from derive.verification.report import contexts
 from derive.verification.report.contexts import STRAY
 from derive.verification.report.equation import ReportEquation
-from derive.verification.report.method import STAGES, NotRungeKuttaError, coefficients
+from derive.verification.report.printed_tableau import STAGES, NotRungeKuttaError, coefficients
 from derive.verification.report.report_equations import equations
 from solvers.io.suggestion import did_you_mean
 

@@ -43,7 +43,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Print the verdicts; return 1 if one is wrong, 2 or 3 if some or all are not judged."""
     if arguments.equations or arguments.annotate or arguments.system or arguments.names:
-        from derive.commands.verify_sources import verify
+        from derive.commands.source_verdicts import verify
         from derive.verification.documents.letters.hints import hints
         from solvers.runge_kutta.order_conditions import order
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from solvers.equations.forms import fastest_form
 from solvers.equations.module import has_perturbation
-from solvers.integration.loops import compiled_loop, passage
+from solvers.integration.loops import compiled_loop, singular_passage
 from solvers.integration.problem.problem import Problem
 from solvers.integration.results.recorder import Outcome
 from solvers.runge_kutta.method_catalogue import load
@@ -43,7 +43,7 @@ def global_error_estimate(problem: Problem, t: Array, y: Array) -> Array:
     )
     tighter, program = compiled_loop.select(tighter, lanes=False)
     outcome = Outcome.at_start(tighter)
-    passage.run(tighter, outcome, program)
+    singular_passage.run(tighter, outcome, program)
     states, result = outcome.rows()[1], np.full_like(y, np.nan)
     result[:, : len(states)] = np.abs(y[:, : len(states)] - states.T)
     return result

@@ -14,7 +14,7 @@ from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops.compiled_loop import compile_ahead, loop, obstacle
-from solvers.integration.loops.passage import rerun
+from solvers.integration.loops.singular_passage import rerun
 from solvers.integration.problem.problem import Options, Problem
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.method_catalogue import load

@@ -9,7 +9,7 @@ from solvers.equations.energy import conserves_energy, equilibrium_state
 from solvers.equations.module import has_function
 from solvers.integration.checks.accuracy_warnings import changed_energy
 from solvers.integration.checks.predictability import PredictabilityWarning
-from solvers.integration.loops.passage import rerun
+from solvers.integration.loops.singular_passage import rerun
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status
 from solvers.integration.results.ensemble_solution import Ensemble

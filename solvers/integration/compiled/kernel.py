@@ -64,7 +64,7 @@ static const int SINE[] = {{{sine}}}, RATE[] = {{{rate}}};
 
 #: Handwritten files of the loop over steps, in their order.
 LOOP_FILES = (
-    *("within_step.h", "brackets.h", "substeps.h", "motions.h", "event_brackets.h"),
+    *("within_step.h", "event_location.h", "substeps.h", "motions.h", "event_brackets.h"),
     *("cubic.h", "process_step.h", "finish_step.h", "advance.h", "integrator.c", "probe.h"),
 )
 

@@ -100,5 +100,5 @@ def check(library: ctypes.CDLL, sizes: Mapping[str, int]) -> None:
         if size != there:
             raise LayoutError(
                 f"structure {name} has {there} bytes in C and {size} in Python: one of the members "
-                "in c/layout.h is not of eight bytes, or layout.py reads it as another type"
+                "in c/layout.h is not of eight bytes, or memory_layout.py reads it as another type"
             )

@@ -145,7 +145,7 @@ static const double INTEGRALS[EXTENSION_NODES][EXTENSION_NODES] = {{
 static const double EXTENDED[EXTENSION_NODES][EXTENSION_NODES + 1] = {{
 {extended}
 }};
-{extension_h}
+{event_polynomials_h}
 {roots_h}"""
 
 WEIGHTED_SUM = """\
@@ -264,7 +264,7 @@ def extension_text(tableau: Tableau) -> str:
         first=",\n".join(f"{{{_rows(first)}}}" for first in extension.firsts),
         integrals=_rows(extension.integrals),
         extended=_rows(extension.extended.T),
-        extension_h=source("extension.h"),
+        event_polynomials_h=source("event_polynomials.h"),
         roots_h=source("roots.h"),
     )
 

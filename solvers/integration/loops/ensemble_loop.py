@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from solvers.integration.compiled.kernel import Batch, Kernel
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import python_loop
-from solvers.integration.loops.passage import rerun
+from solvers.integration.loops.singular_passage import rerun
 from solvers.integration.problem.events import Extremum
 from solvers.integration.problem.inputs import History
 from solvers.integration.problem.problem import EventFunction, Problem

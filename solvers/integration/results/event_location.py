@@ -2,8 +2,8 @@
 
 The polynomial over the step has zeros between which an event occurs at most once. In each such part
 two or three shorter steps near the estimate of the polynomial make the bracket so narrow that a
-cubic gives all other states. The compiled loop does the same in ``compiled/c/extension.h``,
-``roots.h`` and ``brackets.h``.
+cubic gives all other states. The compiled loop does the same in ``compiled/c/event_polynomials.h``,
+``roots.h`` and ``event_location.h``.
 """
 
 from collections.abc import Callable, Iterable

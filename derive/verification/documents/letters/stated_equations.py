@@ -29,7 +29,7 @@ from derive.verification.documents.letters.energies import (
 )
 from derive.verification.documents.letters.implied_energies import inertial, potential_of
 from derive.verification.documents.letters.letters import MATRICES, Letters
-from derive.verification.documents.letters.positions import stated_candidates
+from derive.verification.documents.letters.stated_positions import stated_candidates
 from derive.verification.documents.statements import DocumentFormula
 
 #: Letters of reactions.

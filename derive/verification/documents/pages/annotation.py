@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from derive.reading.document import Document
-from derive.reading.documents import kinds
+from derive.reading.document_formats import kinds
 from derive.verification.documents.pages.latex_notes import latex_notes
 from derive.verification.documents.pages.markdown_notes import markdown_notes, notebook_notes
 from derive.verification.documents.pages.verdict_page import page

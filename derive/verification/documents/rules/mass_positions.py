@@ -8,7 +8,7 @@ import sympy as sp
 
 from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.letters.positions import COLUMN, POINT
+from derive.verification.documents.letters.stated_positions import COLUMN, POINT
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.judging.reference_system import time_derivative

@@ -1,5 +1,5 @@
-/* Structures that C and Python share. layout.py reads this file and builds the same structures:
-   one member a line, of eight bytes or an array of such; a `real` is a double in memory. */
+/* Structures that C and Python share. memory_layout.py reads this file and builds the same: one member
+   a line, of eight bytes or an array of such; a `real` is a double in memory. */
 
 /* A state in every lane: nothing but numbers, so that it can be copied number by number. */
 typedef struct {

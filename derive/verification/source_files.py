@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from derive.reading.document import Document
-from derive.reading.documents import kinds, read_document
+from derive.reading.document_formats import kinds, read_document
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.program_reader import known_languages, read_program
 from derive.verification.documents.judgement import judge_document

@@ -13,10 +13,10 @@ from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.pages.annotation import annotate, check_annotation
 from derive.verification.documents.pages.verdict_table import document_lines, document_record
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
-from derive.verification.files import judge_file
-from derive.verification.hand import HandDerivation, judge
+from derive.verification.hand_derivation_files import HandDerivation, judge
 from derive.verification.judging.verdict import VerdictName, table_width, verdict_rows, wrapped
 from derive.verification.report.report_judgement import OrderOf
+from derive.verification.source_files import judge_file
 from solvers.io.terminal import text_table
 from solvers.io.toml_input import InputError
 

@@ -9,21 +9,21 @@ from derive.verification.documents.letters.candidates import SystemCandidate, ca
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
+from derive.verification.documents.letters.further_systems import templates
 from derive.verification.documents.letters.hints import Hints
-from derive.verification.documents.letters.letter_search import letters_of
+from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.documents.letters.positions import (
+from derive.verification.documents.letters.stated_equations import StatedEquations
+from derive.verification.documents.letters.stated_positions import (
     POINT,
     stated_candidates,
     stated_systems,
 )
-from derive.verification.documents.letters.stated_equations import StatedEquations
-from derive.verification.documents.letters.templates import templates
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.consequences import FOLLOWS
-from derive.verification.documents.rules.corrections import corrected
+from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain

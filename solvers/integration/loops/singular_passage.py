@@ -21,7 +21,7 @@ from solvers.equations.number_checks import NotFiniteNumberError
 from solvers.equations.singularities import NEAR, distance_from_singularity
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
-from solvers.integration.loops import compiled_loop, passage, python_loop
+from solvers.integration.loops import compiled_loop, python_loop
 from solvers.integration.problem.problem import Problem, shortest_step
 from solvers.integration.problem.status import Status
 from solvers.integration.results.event_location import Curve
@@ -314,5 +314,5 @@ def rerun(problem: Problem) -> Outcome:
     if problem.backend != "python" and not compiled_loop.obstacle(problem):
         with suppress(NoCompilerError):  # the first run has reported it
             program = compiled_loop.loop(problem)
-    passage.run(problem, outcome, program)
+    run(problem, outcome, program)
     return outcome
