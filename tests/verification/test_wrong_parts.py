@@ -56,6 +56,11 @@ $$\frac{d}{dt}\frac{\partial L}{\partial\dot r}
   = -\frac{4 a^2 m\dot r^2}{r^5} + m\ddot r (\frac{a^2}{r^4} + 1)$$
 $$m (\frac{a^2}{r^4} + 1) \ddot r = \frac{2 a^2 m\dot r^2}{r^5}$$
 """
+INERTIA = r"""
+$$T = \frac12 \left(J + a^2 m\right) \dot\theta^2, \quad V = -a g m\cos\theta$$
+$$\left(J + a^2 m\right) \ddot\theta + a g m\sin\theta = 0$$
+$$\ddot\theta = - \frac{a g m\sin\theta}{J + a^2 m}$$
+"""
 SPHERE = r"""
 $$L = \frac12 m l^2\left(\dot\theta^2 + \dot\phi^2\sin^2\theta\right) + m g l\cos\theta$$
 $$m l^2\ddot\theta = -m g l\sin\theta + m l^2\dot\phi^2\sin\theta\cos\theta$$
@@ -112,6 +117,7 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
         (TRACK, r"+ m\ddot r (", r"+ a\ddot r (", r"a\ddot r", r"m \ddot"),
         (STRETCHED, r"\frac{m r^2\dot\theta^2}", r"\frac{m r^3\dot\theta^2}",
          r"\frac{m r^3\dot\theta^2}{2}", r"+ \frac{m r^2 \dot\theta^2}{2} + \frac{m\dot r^2}"),
+        (INERTIA, r"{a g m", "{a g", r"a g\sin\theta", r"= - \frac{a g m"),
         (SPHERE, r"$$m l^2\ddot", r"$$m l^5\ddot", r"m l^5\ddot\theta", r"l^2 m"),
     ],
 )  # fmt: skip

@@ -42,6 +42,10 @@ def corrected(
         if span is None:
             return Corrected(correction=written(verdict.correction, letters))
         new = written(one.correct, letters)
+        if one.wrong.startswith("-") and not latex[slice(*span)].startswith("-"):
+            # the sign stands before a fraction, of which this is the numerator
+            is_plain = new.startswith("-") and not is_sum(syntax_tree(one.correct))
+            new = new[1:] if is_plain else rf"-\left({new}\right)"
         new = in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
         changes.append((span, new))
     changes.sort(reverse=True)
