@@ -332,14 +332,14 @@ def test_blank_exercises_show_no_derived_formula(documents, name: str) -> None:
 
 def test_blank_exercises_state_the_positions_from_which_all_follows(documents, derivation) -> None:
     exercises, key = with_exercises(documents("double_pendulum"), "blank", 0)
-    asked = [equation.value for equation in key.equations]
+    requested = [equation.value for equation in key.equations]
     stated = [equation.value for equation in exercises.equations if not equation.is_blank]
     system = derivation("double_pendulum").system
     velocities = [sp.Matrix(mass.position).jacobian(system.q) * sp.Matrix(system.qdot)
         for mass in system.masses]  # fmt: skip
     for mass, velocity in zip(system.masses, velocities, strict=True):
         assert sp.Matrix(mass.position) in stated
-        assert velocity in asked
+        assert velocity in requested
 
 
 @pytest.mark.long("more cases of the same kind", keep=3)

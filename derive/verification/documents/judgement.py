@@ -22,7 +22,6 @@ from derive.verification.documents.letter_meanings import (
     alternatives,
     general_verdicts,
     interpretation,
-    judge_of,
     unopposed,
 )
 from derive.verification.documents.letters.convention import convention
@@ -96,13 +95,12 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             if found.match is None:
                 break
             candidate = found.match.candidate
-            judge = judge_of(part, found.letters, candidate)
             titles.append(candidate.title)
-            own = judge.verdicts(remaining)
+            own = found.judges.verdicts(candidate)
             is_stated, is_partial = hints is not None, work.left < 0
             verdicts = [*weighed(own, candidate, found.doubts, is_stated, is_partial)]
             conventions.append(convention(candidate))
-            contrary = [*alternatives(part, found, verdicts, written)]
+            contrary = [*alternatives(found, verdicts, written)]
             others += contrary
             verdicts = [*unopposed(verdicts, contrary)]
             for formula, result in verdicts:

@@ -55,6 +55,8 @@ MAX_VERIFIED = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
+Results = Sequence[tuple[DocumentFormula, SideVerdict]]
+
 
 @dataclass
 class Work:
@@ -74,11 +76,56 @@ class Work:
         return self.left >= 0
 
 
+class Judges:
+    """Judges of a document's formulas by systems that can be meant, and their verdicts."""
+
+    def __init__(self, statements: Translated, letters: Letters) -> None:
+        self.statements, self.letters = statements, letters
+        # by identity, for as long as the candidate exists
+        self._judges: dict[int, tuple[SystemCandidate, Judge]] = {}
+        self._verdicts: dict[int, Results] = {}
+
+    def judge(self, candidate: SystemCandidate) -> Judge:
+        """The judge with the meanings of a candidate."""
+        if id(candidate) not in self._judges:
+            self._judges[id(candidate)] = candidate, self._judge(candidate)
+        return self._judges[id(candidate)][1]
+
+    def _judge(self, candidate: SystemCandidate) -> Judge:
+        statements, formulas = self.statements, self.statements.formulas
+        letters = _with_order(statements, self.letters, candidate)
+        meanings = resolved(candidate, letters, formulas, statements.derivatives)
+        given, stating = (
+            [formulas[number].occurrence for number in numbers]
+            for numbers in (candidate.given, candidate.stating)
+        )
+        namespace = DocumentNamespace(
+            system_letters(candidate), letters, formulas, statements.derivatives, meanings
+        )
+        return Judge(namespace, given, stating)
+
+    def verdicts(self, candidate: SystemCandidate) -> Results:
+        """The verdicts on all formulas."""
+        if id(candidate) not in self._verdicts:
+            judge = self.judge(candidate)
+            self._verdicts[id(candidate)] = judge.verdicts(self.statements.formulas)
+        return self._verdicts[id(candidate)]
+
+    def incorrect(self, candidate: SystemCandidate) -> list[Verdict]:
+        """The verdicts on formulas that are not correct."""
+        verdicts = (one.verdict for _, one in self.verdicts(candidate))
+        return [one for one in verdicts if one.verdict not in CORRECT]
+
+    def count_wrong(self, candidate: SystemCandidate) -> int:
+        """The number of formulas that are wrong."""
+        return [one.verdict for one in self.incorrect(candidate)].count("wrong")
+
+
 @dataclass(frozen=True)
 class Interpretation:
-    """What a document is about: its letters and the system that suits them best."""
+    """What a document is about: the system that suits its letters best, and its judges."""
 
-    letters: Letters
+    judges: "Judges"
     match: Match | None
     #: Other candidates that can be meant as well, the likeliest first.
     rivals: tuple[Match, ...] = ()
@@ -95,26 +142,26 @@ def interpretation(
     formulas, others for 1.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
-    work = work or Work()
+    judges, work = Judges(statements, letters), work or Work()
     if hints:
-        return _best(letters, statements, hints.candidates(letters), work, 0)
-    result = _best(letters, statements, _candidates(letters, statements), work)
+        return _best(judges, hints.candidates(letters), work, 0)
+    result = _best(judges, _candidates(letters, statements), work)
     if result.match is None or result.match.holding < 1:
         numbers = {"gravity": _gravity(statements)}
-        other = _best(letters, statements, _of_templates(letters, statements, numbers), work)
+        other = _best(judges, _of_templates(letters, statements, numbers), work)
         if other.match and (result.match is None or other.match.score > result.match.score):
             return other
     return result
 
 
 def _best(
-    letters: Letters,
-    statements: Translated,
+    judges: Judges,
     groups: Iterable[Sequence[SystemCandidate]],
     work: Work,
     least: float = LEAST,
 ) -> Interpretation:
     """The candidate that most formulas support, if a part of them does, and its rivals."""
+    letters, statements = judges.letters, judges.statements
     formulas, derivatives = statements.formulas, statements.derivatives
     trivial = trivial_comparisons(letters, formulas, derivatives)
     matches: list[Match] = []
@@ -139,24 +186,21 @@ def _best(
     if best is None:
         # of a stated system another formula can follow, such as for small angles
         stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
-        fitting = (one for one in stated if _fits(statements, letters, one.candidate))
-        return Interpretation(letters, next(fitting, None))
-    best = _with_direction(best, matches, statements, letters)
-    best, is_decided = _with_fewest_slips(best, matches, statements, letters)
-    doubts = {} if is_decided else _doubts(best, matches, statements, letters)
-    return Interpretation(letters, best, tuple(_rivals(best, matches)), doubts)
+        fitting = (one for one in stated if _fits(judges, one.candidate))
+        return Interpretation(judges, next(fitting, None))
+    best = _with_direction(best, matches, judges)
+    best, is_decided = _with_fewest_slips(best, matches, judges)
+    doubts = {} if is_decided else _doubts(best, matches, judges)
+    return Interpretation(judges, best, tuple(_rivals(best, matches)), doubts)
 
 
-def _fits(statements: Translated, letters: Letters, candidate: SystemCandidate) -> bool:
+def _fits(judges: Judges, candidate: SystemCandidate) -> bool:
     """Whether a formula is verified by a system, and none is wrong."""
-    verdicts = judge_of(statements, letters, candidate).verdicts(statements.formulas)
-    kinds = {one.verdict.verdict for _, one in verdicts}
+    kinds = {one.verdict.verdict for _, one in judges.verdicts(candidate)}
     return "verified" in kinds and "wrong" not in kinds
 
 
-def _with_direction(
-    best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
-) -> Match:
+def _with_direction(best: Match, matches: Sequence[Match], judges: Judges) -> Match:
     """Of stated positions with both directions of gravity, that with fewest wrong formulas."""
     same = [
         one for one in matches
@@ -164,45 +208,30 @@ def _with_direction(
     ]  # fmt: skip
     if best.candidate.basis != "positions" or not best.failed or len(same) < 2:
         return best
-
-    def wrong(match: Match) -> int:
-        judge = judge_of(statements, letters, match.candidate)
-        return sum(one.verdict.verdict == "wrong" for _, one in judge.verdicts(statements.formulas))
-
     first: dict[int, Match] = {}
     for one in (best, *same):
         first.setdefault(id(one.candidate.system), one)
-    return min(list(first.values())[:MAX_DIRECTIONS], key=wrong)
+    tried = [*first.values()][:MAX_DIRECTIONS]
+    return min(tried, key=lambda one: judges.count_wrong(one.candidate))
 
 
-def _doubts(
-    best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
-) -> dict[int, frozenset[int]]:
+def _doubts(best: Match, matches: Sequence[Match], judges: Judges) -> dict[int, frozenset[int]]:
     """Formulas that do not hold, but do by other stated energies with as much support.
 
     As much is also as many formulas that fail by one term each: the score does not show that one
     is missing. Equations, which follow from energies, must not contradict more formulas than these.
     """
 
-    def judged(match: Match) -> list[Verdict]:
-        """The verdicts on formulas that are not correct."""
-        results = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
-        return [one.verdict for _, one in results if one.verdict.verdict not in CORRECT]
-
     def has_as_few_slips(match: Match) -> bool:
         explains_less = match.compared < best.compared  # such as no positions
-        is_less = explains_less and not match.candidate.is_of_equations
-        if is_less or len(match.failed) > len(best.failed):
+        leaves_out = explains_less and not match.candidate.is_of_equations
+        if leaves_out or len(match.failed) > len(best.failed):
             return False
-        wrong = judged(match)
-        return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(judged(best))
+        wrong, own = (judges.incorrect(one.candidate) for one in (match, best))
+        return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
 
     stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
-    if (
-        stated
-        and _is_decisive(best, matches)
-        and [one.verdict for one in judged(best)].count("wrong") == 1
-    ):
+    if stated and _is_decisive(best, matches) and judges.count_wrong(best.candidate) == 1:
         return {}
     result: dict[int, frozenset[int]] = {}
     for match in stated:
@@ -227,9 +256,7 @@ def _is_decisive(best: Match, matches: Sequence[Match]) -> bool:
     )
 
 
-def _with_fewest_slips(
-    best: Match, matches: Sequence[Match], statements: Translated, letters: Letters
-) -> tuple[Match, bool]:
+def _with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> tuple[Match, bool]:
     """The match of stated energies, or one of positions or a known system with fewer slips.
 
     What follows from a slip is none. Positions that do not lead to the stated energies are one.
@@ -237,26 +264,28 @@ def _with_fewest_slips(
     """
     if best.candidate.basis != "energies":
         return best, False
-    written = {p for one in statements.formulas for p in one.words} & {*letters.parameters}
+    formulas, letters = judges.statements.formulas, judges.letters
+    written = {p for one in formulas for p in one.words} & {*letters.parameters}
     others = dict[str, Match]()
     for match in sorted(matches, key=lambda one: -one.score):
         one = match.candidate
         if one.basis != "energies" and not one.lacking and written <= one.letters:
             others.setdefault(one.basis, match)
     is_contradicted = "positions" in others and bool(others["positions"].failed)
-    has_abbreviations = len(_abbreviations(statements, letters)) > 0
-    if not others or (len(best.failed) + is_contradicted < 2 and not has_abbreviations):
+    abbreviations = _abbreviations(formulas, letters)
+    if not others or (len(best.failed) + is_contradicted < 2 and not abbreviations):
         return best, False
 
     def slips(match: Match) -> float:
-        verdicts = judge_of(statements, letters, match.candidate).verdicts(statements.formulas)
+        verdicts = judges.verdicts(match.candidate)
         wrong = [(formula, one) for formula, one in verdicts if one.verdict.verdict == "wrong"]
         own = [formula for formula, one in wrong if FOLLOWS not in one.verdict.note]
-        if is_contradicted and match.candidate.basis == "energies":  # by wrong positions
+        has_wrong_positions = is_contradicted and match.candidate.basis == "energies"
+        if has_wrong_positions:
             own = [one for one in own if not POINT.match(one.subject.removesuffix("_dot"))]
-        if len(own) == 1 and own[0].subject in _abbreviations(statements, letters):
+        if len(own) == 1 and own[0].subject in abbreviations:
             return -1  # all that contains it is right
-        return len(own) + (is_contradicted and match.candidate.basis == "energies")
+        return len(own) + has_wrong_positions
 
     matched = {**others, "energies": best}
     fewest = {basis: slips(match) for basis, match in matched.items()}
@@ -265,11 +294,11 @@ def _with_fewest_slips(
     return matched[first], fewest[first] < fewest["energies"]
 
 
-def _abbreviations(statements: Translated, letters: Letters) -> set[str]:
+def _abbreviations(formulas: Sequence[DocumentFormula], letters: Letters) -> set[str]:
     """Names that a document defines by others, and uses several times."""
-    used = Counter(word for one in statements.formulas for word in one.words if word != one.subject)
+    used = Counter(word for one in formulas for word in one.words if word != one.subject)
     known = {*letters.quantities, *letters.coordinates, *letters.momenta, *letters.parameters}
-    subjects = {one.subject for one in statements.formulas} - known - {""}
+    subjects = {one.subject for one in formulas} - known - {""}
     return {name for name in subjects if used[name] >= SEVERAL and name.isidentifier()}
 
 
@@ -349,19 +378,6 @@ def _gravity(statements: Translated) -> str:
     return result[0] if result else "1"
 
 
-def judge_of(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Judge:
-    """The judge of a document's formulas with the meanings of a candidate."""
-    letters = _with_order(statements, letters, candidate)
-    meanings = resolved(candidate, letters, statements.formulas, statements.derivatives)
-    system, formulas = system_letters(candidate), statements.formulas
-    given, stating = (
-        [formulas[number].occurrence for number in numbers]
-        for numbers in (candidate.given, candidate.stating)
-    )
-    namespace = DocumentNamespace(system, letters, formulas, statements.derivatives, meanings)
-    return Judge(namespace, given, stating)
-
-
 def general_verdicts(statements: Translated) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
     """Yield statements with an index that hold for any motion, such as q̇_i = ∂H/∂p_i."""
     general = tuple(one for one in statements.formulas if one.index)
@@ -392,17 +408,15 @@ JUDGED = (*CORRECT, "wrong")
 #: The reason of a verdict on a formula that another meaning of the letters does not refute.
 OPPOSED = "it is wrong with these meanings of the letters, but holds with others that fit too"
 
-Results = Sequence[tuple[DocumentFormula, SideVerdict]]
-
 
 def alternatives(
-    statements: Translated, result: Interpretation, results: Results, written: Mapping[str, str]
+    result: Interpretation, results: Results, written: Mapping[str, str]
 ) -> Iterator[Alternative]:
     """Yield the rivals of the meaning that is taken which change a verdict or a correction."""
     assert result.match
     seen: set[tuple[object, ...]] = set()
     for rival in result.rivals[:MAX_ALTERNATIVES]:
-        pairs = _rejudged(statements, result, rival, results)
+        pairs = _rejudged(result, rival, results)
         own = sum(one.verdict.verdict not in CORRECT for _, one, _ in pairs)
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
         taken, rival_one = result.match.candidate, rival.candidate
@@ -417,16 +431,16 @@ def alternatives(
 
 
 def _rejudged(
-    statements: Translated, found: Interpretation, rival: Match, results: Results
+    result: Interpretation, rival: Match, results: Results
 ) -> list[tuple[DocumentFormula, SideVerdict, SideVerdict]]:
     """The formulas that do not hold with both meanings, and their verdicts with each."""
-    assert found.match
-    failed = found.match.failed | rival.failed
+    assert result.match
+    failed = result.match.failed | rival.failed
     if not failed:
         return []
-    judge = judge_of(statements, found.letters, rival.candidate)
-    pairs = ((k, *pair) for k, pair in enumerate(results) if k in failed)
-    return [(formula, result, judge.verdict(formula)) for _, formula, result in pairs]
+    judge = result.judges.judge(rival.candidate)
+    pairs = (pair for k, pair in enumerate(results) if k in failed)
+    return [(formula, one, judge.verdict(formula)) for formula, one in pairs]
 
 
 def _differences(

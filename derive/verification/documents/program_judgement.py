@@ -8,7 +8,6 @@ from derive.reading.programs.program import Finding, Program, ProgramEquation
 from derive.verification.documents.letter_meanings import (
     alternatives,
     interpretation,
-    judge_of,
     unopposed,
 )
 from derive.verification.documents.letters.convention import convention
@@ -43,13 +42,12 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         if found.match is None:
             judged += [_plain(equation, NO_SYSTEM) for equation in function.equations]
             continue
-        titles.append(found.match.candidate.system.title)
-        conventions.append(convention(found.match.candidate))
-        judge = judge_of(statements, found.letters, found.match.candidate)
         candidate = found.match.candidate
-        plain = [(formula, judge.verdict(formula)) for formula in formulas]
-        results = [*weighed(plain, candidate, found.doubts, hints is not None)]
-        contrary = [*alternatives(statements, found, results, {})]
+        titles.append(candidate.system.title)
+        conventions.append(convention(candidate))
+        verdicts = found.judges.verdicts(candidate)
+        results = [*weighed(verdicts, candidate, found.doubts, hints is not None)]
+        contrary = [*alternatives(found, results, {})]
         others += contrary
         pairs = zip(function.equations, unopposed(results, contrary), strict=True)
         judged += [_judged(equation, result) for equation, (_, result) in pairs]

@@ -44,8 +44,10 @@ def corrected(
         new = written(one.correct, letters)
         if one.wrong.startswith("-") and not latex[slice(*span)].startswith("-"):
             # the sign stands before a fraction, of which this is the numerator
-            is_plain = new.startswith("-") and not is_sum(syntax_tree(one.correct))
-            new = new[1:] if is_plain else rf"-\left({new}\right)"
+            if is_sum(syntax_tree(one.correct)):
+                new = rf"-\left({new}\right)"
+            else:
+                new = new[1:] if new.startswith("-") else f"-{new}"
         new = in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
         changes.append((span, new))
     changes.sort(reverse=True)

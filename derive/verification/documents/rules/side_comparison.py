@@ -29,18 +29,18 @@ MAX_DENOMINATOR = 100
 SCALED = "its rows are those of equations with another factor"
 
 #: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
-KINDS: dict[str, tuple[sp.Expr, int]] = {
+FREQUENCY_LETTERS: dict[str, tuple[sp.Expr, int]] = {
     **dict.fromkeys(("omega", "Omega", "w"), (sp.S.One, 1)),
     **dict.fromkeys(("f", "nu"), (1 / (2 * sp.pi), 1)),
     **dict.fromkeys(("T", "P", "tau"), (2 * sp.pi, -1)),
 }
 #: Words of sentences about them.
-ABOUT = re.compile(
+ABOUT_FREQUENCIES = re.compile(
     "fre[qc]uen|fréquen|frequenz|pulsa|p[eé]riod|oscill|schwing|eigen|harmoni|natural|周期|频率"
     "|頻率|振動数",
     re.IGNORECASE,
 )
-NOTE = "it is that of small motions"
+OF_SMALL_MOTIONS = "it is that of small motions"
 
 
 class SideComparison:
@@ -252,24 +252,24 @@ class Frequencies:
         system = self._namespace.derivation.system
         letter, _, index = name.partition("_")
         value = self._namespace.value(side.text)
-        is_named = letter in KINDS and not isinstance(value, sp.MatrixBase)
+        is_named = letter in FREQUENCY_LETTERS and not isinstance(value, sp.MatrixBase)
         has_place = 0 < len(system.q) <= MAX_INVERSE and not system.constraints
         if not is_named or not has_place or self._linear.place is None:
             return None
         if value == 0 or not value.free_symbols <= {*system.params}:
             return None
         M, D, K, _ = self._linear.matrices
-        factor, sign = KINDS[letter]
+        factor, sign = FREQUENCY_LETTERS[letter]
         square = (value ** sp.Rational(1, power) / factor) ** (2 * sign)
         is_zero = self._namespace.model.context.is_zero
         if is_zero((K - square * M).det()):
-            return plain("verified", formula, NOTE)
+            return plain("verified", formula, OF_SMALL_MOTIONS)
         if len(system.q) > 1:
             return None
         required = K[0] / M[0]
         if is_zero(square - required + (D[0] / M[0]) ** 2 / 4):
-            return plain("verified", formula, f"{NOTE} with friction")
-        is_about = index in ("", "0", "n") and ABOUT.search(formula.occurrence.prose)
+            return plain("verified", formula, f"{OF_SMALL_MOTIONS} with friction")
+        is_about = index in ("", "0", "n") and ABOUT_FREQUENCIES.search(formula.occurrence.prose)
         if not is_about or not self._is_only_one(required) or any(D):
             return None
         if sp.cancel(square).free_symbols != sp.cancel(required).free_symbols:
