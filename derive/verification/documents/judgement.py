@@ -87,15 +87,16 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     work = Work()
     subjects = [*sections(statements.formulas)]
     while subjects:
-        remaining, count = subjects.pop(0), 0
+        remaining, count, moving = subjects.pop(0), 0, set[str]()
         while remaining and count < (1 if hints else MAX_SYSTEMS):
             count += 1
             part = replace(statements, formulas=remaining)
-            found = interpretation(part, hints, work)
+            found = interpretation(part, hints, work, moving)
             if found.match is None:
                 break
             candidate = found.match.candidate
             titles.append(candidate.title)
+            moving.update(candidate.coordinates)
             own = found.judges.verdicts(candidate)
             is_stated, is_partial = hints is not None, work.left < 0
             verdicts = [*weighed(own, candidate, found.doubts, is_stated, is_partial)]

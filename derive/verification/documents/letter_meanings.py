@@ -2,8 +2,9 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
@@ -134,19 +135,25 @@ class Interpretation:
 
 
 def interpretation(
-    statements: Translated, hints: Hints | None = None, work: Work | None = None
+    statements: Translated,
+    hints: Hints | None = None,
+    work: Work | None = None,
+    known: Collection[str] = (),
 ) -> Interpretation:
     """Find the meaning of letters for which most formulas hold; none where no `work` is left.
 
-    If there is none, parameters without a letter are taken for numbers: gravity for that of the
+    Known systems are tried unless all coordinates are those of another system, which are `known`.
+    If none suits, parameters without a letter are taken for numbers: gravity for that of the
     formulas, others for 1.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
     judges, work = Judges(statements, letters), work or Work()
     if hints:
         return _best(judges, hints.candidates(letters), work, 0)
-    result = _best(judges, _candidates(letters, statements), work)
-    if result.match is None or result.match.holding < 1:
+    is_further = not {*letters.coordinates} <= {*known}
+    tried = _of_templates(letters, statements) if is_further else ()
+    result = _best(judges, chain(_stated(letters, statements), tried), work)
+    if is_further and (result.match is None or result.match.holding < 1):
         numbers = {"gravity": _gravity(statements)}
         other = _best(judges, _of_templates(letters, statements, numbers), work)
         if other.match and (result.match is None or other.match.score > result.match.score):
@@ -348,8 +355,8 @@ def _is_plausible(rival: SystemCandidate, best: SystemCandidate) -> bool:
     return is_simple and (is_crossed(best) or not is_crossed(rival))
 
 
-def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[SystemCandidate]]:
-    """Candidates of one system after another: of those that the document states first."""
+def _stated(letters: Letters, statements: Translated) -> Iterator[Sequence[SystemCandidate]]:
+    """Candidates of one system after another that the document states."""
     for system in stated_systems(letters, statements.formulas):
         if letters.constraints and has_rotations(system, letters, statements.formulas):
             continue
@@ -358,12 +365,12 @@ def _candidates(letters: Letters, statements: Translated) -> Iterator[Sequence[S
         tried = (replace(one, stating=numbers) for one in stated_candidates(system, letters))
         yield [one for one in tried if one.constraints or not letters.constraints]
     yield from ([one] for one in StatedEquations(letters, statements.formulas).candidates())
-    yield from _of_templates(letters, statements)
 
 
 def _of_templates(
     letters: Letters, statements: Translated, numbers: Mapping[str, str] | None = None
 ) -> Iterator[Sequence[SystemCandidate]]:
+    """Candidates of one known system after another."""
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
         is_free, has_energies = bool(letters.constraints), bool(letters.quantities)

@@ -162,15 +162,17 @@ def candidates(
             letters.orders([one.unit == "rad" for one in system.coordinates]),
             key=lambda order: _mixed([one.symbol.name for one in system.coordinates], order),
         ),
-        [*islice(_parameters(system, letters), MAX_CHOICES)],
+        [
+            (one, {**_absent(system, one), **_numbers(system, one, numbers or {})})
+            for one in islice(_parameters(system, letters), MAX_CHOICES)
+        ],
         loads(letters, "force", n),
         frictions(letters, n),
     )
     most = MAX_CONSTRAINED if system.conditions or letters.constraints else MAX_CANDIDATES
-    for (signs, offsets), order, mapping, forces, friction in islice(choices, most):
+    for (signs, offsets), order, (mapping, stated), forces, friction in islice(choices, most):
         if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
             continue  # the letter of a force of the system
-        stated = {**_absent(system, mapping), **_numbers(system, mapping, numbers or {})}
         if numbers is None or stated:
             one = SystemCandidate(system, order, signs, offsets, mapping, forces, friction, stated)
             yield from constrained(one, letters)
@@ -192,17 +194,19 @@ def constrained(candidate: SystemCandidate, letters: Letters) -> Iterator[System
     stated = tuple(one for one in letters.constraints if one.coordinates & own)
     if not all(one.coordinates <= own for one in stated):
         return
-    candidate = replace(candidate, constraints=stated)
-    for factors in _factors(min(candidate.condition_count, len(letters.multipliers))):
+    if stated:
+        candidate = replace(candidate, constraints=stated)
+    count = min(candidate.condition_count, len(letters.multipliers))
+    if not count:
+        yield candidate
+        return
+    for factors in _factors(count):
         numbered = zip(letters.multipliers, range(len(factors)), factors, strict=False)
         yield replace(candidate, multipliers=tuple(numbered))
 
 
 def _factors(count: int) -> Iterator[tuple[sp.Rational, ...]]:
     """Factors of multipliers: the same for all, or signs of each."""
-    if not count:
-        yield ()
-        return
     common = [(one,) * count for one in FACTORS]
     signs = product(*(FACTORS[:2],) * count) if count <= MAX_SIGNS else iter(())
     yield from dict.fromkeys([*common, *signs])

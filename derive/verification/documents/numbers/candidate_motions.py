@@ -262,7 +262,11 @@ class CandidateMotions:
 
     @cached_property
     def _loads(self) -> Array:
-        return np.stack([self._load(b, one) for b, one in enumerate(self._tried)])
+        loads = np.zeros((*self.shape, len(self._system.q)))
+        for b, one in enumerate(self._tried):
+            if one.forces or one.friction:
+                loads[b] = self._load(b, one)
+        return loads
 
     def _load(self, number: int, candidate: SystemCandidate) -> Array:
         loads = np.zeros((STATES, len(candidate.coordinates)))
