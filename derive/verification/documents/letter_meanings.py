@@ -4,10 +4,11 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import chain
+from itertools import chain, islice
 
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
+from derive.verification.documents.letters.dimensions import inhomogeneous_formula
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
 from derive.verification.documents.letters.further_systems import templates
@@ -29,6 +30,7 @@ from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
+from derive.verification.documents.text import FormulaText
 from derive.verification.judging.verdict import Verdict
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
@@ -132,6 +134,8 @@ class Interpretation:
     rivals: tuple[Match, ...] = ()
     #: Numbers of formulas that do not hold, and of those that state a system with which they do.
     doubts: Mapping[int, frozenset[int]] = field(default_factory=dict)
+    #: The number of the one formula whose dimensions contradict those of all others.
+    inhomogeneous: int | None = None
 
 
 def interpretation(
@@ -157,8 +161,34 @@ def interpretation(
         numbers = {"gravity": _gravity(statements)}
         other = _best(judges, _of_templates(letters, statements, numbers), work)
         if other.match and (result.match is None or other.match.score > result.match.score):
-            return other
+            result = other
+    number = inhomogeneous_formula(letters, statements.formulas, statements.derivatives)
+    return result if number is None else _without_inhomogeneous(result, number)
+
+
+def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretation:
+    """The interpretation, or one by the other formulas if these alone refute the inhomogeneous."""
+    judges = result.judges
+    letters, statements = judges.letters, judges.statements
+    result = replace(result, inhomogeneous=number)
+    if result.match and _refutes(judges, result.match.candidate, number):
+        return result
+    nothing = replace(statements.formulas[number], sides=(FormulaText("0"),), relations=())
+    others = (*statements.formulas[:number], nothing, *statements.formulas[number + 1 :])
+    tried = chain.from_iterable(_stated(letters, replace(statements, formulas=others)))
+    for candidate in islice(tried, MAX_VERIFIED):
+        if _refutes(judges, candidate, number) and judges.count_wrong(candidate) == 1:
+            trivial = frozenset[tuple[int, str]]()
+            formulas, derivatives = statements.formulas, statements.derivatives
+            match = best_matches([candidate], letters, formulas, derivatives, trivial)
+            return Interpretation(judges, next(iter(match), None), inhomogeneous=number)
     return result
+
+
+def _refutes(judges: Judges, candidate: SystemCandidate, number: int) -> bool:
+    """Whether a formula is wrong in one term by a system."""
+    _, result = judges.verdicts(candidate)[number]
+    return result.verdict.verdict == "wrong" and len(result.verdict.corrections) == 1
 
 
 def _best(

@@ -46,7 +46,8 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         titles.append(candidate.system.title)
         conventions.append(convention(candidate))
         verdicts = found.judges.verdicts(candidate)
-        results = [*weighed(verdicts, candidate, found.doubts, hints is not None)]
+        is_stated, odd = hints is not None, found.inhomogeneous
+        results = [*weighed(verdicts, candidate, found.doubts, is_stated, inhomogeneous=odd)]
         contrary = [*alternatives(found, results, {})]
         others += contrary
         pairs = zip(function.equations, unopposed(results, contrary), strict=True)

@@ -30,6 +30,8 @@ ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
 
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
+#: The note on a formula whose dimensions contradict those of all others.
+INHOMOGENEOUS = "its dimensions contradict those of all other formulas"
 UNDECIDED = "nothing else in the document decides which of them is wrong"
 #: The reason of a verdict that a system without enough support gives.
 UNSUPPORTED = (
@@ -139,6 +141,7 @@ def weighed(
     doubts: Mapping[int, frozenset[int]],
     is_stated: bool,
     is_partial: bool = False,
+    inhomogeneous: int | None = None,
 ) -> Iterator[WithVerdict]:
     """Yield the verdicts, with `context` for formulas that are wrong by too weak evidence.
 
@@ -149,7 +152,8 @@ def weighed(
     for each of its parameters, unless that is a factor of the Lagrangian, such as the mass of a
     single body, and the accelerations as written have no potential of their own; and more formulas
     that hold than such with more than one wrong term, and than slips if one is in an energy.
-    With a partial search for it, none is wrong.
+    With a partial search for it, none is wrong. That of a formula whose dimensions contradict those
+    of all others, the `inhomogeneous`, needs no more evidence if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -180,6 +184,14 @@ def weighed(
     }
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
+        if number == inhomogeneous and verdict.verdict == "wrong" and len(verdict.corrections) == 1:
+            note = joined(verdict.note, INHOMOGENEOUS)
+            note = joined(note, f"given {given}") if given else note
+            yield formula, replace(result, verdict=replace(verdict, note=note))
+            continue
+        if number == inhomogeneous and verdict.verdict == "definition":
+            yield formula, plain("context", formula, INHOMOGENEOUS)
+            continue
         if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
             result = plain("context", formula, UNSTATED)
         elif verdict.verdict == "wrong" and number in doubts:

@@ -1,0 +1,190 @@
+"""Dimensions of the letters of a document, and the formula that contradicts those of all others.
+
+Terms of a sum have the same dimension, and so have the sides of an equation; arguments of sines
+have none. These are linear equations for the exponents of mass, length and time of each letter.
+That of a mass, of gravity and of an energy are known, others follow from the document.
+"""
+
+import ast
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.verification.documents.letters.letters import MATRICES, Letters
+from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.text import order, stem
+
+#: The exponent of each letter in a dimension; those of units are names that no letter has.
+Dimension = Mapping[str, Fraction]
+MASS, LENGTH, TIME = "[mass]", "[length]", "[time]"
+UNITS = (MASS, LENGTH, TIME)
+ONE: Dimension = {}
+GRAVITY: Dimension = {LENGTH: Fraction(1), TIME: Fraction(-2)}
+ENERGY: Dimension = {MASS: Fraction(1), LENGTH: Fraction(2), TIME: Fraction(-2)}
+#: Functions of numbers without a dimension.
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan")
+#: The fewest formulas with dimensions.
+FEWEST = 2
+
+
+class _NoDimensionError(ValueError):
+    """A formula whose dimensions are not known, such as one with matrices."""
+
+
+def inhomogeneous_formula(
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+) -> int | None:
+    """The number of the one formula whose dimensions contradict those of all others, if any.
+
+    There is none if these contradict each other as well, as without units, or if another formula
+    could be the one. A formula whose parameters have no dimension can be one in other units.
+    """
+    equations = _Equations(letters, derivatives)
+    rows = equations.rows(formulas)
+    if len(rows) < FEWEST or _pivots(rows.values()) is not None:
+        return None
+    odd = {
+        number: pivots
+        for number in rows
+        if (pivots := _pivots(own for other, own in rows.items() if other != number)) is not None
+    }
+    if len(odd) != 1:
+        return None
+    ((number, pivots),) = odd.items()
+    own = (one for one in letters.parameters if one in formulas[number].words)
+    dimensions = (_reduced(equations.letter(one), pivots) for one in own)
+    has_units = any(one and {*one} <= {*UNITS} for one in dimensions)
+    return number if has_units else None
+
+
+class _Equations:
+    """The linear equations for the dimensions of a document's letters."""
+
+    def __init__(
+        self, letters: Letters, derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+    ) -> None:
+        kinds = Counter(letters.quantities.values())  # of two, one can be an abbreviation
+        energies = [
+            name
+            for name, kind in letters.quantities.items()
+            if kind not in MATRICES.values() and kinds[kind] == 1
+        ]
+        self._known: dict[str, Dimension] = {"t": {TIME: Fraction(1)}, "pi": ONE}
+        for name in letters.of_kind("mass"):
+            self._known[name] = {MASS: Fraction(1)}
+        for name in letters.of_kind("gravity"):
+            self._known[name] = GRAVITY
+        for name in energies:
+            self._known[name] = ENERGY
+        self._derivatives = derivatives
+        self._equal: list[Dimension] = []
+
+    def rows(self, formulas: Sequence[DocumentFormula]) -> dict[int, list[Dimension]]:
+        """The equations of each formula with any: dimensions that vanish."""
+        result: dict[int, list[Dimension]] = {}
+        for number, formula in enumerate(formulas):
+            if {*formula.relations} - {"=", ":="} or len(formula.sides) < 2:
+                continue
+            self._equal = []
+            try:
+                trees = [syntax_tree(side.text) for side in formula.sides]
+                if not any(isinstance(one, ast.Constant) and one.value for one in trees):
+                    self._sum(trees)
+            except (_NoDimensionError, ExpressionError):
+                continue
+            if self._equal:
+                result[number] = self._equal
+        return result
+
+    def _sum(self, terms: Sequence[ast.expr]) -> Dimension | None:
+        """The dimension of terms, which have the same; None of zero, which has any."""
+        known = [one for term in terms if (one := self._dimension(term)) is not None]
+        self._equal += [_product(one, known[0], -1) for one in known[1:]]
+        return known[0] if known else None
+
+    def _number(self, node: ast.expr) -> None:
+        """Require that an expression has no dimension."""
+        if own := self._dimension(node):
+            self._equal.append(own)
+
+    def _dimension(self, node: ast.expr) -> Dimension | None:
+        match node:
+            case ast.Constant(value=value):
+                return ONE if value else None
+            case ast.Name(id=name):
+                return self.letter(name)
+            case ast.UnaryOp(operand=operand):
+                return self._dimension(operand)
+            case ast.BinOp(op=ast.Add() | ast.Sub()):
+                return self._sum([term for term, _ in summands(node)])
+            case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as operation, right=right):
+                one, other = self._dimension(left), self._dimension(right)
+                if one is None or other is None:
+                    return None
+                return _product(one, other, 1 if isinstance(operation, ast.Mult) else -1)
+            case ast.BinOp(left=left, op=ast.Pow(), right=right):
+                return self._power(left, right)
+            case ast.Call(func=ast.Name(id="sqrt"), args=[argument]):
+                return _product(ONE, self._dimension(argument) or ONE, Fraction(1, 2))
+            case ast.Call(func=ast.Name(id="ddt"), args=[argument]):
+                return _product(self._dimension(argument) or ONE, {TIME: Fraction(-1)})
+            case ast.Call(func=ast.Name(id="diff"), args=[one, other]):
+                return _product(self._dimension(one) or ONE, self._dimension(other) or ONE, -1)
+            case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
+                self._number(argument)
+                return ONE
+        raise _NoDimensionError
+
+    def _power(self, base: ast.expr, exponent: ast.expr) -> Dimension:
+        own = self._dimension(base) or ONE
+        try:
+            return _product(ONE, own, Fraction(ast.unparse(exponent).strip("()").replace(" ", "")))
+        except ValueError:  # a letter
+            self._number(base)
+            self._number(exponent)
+            return ONE
+
+    def letter(self, name: str) -> Dimension:
+        """The dimension of a name, which can contain those of letters."""
+        if name in self._derivatives:
+            operand, variables = self._derivatives[name]
+            result = self.letter(operand)
+            for variable in variables:
+                result = _product(result, self.letter(variable), -1)
+            return result
+        if name.endswith("_column"):
+            raise _NoDimensionError
+        own = self._known.get(stem(name), {stem(name): Fraction(1)})
+        return _product(own, {TIME: Fraction(-order(name))})
+
+
+def _product(one: Dimension, other: Dimension, exponent: int | Fraction = 1) -> Dimension:
+    """The dimension of a product of one with a power of another."""
+    result = dict(one)
+    for name, number in other.items():
+        result[name] = result.get(name, Fraction(0)) + number * exponent
+    return {name: number for name, number in result.items() if number}
+
+
+def _pivots(groups: Iterable[Sequence[Dimension]]) -> dict[str, Dimension] | None:
+    """The products that determine a letter each; None if not all products can have no dimension."""
+    pivots: dict[str, Dimension] = {}
+    for one in (one for group in groups for one in group):
+        row = _reduced(one, pivots)
+        own = [name for name in row if name not in UNITS]
+        if row and not own:
+            return None
+        if own:
+            pivots[own[0]] = row
+    return pivots
+
+
+def _reduced(row: Dimension, pivots: Mapping[str, Dimension]) -> Dimension:
+    """A dimension without the letters that products without dimension determine."""
+    for letter, pivot in pivots.items():
+        if letter in row:
+            row = _product(row, pivot, -row[letter] / pivot[letter])
+    return row
