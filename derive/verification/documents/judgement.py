@@ -99,8 +99,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             moving.update(candidate.coordinates)
             own = found.judges.verdicts(candidate)
             is_stated, is_partial = hints is not None, work.left < 0
-            odd = found.inhomogeneous
-            verdicts = [*weighed(own, candidate, found.doubts, is_stated, is_partial, odd)]
+            verdicts = [*weighed(own, candidate, found.contradictions, is_stated, is_partial)]
             conventions.append(convention(candidate))
             contrary = [*alternatives(found, verdicts, written)]
             others += contrary

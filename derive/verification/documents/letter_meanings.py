@@ -24,13 +24,17 @@ from derive.verification.documents.letters.stated_positions import (
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
-from derive.verification.documents.rules.consequences import FOLLOWS
+from derive.verification.documents.rules.consequences import (
+    FOLLOWS,
+    Contradictions,
+    WithVerdict,
+)
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
-from derive.verification.documents.text import FormulaText
+from derive.verification.documents.text import FormulaText, order
 from derive.verification.judging.verdict import Verdict
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
@@ -58,7 +62,10 @@ MAX_VERIFIED = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
-Results = Sequence[tuple[DocumentFormula, SideVerdict]]
+#: The note on a formula that holds in other units than the rest of a document.
+OWN_UNITS = "it holds in units in which the other parameters are 1, which nothing states"
+
+Results = Sequence[WithVerdict]
 
 
 @dataclass
@@ -110,9 +117,28 @@ class Judges:
     def verdicts(self, candidate: SystemCandidate) -> Results:
         """The verdicts on all formulas."""
         if id(candidate) not in self._verdicts:
-            judge = self.judge(candidate)
-            self._verdicts[id(candidate)] = judge.verdicts(self.statements.formulas)
+            verdicts = self.judge(candidate).verdicts(self.statements.formulas)
+            self._verdicts[id(candidate)] = [*self._in_own_units(candidate, verdicts)]
         return self._verdicts[id(candidate)]
+
+    def _in_own_units(self, candidate: SystemCandidate, verdicts: Results) -> Iterator[WithVerdict]:
+        """Yield the verdicts; no equation is wrong that holds with 1 for what it does not contain.
+
+        It has no parameter that other formulas contain, as one without dimensions has not.
+        """
+        used = Counter(w for one in self.statements.formulas for w in one.words)
+        for formula, result in verdicts:
+            own = {*formula.words} & {*self.letters.parameters}
+            is_alone = all(used[word] == 1 for word in own)
+            has_acceleration = any(order(word) == 2 for word in formula.words)
+            if result.verdict.verdict == "wrong" and is_alone and has_acceleration:
+                names = {p: one for p, one in candidate.parameters.items() if one in own}
+                others = [p.symbol.name for p in candidate.system.parameters]
+                ones = {name: "1" for name in others if name not in names}
+                units = replace(candidate, parameters=names, numbers=ones)
+                if self._judge(units).verdict(formula).verdict.verdict in CORRECT:
+                    result = plain("context", formula, OWN_UNITS)
+            yield formula, result
 
     def incorrect(self, candidate: SystemCandidate) -> list[Verdict]:
         """The verdicts on formulas that are not correct."""
@@ -132,10 +158,7 @@ class Interpretation:
     match: Match | None
     #: Other candidates that can be meant as well, the likeliest first.
     rivals: tuple[Match, ...] = ()
-    #: Numbers of formulas that do not hold, and of those that state a system with which they do.
-    doubts: Mapping[int, frozenset[int]] = field(default_factory=dict)
-    #: The number of the one formula whose dimensions contradict those of all others.
-    inhomogeneous: int | None = None
+    contradictions: Contradictions = field(default_factory=Contradictions)
 
 
 def interpretation(
@@ -170,9 +193,10 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
     """The interpretation, or one by the other formulas if these alone refute the inhomogeneous."""
     judges = result.judges
     letters, statements = judges.letters, judges.statements
-    result = replace(result, inhomogeneous=number)
+    known = replace(result.contradictions, inhomogeneous=number)
     if result.match and _refutes(judges, result.match.candidate, number):
-        return result
+        disputed = {k: own - {number} for k, own in known.disputed.items() if own - {number}}
+        return replace(result, contradictions=replace(known, disputed=disputed))
     nothing = replace(statements.formulas[number], sides=(FormulaText("0"),), relations=())
     others = (*statements.formulas[:number], nothing, *statements.formulas[number + 1 :])
     tried = chain.from_iterable(_stated(letters, replace(statements, formulas=others)))
@@ -181,8 +205,9 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
             trivial = frozenset[tuple[int, str]]()
             formulas, derivatives = statements.formulas, statements.derivatives
             match = best_matches([candidate], letters, formulas, derivatives, trivial)
-            return Interpretation(judges, next(iter(match), None), inhomogeneous=number)
-    return result
+            own = Contradictions(inhomogeneous=number)
+            return Interpretation(judges, next(iter(match), None), contradictions=own)
+    return replace(result, contradictions=known)
 
 
 def _refutes(judges: Judges, candidate: SystemCandidate, number: int) -> bool:
@@ -227,8 +252,8 @@ def _best(
         return Interpretation(judges, next(fitting, None))
     best = _with_direction(best, matches, judges)
     best, is_decided = _with_fewest_slips(best, matches, judges)
-    doubts = {} if is_decided else _doubts(best, matches, judges)
-    return Interpretation(judges, best, tuple(_rivals(best, matches)), doubts)
+    contradictions = Contradictions() if is_decided else _contradictions(best, matches, judges)
+    return Interpretation(judges, best, tuple(_rivals(best, matches)), contradictions)
 
 
 def _fits(judges: Judges, candidate: SystemCandidate) -> bool:
@@ -252,11 +277,12 @@ def _with_direction(best: Match, matches: Sequence[Match], judges: Judges) -> Ma
     return min(tried, key=lambda one: judges.count_wrong(one.candidate))
 
 
-def _doubts(best: Match, matches: Sequence[Match], judges: Judges) -> dict[int, frozenset[int]]:
+def _contradictions(best: Match, matches: Sequence[Match], judges: Judges) -> Contradictions:
     """Formulas that do not hold, but do by other stated energies with as much support.
 
-    As much is also as many formulas that fail by one term each: the score does not show that one
-    is missing. Equations, which follow from energies, must not contradict more formulas than these.
+    What holds by the best alone is disputed. As much is also as many formulas that fail by one term
+    each: the score does not show that one is missing. Equations, which follow from energies, must
+    not contradict more formulas than these.
     """
 
     def has_as_few_slips(match: Match) -> bool:
@@ -269,14 +295,16 @@ def _doubts(best: Match, matches: Sequence[Match], judges: Judges) -> dict[int, 
 
     stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
     if stated and _is_decisive(best, matches) and judges.count_wrong(best.candidate) == 1:
-        return {}
-    result: dict[int, frozenset[int]] = {}
+        return Contradictions()
+    doubts, disputed = dict[int, frozenset[int]](), dict[int, frozenset[int]]()
     for match in stated:
         has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
         if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
             for number in best.failed - match.failed:
-                result.setdefault(number, match.candidate.stating)
-    return result
+                doubts.setdefault(number, match.candidate.stating)
+            for number in match.failed - best.failed:
+                disputed.setdefault(number, best.failed - match.failed)
+    return Contradictions(doubts, disputed)
 
 
 def _is_decisive(best: Match, matches: Sequence[Match]) -> bool:

@@ -46,8 +46,7 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         titles.append(candidate.system.title)
         conventions.append(convention(candidate))
         verdicts = found.judges.verdicts(candidate)
-        is_stated, odd = hints is not None, found.inhomogeneous
-        results = [*weighed(verdicts, candidate, found.doubts, is_stated, inhomogeneous=odd)]
+        results = [*weighed(verdicts, candidate, found.contradictions, hints is not None)]
         contrary = [*alternatives(found, results, {})]
         others += contrary
         pairs = zip(function.equations, unopposed(results, contrary), strict=True)

@@ -2,16 +2,17 @@
 
 Terms of a sum have the same dimension, and so have the sides of an equation; arguments of sines
 have none. These are linear equations for the exponents of mass, length and time of each letter.
-That of a mass, of gravity and of an energy are known, others follow from the document.
+Those of masses, gravity, ω and energies are known, and those of coordinates and lengths by their
+letters; others follow from the document.
 """
 
 import ast
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
-from derive.verification.documents.letters.letters import MATRICES, Letters
+from derive.verification.documents.letters.letters import ANGLES, MATRICES, Letters
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.documents.text import order, stem
 
@@ -24,6 +25,8 @@ GRAVITY: Dimension = {LENGTH: Fraction(1), TIME: Fraction(-2)}
 ENERGY: Dimension = {MASS: Fraction(1), LENGTH: Fraction(2), TIME: Fraction(-2)}
 #: Functions of numbers without a dimension.
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan")
+#: Letters of coordinates and of parameters that are lengths.
+COORDINATES, PARAMETERS = ("x", "y", "z", "r", "s"), ("l", "ell")
 #: The fewest formulas with dimensions.
 FEWEST = 2
 
@@ -42,8 +45,8 @@ def inhomogeneous_formula(
     There is none if these contradict each other as well, as without units, or if another formula
     could be the one. A formula whose parameters have no dimension can be one in other units.
     """
-    equations = _Equations(letters, derivatives)
-    rows = equations.rows(formulas)
+    equations = _Equations(letters, formulas, derivatives)
+    rows = equations.rows()
     if len(rows) < FEWEST or _pivots(rows.values()) is not None:
         return None
     odd = {
@@ -64,28 +67,35 @@ class _Equations:
     """The linear equations for the dimensions of a document's letters."""
 
     def __init__(
-        self, letters: Letters, derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+        self,
+        letters: Letters,
+        formulas: Sequence[DocumentFormula],
+        derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
     ) -> None:
-        kinds = Counter(letters.quantities.values())  # of two, one can be an abbreviation
-        energies = [
-            name
-            for name, kind in letters.quantities.items()
-            if kind not in MATRICES.values() and kinds[kind] == 1
-        ]
         self._known: dict[str, Dimension] = {"t": {TIME: Fraction(1)}, "pi": ONE}
         for name in letters.of_kind("mass"):
             self._known[name] = {MASS: Fraction(1)}
         for name in letters.of_kind("gravity"):
-            self._known[name] = GRAVITY
-        for name in energies:
+            if name.startswith("g"):  # G is the constant of gravitation
+                self._known[name] = GRAVITY
+        for name in (*letters.coordinates, *letters.parameters):
+            letter, is_coordinate = name.partition("_")[0], name in letters.coordinates
+            if letter in (COORDINATES if is_coordinate else PARAMETERS):
+                self._known[name] = {LENGTH: Fraction(1)}
+            elif is_coordinate and letter in ANGLES and letter != "q":
+                self._known[name] = ONE
+        for name in letters.of_kind("frequency"):
+            if name.lower().startswith("omega"):
+                self._known[name] = {TIME: Fraction(-1)}
+        for name in _energies(letters, formulas):
             self._known[name] = ENERGY
-        self._derivatives = derivatives
+        self._formulas, self._derivatives = formulas, derivatives
         self._equal: list[Dimension] = []
 
-    def rows(self, formulas: Sequence[DocumentFormula]) -> dict[int, list[Dimension]]:
+    def rows(self) -> dict[int, list[Dimension]]:
         """The equations of each formula with any: dimensions that vanish."""
         result: dict[int, list[Dimension]] = {}
-        for number, formula in enumerate(formulas):
+        for number, formula in enumerate(self._formulas):
             if {*formula.relations} - {"=", ":="} or len(formula.sides) < 2:
                 continue
             self._equal = []
@@ -159,6 +169,20 @@ class _Equations:
             raise _NoDimensionError
         own = self._known.get(stem(name), {stem(name): Fraction(1)})
         return _product(own, {TIME: Fraction(-order(name))})
+
+
+def _energies(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[str]:
+    """The names of energies: T can be a period as well, and of two names one an abbreviation."""
+    kinds = Counter(letters.quantities.values())
+    moving = {
+        one.subject
+        for one in formulas
+        if any(word in letters.momenta or order(word) for word in one.words)
+    }
+    for name, kind in letters.quantities.items():
+        is_energy = kind not in MATRICES.values() and kinds[kind] == 1
+        if is_energy and (kind == "potential_energy" or name in moving):
+            yield name
 
 
 def _product(one: Dimension, other: Dimension, exponent: int | Fraction = 1) -> Dimension:

@@ -5,7 +5,7 @@ No right formula is to be called wrong: a verdict without enough evidence become
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import sympy as sp
@@ -43,6 +43,18 @@ UNSUPPORTED = (
 OTHER_CASE = "it can be another case, or one of these can be wrong"
 
 WithVerdict = tuple[DocumentFormula, SideVerdict]
+
+
+@dataclass(frozen=True)
+class Contradictions:
+    """What contradicts the verdicts by a system, by the numbers of formulas."""
+
+    #: Formulas that do not hold, and those that state another system with which they do.
+    doubts: Mapping[int, frozenset[int]] = field(default_factory=dict)
+    #: Formulas that hold, and those that do not hold unless these are wrong.
+    disputed: Mapping[int, frozenset[int]] = field(default_factory=dict)
+    #: The one formula whose dimensions contradict those of all others.
+    inhomogeneous: int | None = None
 
 
 @dataclass(frozen=True)
@@ -138,22 +150,21 @@ class Consequences:
 def weighed(
     results: Sequence[WithVerdict],
     candidate: SystemCandidate,
-    doubts: Mapping[int, frozenset[int]],
+    contradictions: Contradictions,
     is_stated: bool,
     is_partial: bool = False,
-    inhomogeneous: int | None = None,
 ) -> Iterator[WithVerdict]:
     """Yield the verdicts, with `context` for formulas that are wrong by too weak evidence.
 
     A formula is wrong by a system that the user states, or that follows from positions or energies
-    in the document. It is not if other formulas of the document, which `doubts` has for its number,
-    fit the rest as well and agree with it, nor if it is the rate of a position that a system of
-    energies or equations does not contain. A system that is known from elsewhere must have a letter
-    for each of its parameters, unless that is a factor of the Lagrangian, such as the mass of a
-    single body, and the accelerations as written have no potential of their own; and more formulas
-    that hold than such with more than one wrong term, and than slips if one is in an energy.
-    With a partial search for it, none is wrong. That of a formula whose dimensions contradict those
-    of all others, the `inhomogeneous`, needs no more evidence if one term is wrong.
+    in the document. It is not if other formulas of the document fit the rest as well and agree with
+    it, in which case neither these nor what holds with them alone is verified; nor if it is the
+    rate of a position that a system of energies or equations does not contain. A system that is
+    known from elsewhere must have a letter for each of its parameters, unless that is a factor of
+    the Lagrangian, such as the mass of a single body, and the accelerations as written have no
+    potential of their own; and more formulas that hold than such with more than one wrong term, and
+    than slips if one is in an energy. With a partial search for it, none is wrong. A formula whose
+    dimensions contradict those of all others needs no more evidence if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -184,18 +195,20 @@ def weighed(
     }
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
-        if number == inhomogeneous and verdict.verdict == "wrong" and len(verdict.corrections) == 1:
+        is_inhomogeneous = number == contradictions.inhomogeneous
+        if is_inhomogeneous and verdict.verdict == "wrong" and len(verdict.corrections) == 1:
             note = joined(verdict.note, INHOMOGENEOUS)
             note = joined(note, f"given {given}") if given else note
-            yield formula, replace(result, verdict=replace(verdict, note=note))
-            continue
-        if number == inhomogeneous and verdict.verdict == "definition":
-            yield formula, plain("context", formula, INHOMOGENEOUS)
-            continue
-        if is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
+            result = replace(result, verdict=replace(verdict, note=note))
+        elif is_inhomogeneous and verdict.verdict == "definition":
+            result = plain("context", formula, INHOMOGENEOUS)
+        elif is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
             result = plain("context", formula, UNSTATED)
-        elif verdict.verdict == "wrong" and number in doubts:
-            other = _lines(lines[k] for k in doubts[number] - {number})
+        elif verdict.verdict in ("verified", "equivalent") and number in contradictions.disputed:
+            note = opposed(lines[min(contradictions.disputed[number])])
+            result = plain("context", formula, note)
+        elif verdict.verdict == "wrong" and number in contradictions.doubts:
+            other = _lines(lines[k] for k in contradictions.doubts[number] - {number})
             beside = f" and agrees with {other}" if other else ""
             note = f"it contradicts {given or 'the system'}{beside}: {UNDECIDED}"
             result = plain("context", formula, note)

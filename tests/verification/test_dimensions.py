@@ -1,0 +1,113 @@
+"""Dimensions of letters decide which of two contrary formulas of a document is wrong."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.document_formats import read_document
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.rules.consequences import INHOMOGENEOUS
+
+
+def judged(folder: Path, *formulas: str) -> list[FormulaVerdict]:
+    text = "\n".join(f"$$ {one} $$" for one in formulas)
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return [*judge_document(read_document(folder / "a.md")).formulas]
+
+
+ENERGY = r"E = \frac{1}{2} m l^2 \dot\theta^2 - m g l \cos\theta + \frac{1}{2} c \theta^2"
+EQUATION = r"m l^2 \ddot\theta = - m g l \sin\theta - c \theta"
+
+
+@pytest.mark.parametrize(("energy", "equation", "term", "number"), [
+    (ENERGY.replace(r"\dot\theta^2", r"\dot\theta^3"), EQUATION,
+     r"\frac{1}{2} m l^2 \dot\theta^3", 0),
+    (ENERGY.replace("m g l", "m g"), EQUATION, r"- m g \cos\theta", 0),
+    (ENERGY, EQUATION.replace("m l^2", "m l"), r"m l \ddot\theta", 1),
+    (ENERGY, EQUATION.replace("m g l", "m m l"), r"- m m l \sin\theta", 1),
+])  # fmt: skip
+def test_of_an_energy_and_its_equation_the_inhomogeneous_one_is_wrong(
+    energy: str, equation: str, term: str, number: int, tmp_path: Path
+) -> None:
+    results = judged(tmp_path, energy, equation)
+    assert results[number].verdict == "wrong"
+    assert results[number].wrong_term == term
+    assert INHOMOGENEOUS in results[number].note
+    assert results[1 - number].verdict != "wrong"
+    # with the correction, both hold
+    pair = [energy, equation]
+    pair[number] = results[number].correction
+    assert not {one.verdict for one in judged(tmp_path, *pair)} & {"wrong", "context"}
+
+
+@pytest.mark.parametrize("equation", [
+    EQUATION.replace("m g l", "2 m g l"),
+    EQUATION.replace("sin", "cos"),
+    EQUATION.replace("- c", "+ c"),
+])  # fmt: skip
+def test_of_two_homogeneous_formulas_that_differ_none_is_wrong(
+    equation: str, tmp_path: Path
+) -> None:
+    results = judged(tmp_path, ENERGY, equation)
+    assert "wrong" not in {one.verdict for one in results}
+    assert INHOMOGENEOUS not in "".join(one.note for one in results)
+
+
+@pytest.mark.parametrize("equation", [
+    r"\ddot\theta = - \sin\theta",
+    r"\ddot\theta = - \sin\theta - \gamma \dot\theta",
+    r"\ddot\theta = - \sin\theta - \kappa \theta",
+])  # fmt: skip
+def test_an_equation_in_other_units_is_not_wrong(equation: str, tmp_path: Path) -> None:
+    others = (r"T = \frac{1}{2} m l^2 \dot\theta^2", r"V = - m g l \cos\theta")
+    ratio = r"\kappa = \frac{c}{m g l}"
+    results = judged(tmp_path, *others, *[ratio] * ("kappa" in equation), equation)
+    assert results[-1].verdict != "wrong"
+    assert results[-1].note != INHOMOGENEOUS
+
+
+@pytest.mark.parametrize("formulas", [
+    # M is a torque, G the constant of gravitation, T a period, and K an abbreviation
+    (r"T = \frac{1}{2} J \dot\alpha^2", r"V = \frac{1}{2} k \alpha^2 - M \alpha",
+     r"J \ddot\alpha = M - k \alpha"),
+    (r"T = \frac{1}{2} m (\dot r^2 + r^2 \dot\phi^2)", r"V = - \frac{G M m}{r}",
+     r"m \ddot r = m r \dot\phi^2 - \frac{G M m}{r^2}"),
+    (r"m l^2 \ddot\theta = - m g l \sin\theta", r"\ddot\theta = - \frac{g}{l} \sin\theta",
+     r"T = 2 \pi \sqrt{\frac{l}{g}}"),
+    (r"T = \frac{1}{2} K \dot\theta^2", r"V = - m g l \cos\theta", r"K = m l^2",
+     r"K \ddot\theta = - m g l \sin\theta"),
+    (r"m \ddot x + b \dot x + k x = 0", r"\omega_0 = \sqrt{\frac{k}{m}}",
+     r"\zeta = \frac{b}{2 \sqrt{k m}}", r"\ddot x + 2 \zeta \omega_0 \dot x + \omega_0^2 x = 0"),
+    (r"x = l \sin\theta", r"y = l \cos\theta", r"v^2 = \dot x^2 + \dot y^2",
+     r"T = \frac{1}{2} m v^2", r"V = m g y", r"\frac{d}{dt} (m l^2 \dot\theta) = m g l \sin\theta"),
+])  # fmt: skip
+def test_letters_with_other_meanings_contradict_nothing(
+    formulas: tuple[str, ...], tmp_path: Path
+) -> None:
+    results = judged(tmp_path, *formulas)
+    assert INHOMOGENEOUS not in "".join(one.note for one in results)
+    assert "wrong" not in {one.verdict for one in results}
+
+
+@pytest.mark.parametrize("definition", ["K = m l^3", "K = g l^2", r"K = m \sqrt{l}", "K = l^2"])
+def test_an_abbreviation_with_other_dimensions_is_not_verified(
+    definition: str, tmp_path: Path
+) -> None:
+    results = judged(
+        tmp_path, r"T = \frac{1}{2} K \dot\theta^2", r"V = - m g l \cos\theta", definition,
+        r"K \ddot\theta = - m g l \sin\theta",
+    )  # fmt: skip
+    assert (results[2].verdict, results[2].note) == ("context", INHOMOGENEOUS)
+    assert [one.verdict for one in results[:2] + results[3:]] == ["definition"] * 2 + ["verified"]
+
+
+def test_what_one_of_two_contrary_formulas_states_is_not_verified(tmp_path: Path) -> None:
+    results = judged(
+        tmp_path, r"x = R \sin\alpha", r"y = R \cos\alpha",
+        r"T = \frac{1}{2} m R^2 \dot\alpha^2",
+        r"U = - m g R \cos\alpha + \frac{1}{2} k \alpha^3",
+        r"m R^2 \ddot\alpha + m g R \sin\alpha + k \alpha = 0",
+    )  # fmt: skip
+    assert results[2].verdict == "verified"
+    assert [one.verdict for one in results[3:]] == ["context", "context"]
