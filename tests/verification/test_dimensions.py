@@ -111,3 +111,28 @@ def test_what_one_of_two_contrary_formulas_states_is_not_verified(tmp_path: Path
     )  # fmt: skip
     assert results[2].verdict == "verified"
     assert [one.verdict for one in results[3:]] == ["context", "context"]
+
+
+WEDGE = (
+    r"E = - g m_2 s \sin\alpha + \frac{1}{2} c s^2 + \frac{1}{2} m_2 \dot s^2"
+    r" + m_2 \dot s \dot x \cos\alpha + \frac{1}{2} (m_1 + m_2) \dot x^2",
+    r"m_2 \ddot s \cos\alpha + (m_1 + m_2) \ddot x = 0",
+    r"m_2 \ddot s + m_2 \ddot x \cos\alpha = g m_2 \sin\alpha - c s",
+)
+
+
+@pytest.mark.parametrize(("old", "new"), [("c s^2", "c s^3"), ("- c s", "- 3 c s")])
+def test_an_energy_and_an_equation_that_another_one_does_not_decide_are_not_accused(
+    old: str, new: str, tmp_path: Path
+) -> None:
+    assert [one.verdict for one in judged(tmp_path, *WEDGE)][1:] == ["verified"] * 2
+    results = judged(tmp_path, *(one.replace(old, new) for one in WEDGE))
+    assert "wrong" not in {one.verdict for one in results}
+
+
+def test_a_known_system_by_which_no_formula_holds_accuses_none(tmp_path: Path) -> None:
+    results = judged(
+        tmp_path, r"E = - d g M \cos\theta - \frac{1}{2} \dot\theta^2 (I + d^2 M)",
+        r"\ddot\theta (I + d^2 M) = - d g M \sin\theta",
+    )  # fmt: skip
+    assert "wrong" not in {one.verdict for one in results}

@@ -228,13 +228,15 @@ def _best(
     trivial = trivial_comparisons(letters, formulas, derivatives)
     matches: list[Match] = []
     stated: list[Match] = []
+    circular: list[Match] = []
     for tried in (tried for group in groups for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
             break
         result = best_matches(tried, letters, formulas, derivatives, trivial)
         held = [match for match in result if match.holding or not least]
         stated += [match for match in held if match.candidate.stating]
-        matches += [match for match in held if not match.is_circular]
+        for match in held:
+            (circular if match.is_circular else matches).append(match)
         if any(match.is_stated_by_positions for match in result):
             break
     supported = [match for match in matches if not least or _is_supported(match, least)]
@@ -252,7 +254,9 @@ def _best(
         return Interpretation(judges, next(fitting, None))
     best = _with_direction(best, matches, judges)
     best, is_decided = _with_fewest_slips(best, matches, judges)
-    contradictions = Contradictions() if is_decided else _contradictions(best, matches, judges)
+    contradictions = Contradictions()
+    if not is_decided:
+        contradictions = _contradictions(best, [*matches, *circular], judges)
     return Interpretation(judges, best, tuple(_rivals(best, matches)), contradictions)
 
 
