@@ -254,10 +254,11 @@ def _best(
         return Interpretation(judges, next(fitting, None))
     best = _with_direction(best, matches, judges)
     best, is_decided = _with_fewest_slips(best, matches, judges)
-    contradictions = Contradictions()
-    if not is_decided:
-        contradictions = _contradictions(best, [*matches, *circular], judges)
-    return Interpretation(judges, best, tuple(_rivals(best, matches)), contradictions)
+    rivals = tuple(_rivals(best, matches))
+    if best.candidate.basis == "energies":  # which equations alone can contradict
+        matches += circular
+    contradictions = Contradictions() if is_decided else _contradictions(best, matches, judges)
+    return Interpretation(judges, best, rivals, contradictions)
 
 
 def _fits(judges: Judges, candidate: SystemCandidate) -> bool:

@@ -162,10 +162,10 @@ def weighed(
     rate of a position that a system of energies or equations does not contain. A system that is
     known from elsewhere must have a letter for each of its parameters, unless that is a factor of
     the Lagrangian, such as the mass of a single body, and the accelerations as written have no
-    potential of their own; a formula that holds unless there is one alone; and more formulas that
-    hold than such with more than one wrong term, and than slips if one is in an energy. With a
-    partial search for it, none is wrong. A formula whose dimensions contradict those of all others
-    needs no more evidence if one term is wrong.
+    potential of their own; and more formulas that hold than such with more than one wrong term, and
+    than slips if one is in an energy, beside which one must hold. With a partial search for it,
+    none is wrong. A formula whose dimensions contradict those of all others needs no more evidence
+    if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -183,7 +183,7 @@ def weighed(
         one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES for _, one in results
     )
     slips = max(misfits, len(terms) if has_energy else 0)
-    has_none = holding == 0 and len(wrong) > 1
+    has_none = has_energy and holding == 0 and len(wrong) > 1
     is_weak = is_known and (is_partial or not has_all or has_none or slips > max(1, holding))
     is_guess = is_known and holding < 2 and candidate.is_turned
     independent = sum(FOLLOWS not in one.note for one in wrong)
