@@ -136,3 +136,16 @@ def test_a_known_system_by_which_no_formula_holds_accuses_none(tmp_path: Path) -
         r"\ddot\theta (I + d^2 M) = - d g M \sin\theta",
     )  # fmt: skip
     assert "wrong" not in {one.verdict for one in results}
+
+
+@pytest.mark.parametrize("other", [
+    r"\theta^{1/0} = 1", "*".join(["x"] * 5000) + " = x", r"a^{\theta} = b", r"M \ddot q = f(q, t)",
+    r"\begin{pmatrix} a \\ b \end{pmatrix} = l \begin{pmatrix} \sin\theta \\ 1 \end{pmatrix}",
+])  # fmt: skip
+def test_formulas_without_dimensions_do_not_disturb_those_of_others(
+    other: str, tmp_path: Path
+) -> None:
+    energy = ENERGY.replace(r"\dot\theta^2", r"\dot\theta^3")
+    results = judged(tmp_path, energy, EQUATION, other)
+    assert results[0].verdict == "wrong"
+    assert "wrong" not in {one.verdict for one in results[1:]}

@@ -103,7 +103,7 @@ class _Equations:
                 trees = [syntax_tree(side.text) for side in formula.sides]
                 if not any(isinstance(one, ast.Constant) and one.value for one in trees):
                     self._sum(trees)
-            except (_NoDimensionError, ExpressionError):
+            except (_NoDimensionError, ExpressionError, RecursionError):
                 continue
             if self._equal:
                 result[number] = self._equal
@@ -152,7 +152,7 @@ class _Equations:
         own = self._dimension(base) or ONE
         try:
             return _product(ONE, own, Fraction(ast.unparse(exponent).strip("()").replace(" ", "")))
-        except ValueError:  # a letter
+        except (ValueError, ZeroDivisionError):  # a letter, or no number
             self._number(base)
             self._number(exponent)
             return ONE
