@@ -14,7 +14,7 @@ from derive.verification.documents.letters.energies import has_rotations, system
 from derive.verification.documents.letters.further_systems import templates
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_roles import letters_of
-from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.letters import OPERATORS, Letters
 from derive.verification.documents.letters.stated_equations import StatedEquations
 from derive.verification.documents.letters.stated_positions import (
     POINT,
@@ -34,7 +34,7 @@ from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
-from derive.verification.documents.text import FormulaText, order
+from derive.verification.documents.text import FormulaText, order, stem
 from derive.verification.judging.verdict import Verdict
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
@@ -62,6 +62,8 @@ MAX_VERIFIED = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
+#: Verdicts on formulas that are no definitions and hold.
+HOLDING = ("verified", "equivalent")
 #: The note on a formula that holds in other units than the rest of a document.
 OWN_UNITS = "it holds in units in which the other parameters are 1, which nothing states"
 
@@ -129,14 +131,15 @@ class Judges:
         used = Counter(w for one in self.statements.formulas for w in one.words)
         for formula, result in verdicts:
             own = {*formula.words} & {*self.letters.parameters}
-            is_alone = all(used[word] == 1 for word in own)
+            moving = {*self.letters.coordinates, *self.letters.quantities, *OPERATORS}
+            is_alone = all(used[w] == 1 or stem(w) in moving for w in formula.words)
             has_acceleration = any(order(word) == 2 for word in formula.words)
             if result.verdict.verdict == "wrong" and is_alone and has_acceleration:
                 names = {p: one for p, one in candidate.parameters.items() if one in own}
                 others = [p.symbol.name for p in candidate.system.parameters]
                 ones = {name: "1" for name in others if name not in names}
                 units = replace(candidate, parameters=names, numbers=ones)
-                if self._judge(units).verdict(formula).verdict.verdict in CORRECT:
+                if self._judge(units).verdict(formula).verdict.verdict in HOLDING:
                     result = plain("context", formula, OWN_UNITS)
             yield formula, result
 
