@@ -2,6 +2,7 @@
 
 import ctypes
 import re
+import shutil
 from fractions import Fraction
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import generated.cart_3 as cart
 import generated.coupled_pendulums as coupled
+from solvers.integration.compiled import compiler
 from solvers.integration.compiled.compiler import build
 from solvers.integration.compiled.double_double import DoubleDouble, in_calls
 from solvers.integration.compiled.equations_source import EquationsSource
@@ -44,7 +46,12 @@ def number(pair: np.ndarray) -> Fraction:
     return Fraction(float(pair[0])) + Fraction(float(pair[1]))
 
 
-def test_operations_have_twice_the_digits() -> None:
+@pytest.mark.parametrize("command", ["cc", "clang"])
+def test_operations_have_twice_the_digits(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = shutil.which(command)
+    if path is None:
+        pytest.skip(f"{command} is not installed")
+    monkeypatch.setattr(compiler, "compilers", lambda: iter([(path,)]))
     calls = ", ".join(f"{name}(a, b)" for name in OPERATIONS)
     count = len(OPERATIONS)
     source = (SOURCES / "double_double.h").read_text(encoding="utf-8")

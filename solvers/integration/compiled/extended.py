@@ -1,4 +1,12 @@
-"""Single motions in numbers longer than doubles, by a compiled loop."""
+"""Single motions in numbers longer than doubles, by a compiled loop.
+
+Each of the three kinds of numbers is the fastest for some motions. The report's scene over 20 s to
+an error of 1e-12 takes 0.7 ms in sums of two doubles and 28 ms in quadruple numbers; to 1e-10 it
+takes 0.7 ms and, in ``long double``, 2.5 ms. But equations that call functions, as those of 5 of
+the 23 systems that ship do, cannot be written in sums of two doubles: the driven pendulum takes
+26 ms in ``long double`` and 127 ms in quadruple numbers (20 s, error below 1e-13). Where ``long
+double`` has 53 bits, and where compilers lack ``__float128``, only sums of two doubles are longer.
+"""
 
 import ctypes
 from collections.abc import Callable, Sequence

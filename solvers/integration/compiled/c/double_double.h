@@ -13,10 +13,14 @@ typedef struct {
 
 static inline lanes splat(double x) { return (lanes){0} + x; }
 
+#ifndef __has_builtin
+#define __has_builtin(name) 0
+#endif
+
 /* a b + c, rounded once. */
 static inline lanes fused(lanes a, lanes b, lanes c)
 {
-#if defined __clang__
+#if __has_builtin(__builtin_elementwise_fma)
     return __builtin_elementwise_fma(a, b, c);
 #elif defined __AVX512F__
     return __builtin_ia32_vfmaddpd512_mask(a, b, c, -1, 4);     /* in all lanes, as usual rounded */
