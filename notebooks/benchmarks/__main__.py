@@ -10,8 +10,8 @@ from typing import Any
 from solvers.app.commands import options
 
 PARTS = (
-    *("pendulum", "starts", "precision", "events", "fits", "pipelines", "chains", "maps"),
-    "mechanisms",
+    *("pendulum", "starts", "scenes", "precision", "events", "fits", "pipelines", "chains"),
+    *("maps", "mechanisms"),
 )
 
 
@@ -68,6 +68,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         fits,
         flip_maps,
         mechanisms,
+        other_programs,
         pipeline,
         precision,
         squeezer,
@@ -77,6 +78,7 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
     from benchmarks.mechanism_models import MECHANISMS
     from solvers.app.modules import load
     from solvers.io.figures import save
+    from solvers.scenes.scene_reading import find
 
     peer = partial(options.required_package, extra="bench")
     module = load("double_pendulum")
@@ -87,6 +89,11 @@ def _results(part: str, folder: Path) -> tuple[Any, Iterable[str]]:
         case "starts":
             ratios = starts.figures({name: load(name) for name in starts.SYSTEMS}, peer("heyoka"))
             return ratios, starts.summary(ratios)
+        case "scenes":
+            costs = [other_programs.scene_costs(find(name, load)) for name in ("report", "single")]
+            for one in costs:
+                save(one.plot(), folder / f"other_programs_{one.scene}.png")
+            return costs, [line for one in costs for line in one.summary()]
         case "precision":
             times = precision.figures(module, peer("heyoka"))
             return times, precision.summary(times)

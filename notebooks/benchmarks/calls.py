@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import heyoka
 from solvers.integration.compiled.compiler import build
-from solvers.studies import heyoka
 
 #: Number of doubles in a vector.
 LANES = 8

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from benchmarks import heyoka
 from benchmarks.calls import Calls, Evaluations, lanes, single, textbook
 from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule
@@ -16,7 +17,6 @@ from solvers.integration.prepare import prepare
 from solvers.io.figures import coloured, panels
 from solvers.io.terminal import text_table
 from solvers.references.taylor import taylor
-from solvers.studies import heyoka
 
 #: Numbers of pendulums of which growth is computed.
 SIZES = (2, 3, 5, 8, 10, 15, 20, 30, 50)

@@ -7,7 +7,7 @@ from functools import partial
 from importlib.resources import files
 from typing import Any
 
-from benchmarks import motions
+from benchmarks import heyoka, motions
 from benchmarks.median_times import compile_loop, median_times
 from benchmarks.motions import END, METHODS, MOTIONS, PARALLEL, START
 from solvers.equations.module import GeneratedModule, function
@@ -17,7 +17,6 @@ from solvers.integration.compiled.memory_layout import SOURCES
 from solvers.integration.ensemble import ensemble
 from solvers.io.terminal import text_table
 from solvers.runge_kutta.method_catalogue import load
-from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at
 
 #: Global errors at which programs are compared.

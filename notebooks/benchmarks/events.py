@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import heyoka
 from benchmarks.median_times import RepeatedLoop, median_times
 from benchmarks.motions import END, START, Array, Curves, tolerances
 from solvers.equations.forms import fastest_form
@@ -19,7 +20,6 @@ from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.problem import Options
 from solvers.io.terminal import text_table
-from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at
 
 #: Components of the state and their values, and all their crossings in the report's scene until

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks import flip_programs as programs
+from benchmarks import heyoka
 from benchmarks.flip_programs import ANGLES, END, FLIP, Flips, can_flip, starts
 from benchmarks.median_times import seconds
 from solvers.equations.module import GeneratedModule
 from solvers.io.terminal import text_table
-from solvers.studies import heyoka
 from solvers.sweeps.definition.axes import Random
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.pool import Pool

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from benchmarks import heyoka
 from benchmarks.median_times import median_times
 from solvers.equations.module import GeneratedModule, function
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.prepare import NotFinishedError, prepare
-from solvers.studies import heyoka
 from solvers.studies.work_precision.measured_curves import FINEST_OF_SCIPY
 
 Array = NDArray[np.float64]

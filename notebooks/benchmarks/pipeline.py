@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from benchmarks import heyoka
 from benchmarks.median_times import compile_loop
 from benchmarks.motions import END, FINAL, START
 from solvers.equations.module import GeneratedModule
 from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.prepare import prepare
 from solvers.io.terminal import text_table
-from solvers.studies import heyoka
 
 Array = NDArray[np.float64]
 #: Takes a tolerance; returns a function that returns the final state.

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import heyoka
 from benchmarks.median_times import median_times
 from benchmarks.motions import START, Array, Curves, ordinary
 from solvers.equations.forms import Form, fastest_form
@@ -19,7 +20,6 @@ from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled.extended import PRECISIONS, integrate_extended
 from solvers.io.terminal import text_table
 from solvers.references.decimal_numbers import decimal_state
-from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at
 
 #: Final states by Taylor series of 70 decimal digits.

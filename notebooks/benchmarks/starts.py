@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import heyoka
 from benchmarks.median_times import median_times
 from benchmarks.motions import Array, Curves, Runs, tolerances
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.prepare import NotFinishedError, prepare
 from solvers.io.terminal import text_table
-from solvers.studies import heyoka
 from solvers.studies.work_precision.cost_curve import work_at
 
 #: Systems, and the largest coordinates and velocities of their random starts.

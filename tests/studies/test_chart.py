@@ -1,35 +1,25 @@
 """Work-precision curves, their frontier, and the findings that follow from them."""
 
 import json
-import math
-import operator
 import re
-import sys
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from math import inf, isnan, nan
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
-import sympy as sp
 from sharing import Shared
 
 import generated.double_pendulum as dp
-from derive import Derivation
-from derive.formulas.evaluation.generic_values import is_small
 from solvers.app.cli import main
 from solvers.app.commands.chart import _measured
 from solvers.app.modules import load as load_module
-from solvers.equations.forms import Form, fastest_form
 from solvers.io.figures import save
 from solvers.runge_kutta.method_catalogue import SCIPY, load
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_reading import find
-from solvers.studies import heyoka
-from solvers.studies.work_precision import measured_curves, peers, work_precision_plots
+from solvers.studies.work_precision import measured_curves, work_precision_plots
 from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier, work_at
 from solvers.studies.work_precision.measured_curves import TimedRun, combinations, curves, timed_run
 from solvers.studies.work_precision.reference import Reference
@@ -273,31 +263,6 @@ def test_a_large_energy_error_is_not_misleading(truth: Reference) -> None:
     assert misleading_energy(found, find("report", load_module), truth) is None
 
 
-def test_installed_programs_have_curves(truth: Reference) -> None:
-    # the state of the fastest form, which holds sine and cosine of each angle
-    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
-
-    class Package(ModuleType):
-        @staticmethod
-        def lsoda(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
-            assert rtol == atol
-            return np.array([end, end + rtol]), True
-
-        @staticmethod
-        def dop853(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
-            return np.array([end, end]), False
-
-    def package(name: str) -> ModuleType | None:
-        return Package(name) if name == "numbalsoda" else None
-
-    lsoda, dop853 = peers.curves(find("report", load_module), truth, package)
-    assert (lsoda.method, lsoda.form, lsoda.backend) == ("lsoda", "rational", "numbalsoda")
-    for p in lsoda.points:
-        assert 0.9 < p.global_error / p.setting["rtol"] < 1.5
-    assert dop853.points == []
-    assert peers.curves(find("report", load_module), truth, lambda _: None) == []
-
-
 def test_energy_that_a_force_changes_is_not_misleading() -> None:
     driven = load_module("driven_pendulum")
     scene = Scene(driven, driven.DEFAULTS, (1.0, 0.0), 1e-6)
@@ -306,43 +271,6 @@ def test_energy_that_a_force_changes_is_not_misleading() -> None:
     wrong = replace(wrong, points=[replace(wrong.points[0], global_error=1.0)])
     truth = Reference(np.array(scene.y0), 1e-15, {})
     assert misleading_energy([wrong], scene, truth) is None
-
-
-def test_lsoda_gets_no_tolerance_of_which_it_warns(truth: Reference) -> None:
-    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
-    settings: dict[str, list[float]] = {"lsoda": [], "dop853": []}
-
-    def solver(name: str) -> Callable[..., tuple[np.ndarray, bool]]:
-        def solve(*_: object, rtol: float, atol: float) -> tuple[np.ndarray, bool]:
-            settings[name] += [rtol] if rtol not in settings[name] else []
-            return np.array([end]), True
-
-        return solve
-
-    program = ModuleType("numbalsoda")
-    vars(program).update({name: solver(name) for name in settings})
-    peers.curves(REPORT, truth, lambda name: program if name == "numbalsoda" else None)
-    assert settings["lsoda"] == pytest.approx(10.0 ** -np.arange(1, 13), abs=0)
-    assert settings["dop853"] == pytest.approx(10.0 ** -np.arange(1, 15), abs=0)
-
-
-def test_the_loop_for_numba_is_rk4(truth: Reference, monkeypatch: pytest.MonkeyPatch) -> None:
-    tuples = ModuleType("numba.np.unsafe.ndarray")
-    vars(tuples)["to_fixed_tuple"] = lambda stage, size: tuple(stage[:size])
-    monkeypatch.setitem(sys.modules, tuples.__name__, tuples)
-    monkeypatch.setattr(peers, "STEPS", np.array([500, 1000]))
-    monkeypatch.setattr(peers, "median_seconds", lambda _: 1e-3)
-    program = ModuleType("numba")
-    vars(program)["njit"] = lambda function: function
-    (one,) = peers.curves(REPORT, truth, lambda name: program if name == "numba" else None)
-    assert (one.backend, one.method) == ("numba", "rk4")
-    assert [(p.setting, p.work_rhs) for p in one.points] == [
-        ({"h": 0.01}, 2000),
-        ({"h": 0.005}, 4000),
-    ]
-    coarse, fine = (p.global_error for p in one.points)
-    assert fine < 1e-5
-    assert coarse / fine > 0.9 * 2**4
 
 
 @pytest.mark.parametrize(("combination", "longest"), [
@@ -370,106 +298,6 @@ def test_a_curve_ends_where_the_next_run_would_take_too_long(
     assert before == last / 2 <= longest / 2 < last <= longest
 
 
-class Expression:
-    """A number in another program's arithmetic, which the functions of ``math`` refuse."""
-
-    def __init__(self, value: float) -> None:
-        self.value = value
-
-    def __neg__(self) -> "Expression":
-        return Expression(-self.value)
-
-
-def arithmetic(operation: Callable[[float, float], float]) -> Callable[..., Expression]:
-    def combined(one: Expression, other: "Expression | float") -> Expression:
-        return Expression(operation(one.value, getattr(other, "value", other)))
-
-    return combined
-
-
-for name in ("add", "sub", "mul", "truediv"):
-    setattr(Expression, f"__{name}__", arithmetic(getattr(operator, name)))
-    reflected = arithmetic(lambda a, b, name=name: getattr(operator, name)(b, a))
-    setattr(Expression, f"__r{name}__", reflected)
-
-
-@pytest.mark.parametrize("system", ["henon_heiles", "foucault_pendulum", "driven_pendulum"])
-def test_heyoka_gets_the_equations_of_every_system(system: str) -> None:
-    module, t = load_module(system), 0.3
-    form = Form(module, fastest_form(module), module.DEFAULTS)
-    state = form.from_ordinary(t, np.linspace(0.2, 0.9, len(module.STATE)))
-
-    def elementary(name: str) -> Callable[[Expression], Expression]:
-        return lambda x: Expression(getattr(math, name)(x.value))
-
-    functions = {name: staticmethod(elementary(name)) for name in ("sin", "cos", "sqrt")}
-    values = dict(zip(form.state, state, strict=True))
-    hy = type("Heyoka", (), {
-        "expression": Expression,
-        "time": Expression(t),
-        "par": [*map(Expression, module.DEFAULTS)],
-        "make_vars": staticmethod(lambda *names: [Expression(values[name]) for name in names]),
-        **functions,
-    })  # fmt: skip
-    variables, rates = zip(*heyoka.generated(hy, module), strict=True)
-    assert [x.value for x in variables] == state.tolist()
-    expected = form.rhs(t, state)
-    assert np.array([rate.value for rate in rates]) == pytest.approx(expected, rel=1e-14)
-
-
-def test_heyoka_gets_the_derived_lagrangian_of_the_double_pendulum(double: Derivation) -> None:
-    system = double.system
-    variables = iter([system.q, system.qdot])
-    hy = SimpleNamespace(
-        make_vars=lambda *_: next(variables),
-        par=[one.symbol for one in system.parameters],
-        sin=sp.sin,
-        cos=sp.cos,
-        lagrangian=lambda function, *_: function,
-    )
-    for function in heyoka.double_pendulum(hy).values():
-        assert is_small(function - double.lagrangian)
-
-
-def test_a_program_that_fails_loses_no_other_curve(
-    truth: Reference, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
-
-    def right(*_: object) -> Iterator[peers.Method]:
-        yield "right", lambda _: lambda: (end, None)
-
-    def fails_at_once(*_: object) -> Iterator[peers.Method]:
-        raise AttributeError("no attribute 'STATE_RATIONAL'")
-        yield
-
-    def fails_later(*_: object) -> Iterator[peers.Method]:
-        def run(tolerance: float) -> peers.Run:
-            if tolerance < 1e-3:
-                raise RuntimeError("out of memory")
-            return lambda: (end, None)
-
-        yield "first", run
-        yield "second", lambda _: lambda: (end, None)
-
-    programs = {"broken": fails_at_once, "partly": fails_later, "good": right}
-    monkeypatch.setattr(peers, "PEERS", programs)
-    monkeypatch.setattr("solvers.studies.work_precision.work_precision_plots.PEERS", programs)
-    one = find("report", load_module)
-    broken, first, second, good = peers.curves(one, truth, ModuleType)
-    assert broken.failure == "AttributeError: no attribute 'STATE_RATIONAL'"
-    assert first.failure == "RuntimeError: out of memory"
-    assert 1 <= len(first.points) < len(second.points) == len(good.points)
-    assert not second.failure
-    study = SceneCurves.of(one, truth, [broken, first, second, good])
-    text = "\n".join(study.summary())
-    assert "broken failed: AttributeError: no attribute" in text
-    assert "partly first failed: RuntimeError: out of memory" in text
-    panel = study.plots()["work_precision_report"].axes[-1]
-    labels = [line.get_label() for line in panel.lines]
-    assert labels == ["broken (failed)", "partly first (failed)", "partly second", "good right"]
-
-
 SCENES = {
     "driven_pendulum": "theta = '1 rad'",
     "henon_heiles": "x = '0.1 m'\ny = '0.2 m'\nx_dot = '0.3 m/s'",
@@ -486,7 +314,6 @@ def test_systems_of_every_kind_are_charted(
     # driven, without an angle, the state of the single pendulum, no known equilibrium
     wanted = [("dop853", "lagrangian", "compiled"), ("gauss2", "hamiltonian", "compiled")]
     monkeypatch.setattr(measured_curves, "combinations", lambda _: wanted)
-    monkeypatch.setattr(peers, "PEERS", {})
     path = tmp_path / f"{system}.toml"
     path.write_text(f"system = '{system}'\nduration = '0.2 s'\n[initial]\n{SCENES[system]}\n")
     assert main(["chart", str(path), "--json", "--output", str(tmp_path)]) == 0
@@ -530,29 +357,14 @@ def test_plots_and_summary_show_the_measurements(truth: Reference, tmp_path: Pat
     assert "rk4: error falls as h^4" in text
 
 
-def test_the_calls_of_numba_s_loop_are_no_finding(truth: Reference) -> None:
-    ours = curve("rk4", "rational", "compiled", point(1, 1e-1), point(2, 1e-3))
-    loop = curve("rk4", "rational", "numba", point(0.3, 1e-1), point(0.4, 1e-5))
-    lines = [*SceneCurves.of(REPORT, truth, [ours, loop]).summary()]
-    # the loop needs fewest calls for every error, and no other curve reaches the smallest ones
-    assert "in calls of the right-hand side: " in lines
-    assert all("numba" not in line for line in lines if line.startswith("in calls"))
-    (calls,) = (
-        line for line in SceneCurves.of(REPORT, truth, [ours]).summary() if line.startswith("in ca")
-    )
-    assert calls == "in calls of the right-hand side: 1e-01: 100 (rk4)"
-
-
 def test_a_record_measures_compiled_loops_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     wanted = [("rk4", "lagrangian", backend) for backend in ("compiled", "python")]
-    other = curve("taylor", "lagrangian", "heyoka", point(1.0, 1e-3))
     monkeypatch.setattr(measured_curves, "combinations", lambda _: wanted)
     monkeypatch.setattr(measured_curves, "STEPS", 10 * 2 ** np.arange(6))
-    monkeypatch.setattr(peers, "curves", lambda *_: [other])
     single = load_module("single_pendulum")
     scene = Scene(single, single.DEFAULTS, (1.0, 0.0), 0.2)
     full, compiled = (_measured(scene, compiled_only=only) for only in (False, True))
-    assert [one.backend for one in full.curves] == ["compiled", "python", "heyoka"]
+    assert [one.backend for one in full.curves] == ["compiled", "python"]
     assert [one.backend for one in compiled.curves] == ["compiled"]
     (row,) = json.loads(record([full]))
     assert {point["backend"] for point in row["frontier"]} == {"compiled"}
@@ -566,7 +378,6 @@ def test_the_command_prints_curves_reference_and_frontier(
 ) -> None:
     wanted = [("rk4", "lagrangian", "compiled"), ("verner853", "rational", "compiled")]
     monkeypatch.setattr(measured_curves, "combinations", lambda _: wanted)
-    monkeypatch.setattr(peers, "PEERS", {})
     assert main(["chart", "report", "single", "--json", "--output", str(tmp_path)]) == 0
     found = json.loads(capsys.readouterr().out)
     assert {(c["scene"], c["method"], c["form"], c["backend"]) for c in found["curves"]} == {
@@ -597,7 +408,6 @@ def test_a_scene_that_fails_loses_no_other(
     monkeypatch.setattr(
         measured_curves, "combinations", lambda _: [("rk4", "lagrangian", "compiled")]
     )
-    monkeypatch.setattr(peers, "PEERS", {})
     reference = Reference.of
 
     def fails(scene: Scene) -> Reference:

@@ -19,9 +19,8 @@ DEFAULT = ("report", "long", "single")
 def add_arguments(parser: ArgumentParser) -> None:
     """Describe the command and its arguments."""
     parser.description = (
-        "Chart speed against accuracy for every method, form and backend, and for other programs "
-        "that are installed. The default scenes take about two minutes; nothing else should run "
-        "on the machine meanwhile."
+        "Chart speed against accuracy for every method, form and backend. The default scenes take "
+        "about two minutes; nothing else should run on the machine meanwhile."
     )
     options.add_scenes(parser, DEFAULT)
     options.add_output(parser, "plots")
@@ -60,7 +59,6 @@ def run(arguments: Namespace) -> int:
 
 def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
     from solvers.io.terminal import Progress
-    from solvers.studies.work_precision import peers
     from solvers.studies.work_precision.measured_curves import combinations, curves
     from solvers.studies.work_precision.reference import Reference
     from solvers.studies.work_precision.scene_curves import SceneCurves
@@ -77,11 +75,7 @@ def _measured(scene: "Scene", *, compiled_only: bool) -> "SceneCurves":
                 report(f"{scene.name}: {', '.join(combination)} ({n} of {len(selected)})")
                 yield combination
 
-        measured = curves(scene, reference, reported())
-        if not compiled_only:
-            report(f"{scene.name}: other programs")
-            measured += peers.curves(scene, reference, options.optional_package)
-        return SceneCurves.of(scene, reference, measured)
+        return SceneCurves.of(scene, reference, curves(scene, reference, reported()))
 
 
 def _as_json(results: "Sequence[SceneCurves]", plots: Sequence[str]) -> dict[str, Any]:

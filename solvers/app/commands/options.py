@@ -126,17 +126,10 @@ def print_json(results: Any) -> None:
     print(json.dumps(jsonable(results), indent=2))  # in ASCII: valid in every encoding
 
 
-def optional_package(name: str) -> ModuleType | None:
-    """A package, or None if it is not installed."""
+def required_package(name: str, extra: str) -> ModuleType:
+    """A package; `OSError` names the extra that installs it."""
     try:
         return import_module(name)
     except ImportError:
-        return None
-
-
-def required_package(name: str, extra: str) -> ModuleType:
-    """A package; `OSError` names the extra that installs it."""
-    package = optional_package(name)
-    if package is None:
-        raise OSError(f"{name} is not installed: pip install 'holonomic[{extra}]'")
-    return package
+        text = f"{name} is not installed: pip install 'holonomic[{extra}]'"
+        raise OSError(text) from None

@@ -35,17 +35,11 @@ class CostCurve:
     form: str
     backend: str
     points: list[MeasuredRun]
-    failure: str = ""  # the exception that ended the runs of another program
 
     @property
     def combination(self) -> Combination:
         """Method, form and backend."""
         return self.method, self.form, self.backend
-
-    @property
-    def program(self) -> str:
-        """Backend and method, as another program is called."""
-        return f"{self.backend} {self.method}".rstrip()
 
     def costs(self, work: str) -> list[list[float]]:
         """Work and global errors of the runs whose work is known."""

@@ -10,7 +10,6 @@ from solvers.io.figure_names import axis_label
 from solvers.io.figures import COLOURS, coloured, columns, panels
 from solvers.studies.work_precision.cost_curve import CostCurve, select
 from solvers.studies.work_precision.measured_curves import FORMS, REPORT_METHODS
-from solvers.studies.work_precision.peers import PEERS
 
 #: The plotted methods, one curve each; the others are close to one of them.
 METHODS = "rk1 midpoint rk3 rk4 bs32 dp54 tsit54 dop853 verner853 verner98 gauss3 radau3".split()
@@ -23,7 +22,7 @@ ERROR = "global error / rad, rad/s"
 
 
 def work_precision(title: str, curves: Sequence[CostCurve]) -> Figure:
-    """Methods in seconds and in calls; forms and backends; other programs.
+    """Methods in seconds and in calls; forms and backends.
 
     Parameters
     ----------
@@ -35,10 +34,10 @@ def work_precision(title: str, curves: Sequence[CostCurve]) -> Figure:
     Returns
     -------
     Figure
-        Four panels of the global error in rad and rad/s over time in s, one of them over
+        Three panels of the global error in rad and rad/s over time in s, one of them over
         calls of the right-hand side.
     """
-    figure, (seconds, calls, choices, peers) = panels(title, rows=2, columns=2, size=(14, 10))
+    figure, (seconds, calls, choices) = panels(title, columns=3, size=(18, 5.5))
     for n, method in enumerate(METHODS):
         style = {"color": COLOURS[n % len(COLOURS)], "linestyle": STYLES[n // len(COLOURS)]}
         combinations = ((method, form, "compiled") for form in reversed(FORMS))
@@ -53,28 +52,12 @@ def work_precision(title: str, curves: Sequence[CostCurve]) -> Figure:
                 label = f"{method}, {backend}, {form}"
                 _plot(choices, curve, label, color=colour, linestyle=line)
     choices.set(title="forms and backends", xlabel="time / s")
-    _plot_peers(peers, curves)
-    for panel in (calls, choices, peers):
+    for panel in (calls, choices):
         if panel.lines:
             panel.legend(frameon=False, fontsize="small")
-    for panel in (seconds, calls, choices, peers):
+    for panel in (seconds, calls, choices):
         panel.set_ylabel(ERROR)
     return figure
-
-
-def _plot_peers(panel: Axes, curves: Sequence[CostCurve]) -> None:
-    panel.set(title="other programs", xlabel="time / s")
-    others = [curve for curve in curves if curve.backend in PEERS]
-    if not others:
-        panel.set_axis_off()
-        panel.set_title("other programs: none is installed")
-        return
-    for curve in select(curves, (EXAMPLE, "rational", "compiled")):
-        _plot(panel, curve, f"holonomic {EXAMPLE}", color="black")
-    for n, curve in enumerate(others):
-        style = {"color": COLOURS[n % 6], "linestyle": STYLES[n // 6]}
-        failed = " (failed)" if curve.failure else ""
-        _plot(panel, curve, f"{curve.program}{failed}", **style)
 
 
 def _plot(

@@ -1,4 +1,4 @@
-"""Curves of other programs on the same scenes, with the equations that holonomic generates.
+"""Costs of other programs on scenes, with the equations that holonomic generates.
 
 All programs get the fastest form and are compiled before they are timed. heyoka's Taylor series
 and diffrax's methods take the right-hand side, called with their own numbers; numba compiles the
@@ -6,22 +6,35 @@ Python function into a loop of RK4 steps; numbalsoda's LSODA and DOP853 take its
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from importlib import import_module
+from math import isfinite
 from types import ModuleType
 from typing import Any, TypeVar
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from benchmarks.heyoka import generated, single
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import ELEMENTARY, with_functions
 from solvers.integration.accuracy.integration_run import median_seconds
 from solvers.integration.compiled.native import native_rhs
+from solvers.io.figures import COLOURS, columns, panels
+from solvers.io.terminal import text_table
 from solvers.scenes.scene import Scene
-from solvers.studies.heyoka import generated, single
-from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun
-from solvers.studies.work_precision.measured_curves import LONGEST, STEPS, TOLERANCES, point
+from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier
+from solvers.studies.work_precision.measured_curves import (
+    LONGEST,
+    STEPS,
+    TOLERANCES,
+    combinations,
+    curves,
+    point,
+)
 from solvers.studies.work_precision.reference import Reference
+from solvers.studies.work_precision.work_precision_plots import ERROR
 
 Array = NDArray[np.float64]
 Item = TypeVar("Item")
@@ -36,19 +49,78 @@ Peer = Callable[[Any, Scene, Form, Array], Iterator[Method]]
 MAX_STEPS = 2**16
 #: Below this tolerance LSODA prints warnings.
 FINEST_OF_LSODA = 5e-13
+STYLES = ("-", "--", ":")
 
 
-def curves(
+@dataclass(frozen=True)
+class SceneCosts:
+    """Curves of compiled loops in the fastest form, of other programs, and their failures."""
+
+    scene: str
+    title: str
+    ours: list[CostCurve]
+    others: list[CostCurve]
+    failures: dict[str, str]  # the exceptions that ended runs, by programs and methods
+
+    def summary(self) -> Iterator[str]:
+        """For each error our cheapest method, and relative times of other programs."""
+        yield f"{self.title}: times relative to our cheapest method"
+        formats = {"error": ".0e", "time/µs": ".1f", "cheapest": ""}
+        formats |= {f"{curve.backend} {curve.method}": ".3g" for curve in self.others}
+        yield from text_table(formats, self._rows())
+        for program, failure in self.failures.items():
+            yield f"{program} failed: {failure}"
+        yield ""
+
+    def _rows(self) -> Iterator[list[object]]:
+        for best in frontier(self.ours):
+            least = best.work_seconds
+            ratios = (curve.at(best.global_error) / least for curve in self.others)
+            shown = (ratio if isfinite(ratio) else None for ratio in ratios)
+            yield [best.global_error, 1e6 * least, best.method, *shown]
+
+    def plot(self) -> Figure:
+        """Errors over times of other programs and of our cheapest methods."""
+        figure, (axes,) = panels(f"Other programs: {self.title}", size=(8, 6))
+        best = frontier(self.ours)
+        costs = columns(best, "work_seconds", "global_error")
+        axes.loglog(*costs, color="black", label="holonomic")
+        for n, curve in enumerate(self.others):
+            style = {"color": COLOURS[n % 6], "linestyle": STYLES[n // 6]}
+            label = f"{curve.backend} {curve.method}"
+            axes.loglog(*curve.costs("work_seconds"), marker=".", label=label, **style)
+        axes.set(xlabel="time / s", ylabel=ERROR)
+        axes.legend(frameon=False)
+        return figure
+
+
+def installed(name: str) -> ModuleType | None:
+    """A package, or None if it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError:
+        return None
+
+
+def scene_costs(scene: Scene) -> SceneCosts:
+    """Costs on a scene of the packages that are installed."""
+    reference, fastest = Reference.of(scene), fastest_form(scene.module)
+    choices = [c for c in combinations(scene.module) if c[1:] == (fastest, "compiled")]
+    ours = curves(scene, reference, choices)
+    title = f"{scene.title}, {scene.duration:g} s"
+    return SceneCosts(scene.name, title, ours, *other_curves(scene, reference, installed))
+
+
+def other_curves(
     scene: Scene, reference: Reference, package: Callable[[str], ModuleType | None]
-) -> list[CostCurve]:
-    """A curve for each method of the packages that are installed.
+) -> tuple[list[CostCurve], dict[str, str]]:
+    """A curve for each method of the packages that are installed, and failures.
 
-    A program that fails loses neither its earlier runs nor those of others: its curve states the
-    failure.
+    A program that fails loses neither its earlier runs nor those of others.
     """
     form = Form(scene.module, fastest_form(scene.module), scene.params)
     start = form.from_ordinary(0.0, np.array(scene.y0))
-    results = []
+    results, failures = list[CostCurve](), dict[str, str]()
 
     def methods_of(name: str) -> Iterator[Method]:
         if result := package(name):
@@ -57,11 +129,13 @@ def curves(
     for name in PEERS:
         methods, failure = _collected(methods_of(name))
         for method, run in methods:
-            collected = _collected(_points(scene, reference, form, method, run))
-            results.append(CostCurve(scene.name, method, form.name, name, *collected))
+            points, failed = _collected(_points(scene, reference, form, method, run))
+            results.append(CostCurve(scene.name, method, form.name, name, points))
+            if failed:
+                failures[f"{name} {method}"] = failed
         if failure:
-            results.append(CostCurve(scene.name, "", form.name, name, [], failure))
-    return results
+            failures[name] = failure
+    return results, failures
 
 
 def _collected(items: Iterator[Item]) -> tuple[list[Item], str]:
