@@ -112,16 +112,14 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "0378489eb4e167b4"
+DIGEST = "258a60354629552a"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
 )
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": (
-        "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
-    ),
+    "lagrangian": STATE,
     "hamiltonian": (
         "x", "theta1", "theta2", "theta3", "p_x", "p_theta1", "p_theta2", "p_theta3",
     ),
@@ -135,13 +133,8 @@ STATES = {
         "delta_theta2", "delta_theta3", "delta_x_dot", "delta_theta1_dot", "delta_theta2_dot",
         "delta_theta3_dot",
     ),
-    "sensitivity": (
-        "x", "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
-        "x_dot", "theta1_dot", "theta2_dot", "theta3_dot", "delta_x", "delta_theta1",
-        "delta_theta2", "delta_theta3", "delta_x_dot", "delta_theta1_dot", "delta_theta2_dot",
-        "delta_theta3_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m0", "m1", "m2", "m3", "l1", "l2", "l3", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m0", "m1", "m2", "m3", "l1", "l2", "l3")

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "0378489eb4e167b4"
+DIGEST = "258a60354629552a"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -95,12 +95,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "1ffa264ed51c3893"
+DIGEST = "7d1fac1378013962"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("theta1", "theta2", "theta3", "p_theta1", "p_theta2", "p_theta3"),
     "rational": (
         "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
@@ -111,12 +111,8 @@ STATES = {
         "theta1_dot", "theta2_dot", "theta3_dot", "delta_theta1", "delta_theta2",
         "delta_theta3", "delta_theta1_dot", "delta_theta2_dot", "delta_theta3_dot",
     ),
-    "sensitivity": (
-        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "sin_theta3", "cos_theta3",
-        "theta1_dot", "theta2_dot", "theta3_dot", "delta_theta1", "delta_theta2",
-        "delta_theta3", "delta_theta1_dot", "delta_theta2_dot", "delta_theta3_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m1", "m2", "m3", "l1", "l2", "l3", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m1", "m2", "m3", "l1", "l2", "l3")

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "1ffa264ed51c3893"
+DIGEST = "7d1fac1378013962"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -72,22 +72,19 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "e2ffd0b19dbb9cf8"
+DIGEST = "933fd0b82a41fe67"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("x", "y", "theta", "x_dot", "y_dot", "theta_dot"),
+    "lagrangian": STATE,
     "rational": ("x", "y", "sin_theta", "cos_theta", "x_dot", "y_dot", "theta_dot"),
     "variational": (
         "x", "y", "sin_theta", "cos_theta", "x_dot", "y_dot", "theta_dot", "delta_x", "delta_y",
         "delta_theta", "delta_x_dot", "delta_y_dot", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "x", "y", "sin_theta", "cos_theta", "x_dot", "y_dot", "theta_dot", "delta_x", "delta_y",
-        "delta_theta", "delta_x_dot", "delta_y_dot", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "J", "a")
 DEFAULTS: tuple[float, ...] = (1.0, 0.1, 0.3)
 POSITIVE = ("m", "J", "a")

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "e2ffd0b19dbb9cf8"
+DIGEST = "933fd0b82a41fe67"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -90,12 +90,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "e040bfab762a5dd1"
+DIGEST = "9cf80092c6538a18"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("theta1", "theta2", "theta1_dot", "theta2_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("theta1", "theta2", "p_theta1", "p_theta2"),
     "rational": (
         "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
@@ -104,11 +104,8 @@ STATES = {
         "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
         "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
     ),
-    "sensitivity": (
-        "sin_theta1", "cos_theta1", "sin_theta2", "cos_theta2", "theta1_dot", "theta2_dot",
-        "delta_theta1", "delta_theta2", "delta_theta1_dot", "delta_theta2_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "l", "k", "d", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0, 9.81)
 POSITIVE = ("m", "l", "k", "d")

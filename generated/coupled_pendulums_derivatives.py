@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "e040bfab762a5dd1"
+DIGEST = "9cf80092c6538a18"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "8379ce3da3518a51"
+DIGEST = "7d7e49fa2767b383"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

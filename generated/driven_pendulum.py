@@ -60,21 +60,19 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "d4495c30a17e3a52"
+DIGEST = "6fa6e8cf0fd8ef0f"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("theta", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
         "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "l", "a", "Omega", "c", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 0.1, 100.0, 0.0, 9.81)
 POSITIVE = ("m", "l")

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "d4495c30a17e3a52"
+DIGEST = "6fa6e8cf0fd8ef0f"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -53,15 +53,15 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "db9522d13267760c"
+DIGEST = "7ff1c666fc0a62ad"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("x", "x_dot"), "hamiltonian": ("x", "p_x"),
+    "lagrangian": STATE, "hamiltonian": ("x", "p_x"),
     "variational": ("x", "x_dot", "delta_x", "delta_x_dot"),
-    "sensitivity": ("x", "x_dot", "delta_x", "delta_x_dot"),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "k", "beta", "c", "F", "Omega")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 1.0, 0.1, 0.2, 1.0)
 POSITIVE = ("m",)

@@ -64,23 +64,20 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "elastic_pendulum"
-DIGEST = "786a5cff0254f4e6"
+DIGEST = "0402e6a26d8c9250"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("r", "theta", "r_dot", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("r", "theta", "p_r", "p_theta"),
     "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
     "variational": (
         "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
         "delta_r_dot", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
-        "delta_r_dot", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "k", "l", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 100.0, 1.0, 9.81)
 POSITIVE = ("m", "k", "l", "r")

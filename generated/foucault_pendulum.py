@@ -94,20 +94,18 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "2b8ed4c3a7229438"
+DIGEST = "5efa80397d1ad288"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("x", "y", "x_dot", "y_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("x", "y", "p_x", "p_y"),
     "variational": (
         "x", "y", "x_dot", "y_dot", "delta_x", "delta_y", "delta_x_dot", "delta_y_dot",
     ),
-    "sensitivity": (
-        "x", "y", "x_dot", "y_dot", "delta_x", "delta_y", "delta_x_dot", "delta_y_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "l", "g", "Omega", "latitude")
 DEFAULTS: tuple[float, ...] = (28.0, 67.0, 9.81, 7.292e-05, 0.8527)
 POSITIVE = ("m", "l")

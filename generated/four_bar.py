@@ -88,12 +88,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "16990f565c7e409a"
+DIGEST = "0c66456443cf0e39"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot"),
+    "lagrangian": STATE,
     "rational": (
         "sin_phi", "cos_phi", "sin_psi", "cos_psi", "sin_chi", "cos_chi", "phi_dot", "psi_dot",
         "chi_dot",
@@ -103,12 +103,8 @@ STATES = {
         "chi_dot", "delta_phi", "delta_psi", "delta_chi", "delta_phi_dot", "delta_psi_dot",
         "delta_chi_dot",
     ),
-    "sensitivity": (
-        "sin_phi", "cos_phi", "sin_psi", "cos_psi", "sin_chi", "cos_chi", "phi_dot", "psi_dot",
-        "chi_dot", "delta_phi", "delta_psi", "delta_chi", "delta_phi_dot", "delta_psi_dot",
-        "delta_chi_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("a", "b", "c", "d", "g", "m1", "m2", "m3")
 DEFAULTS: tuple[float, ...] = (0.3, 0.8, 0.6, 0.9, 9.81, 0.3, 0.8, 0.6)
 POSITIVE = ("a", "b", "c", "d", "m1", "m2", "m3")

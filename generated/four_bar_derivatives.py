@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "16990f565c7e409a"
+DIGEST = "0c66456443cf0e39"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

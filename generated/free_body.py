@@ -93,21 +93,18 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "free_body"
-DIGEST = "d076825604c147cb"
+DIGEST = "bbdcf4be3759d765"
 COORDINATES = ("w", "x", "y", "z")
 STATE = ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot")
 FORMS = ("lagrangian", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot"),
+    "lagrangian": STATE,
     "variational": (
         "w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot", "delta_w", "delta_x", "delta_y",
         "delta_z", "delta_w_dot", "delta_x_dot", "delta_y_dot", "delta_z_dot",
     ),
-    "sensitivity": (
-        "w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot", "delta_w", "delta_x", "delta_y",
-        "delta_z", "delta_w_dot", "delta_x_dot", "delta_y_dot", "delta_z_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("A", "B", "C")
 DEFAULTS: tuple[float, ...] = (1.0, 2.0, 2.5)
 POSITIVE = ("A", "B", "C")

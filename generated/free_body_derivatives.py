@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "d076825604c147cb"
+DIGEST = "bbdcf4be3759d765"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -78,12 +78,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "5627150a0a35d409"
+DIGEST = "dc67d75f05d7bc96"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("alpha", "theta", "alpha_dot", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("alpha", "theta", "p_alpha", "p_theta"),
     "rational": (
         "sin_alpha", "cos_alpha", "sin_theta", "cos_theta", "alpha_dot", "theta_dot",
@@ -92,11 +92,8 @@ STATES = {
         "sin_alpha", "cos_alpha", "sin_theta", "cos_theta", "alpha_dot", "theta_dot",
         "delta_alpha", "delta_theta", "delta_alpha_dot", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "sin_alpha", "cos_alpha", "sin_theta", "cos_theta", "alpha_dot", "theta_dot",
-        "delta_alpha", "delta_theta", "delta_alpha_dot", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "L", "l", "g", "I", "J", "tau")
 INPUTS = ("tau",)
 DEFAULTS: tuple[float, ...] = (0.1, 0.3, 0.2, 9.81, 0.004, 0.001, 0.0)

@@ -83,12 +83,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "0fe2d989e94a2526"
+DIGEST = "24661fe196fabbfc"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("alpha", "beta", "gamma", "p_alpha", "p_beta", "p_gamma"),
     "rational": (
         "alpha", "sin_beta", "cos_beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot",
@@ -98,12 +98,8 @@ STATES = {
         "delta_alpha", "delta_beta", "delta_gamma", "delta_alpha_dot", "delta_beta_dot",
         "delta_gamma_dot",
     ),
-    "sensitivity": (
-        "alpha", "sin_beta", "cos_beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot",
-        "delta_alpha", "delta_beta", "delta_gamma", "delta_alpha_dot", "delta_beta_dot",
-        "delta_gamma_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("I", "A1", "B1", "C1", "A", "C")
 DEFAULTS: tuple[float, ...] = (2.0, 2.0, 1.0, 1.0, 2.0, 3.0)
 POSITIVE = ("I", "A1", "B1", "C1", "A", "C")

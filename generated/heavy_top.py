@@ -80,12 +80,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "b8959f3b5e25e1b2"
+DIGEST = "b3418c89ff35b25d"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("phi", "psi", "theta", "p_phi", "p_psi", "p_theta"),
     "rational": (
         "sin_phi", "cos_phi", "psi", "sin_theta", "cos_theta", "phi_dot", "psi_dot",
@@ -96,12 +96,8 @@ STATES = {
         "theta_dot", "delta_phi", "delta_psi", "delta_theta", "delta_phi_dot", "delta_psi_dot",
         "delta_theta_dot",
     ),
-    "sensitivity": (
-        "sin_phi", "cos_phi", "psi", "sin_theta", "cos_theta", "phi_dot", "psi_dot",
-        "theta_dot", "delta_phi", "delta_psi", "delta_theta", "delta_phi_dot", "delta_psi_dot",
-        "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "l", "A", "C", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 0.3, 0.02, 0.01, 9.81)
 POSITIVE = ("m", "l", "A", "C")

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "b8959f3b5e25e1b2"
+DIGEST = "b3418c89ff35b25d"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -52,12 +52,12 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "8c4b04ec4ca65b1b"
+DIGEST = "6a202c722058f2ab"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")
 STATES = {
-    "lagrangian": ("x", "y", "x_dot", "y_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("x", "y", "p_x", "p_y"),
     "variational": (
         "x", "y", "x_dot", "y_dot", "delta_x", "delta_y", "delta_x_dot", "delta_y_dot",

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "8c4b04ec4ca65b1b"
+DIGEST = "6a202c722058f2ab"
 
 
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -78,16 +78,14 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "911e1070db7dc6d5"
+DIGEST = "8d7b42ae7598acd1"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
 )
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": (
-        "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
-    ),
+    "lagrangian": STATE,
     "rational": (
         "x", "y", "sin_psi", "cos_psi", "sin_phi", "cos_phi", "chi", "x_dot", "y_dot",
         "psi_dot", "phi_dot", "chi_dot",
@@ -98,13 +96,8 @@ STATES = {
         "delta_chi", "delta_x_dot", "delta_y_dot", "delta_psi_dot", "delta_phi_dot",
         "delta_chi_dot",
     ),
-    "sensitivity": (
-        "x", "y", "sin_psi", "cos_psi", "sin_phi", "cos_phi", "chi", "x_dot", "y_dot",
-        "psi_dot", "phi_dot", "chi_dot", "delta_x", "delta_y", "delta_psi", "delta_phi",
-        "delta_chi", "delta_x_dot", "delta_y_dot", "delta_psi_dot", "delta_phi_dot",
-        "delta_chi_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "R", "k", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 0.3, 0.25, 9.81)
 POSITIVE = ("m", "R", "k")

@@ -56,21 +56,19 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "71be3a242a660d02"
+DIGEST = "94b4806e2bbb4152"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("theta", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
         "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "R", "Omega", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 4.0, 9.81)
 POSITIVE = ("m", "R")

@@ -55,21 +55,19 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "b9f40576065bd4e1"
+DIGEST = "42e99583b3d9c8a8"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("theta", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("theta", "p_theta"),
     "rational": ("sin_theta", "cos_theta", "theta_dot"),
     "variational": (
         "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "sin_theta", "cos_theta", "theta_dot", "delta_theta", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "l", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 2.0, 9.81)
 POSITIVE = ("m", "l")

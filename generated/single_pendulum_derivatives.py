@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "b9f40576065bd4e1"
+DIGEST = "42e99583b3d9c8a8"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

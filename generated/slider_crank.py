@@ -95,16 +95,16 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "slider_crank"
-DIGEST = "95913685b399b79b"
+DIGEST = "d470c675108b29f2"
 COORDINATES = ("phi",)
 STATE = ("phi", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("phi", "phi_dot"), "hamiltonian": ("phi", "p_phi"),
+    "lagrangian": STATE, "hamiltonian": ("phi", "p_phi"),
     "rational": ("sin_phi", "cos_phi", "phi_dot"),
     "variational": ("sin_phi", "cos_phi", "phi_dot", "delta_phi", "delta_phi_dot"),
-    "sensitivity": ("sin_phi", "cos_phi", "phi_dot", "delta_phi", "delta_phi_dot"),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("r", "l", "m1", "m2", "M", "g")
 DEFAULTS: tuple[float, ...] = (0.1, 0.3, 1.0, 0.6, 0.8, 9.81)
 POSITIVE = ("r", "l", "m1", "m2", "M")

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "95913685b399b79b"
+DIGEST = "d470c675108b29f2"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -64,23 +64,20 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "9626480260386b07"
+DIGEST = "2ea1add3ecca96eb"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("theta", "phi", "theta_dot", "phi_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("theta", "phi", "p_theta", "p_phi"),
     "rational": ("sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot"),
     "variational": (
         "sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot", "delta_theta",
         "delta_phi", "delta_theta_dot", "delta_phi_dot",
     ),
-    "sensitivity": (
-        "sin_theta", "cos_theta", "sin_phi", "cos_phi", "theta_dot", "phi_dot", "delta_theta",
-        "delta_phi", "delta_theta_dot", "delta_phi_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("m", "l", "g")
 DEFAULTS: tuple[float, ...] = (1.0, 1.0, 9.81)
 POSITIVE = ("m", "l")

@@ -64,23 +64,20 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "swinging_atwood"
-DIGEST = "aeeb998f652fd495"
+DIGEST = "23a93fcab7779ea9"
 COORDINATES = ("r", "theta")
 STATE = ("r", "theta", "r_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("r", "theta", "r_dot", "theta_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("r", "theta", "p_r", "p_theta"),
     "rational": ("r", "sin_theta", "cos_theta", "r_dot", "theta_dot"),
     "variational": (
         "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
         "delta_r_dot", "delta_theta_dot",
     ),
-    "sensitivity": (
-        "r", "sin_theta", "cos_theta", "r_dot", "theta_dot", "delta_r", "delta_theta",
-        "delta_r_dot", "delta_theta_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("M", "m", "g")
 DEFAULTS: tuple[float, ...] = (3.0, 1.0, 9.81)
 POSITIVE = ("M", "m", "r")

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "aeeb998f652fd495"
+DIGEST = "23a93fcab7779ea9"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:

@@ -82,23 +82,20 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "e00bdf658acb25a7"
+DIGEST = "c25725cf858b29c4"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
 STATES = {
-    "lagrangian": ("q1", "q2", "q1_dot", "q2_dot"),
+    "lagrangian": STATE,
     "hamiltonian": ("q1", "q2", "p_q1", "p_q2"),
     "rational": ("sin_q1", "cos_q1", "sin_q2", "cos_q2", "q1_dot", "q2_dot"),
     "variational": (
         "sin_q1", "cos_q1", "sin_q2", "cos_q2", "q1_dot", "q2_dot", "delta_q1", "delta_q2",
         "delta_q1_dot", "delta_q2_dot",
     ),
-    "sensitivity": (
-        "sin_q1", "cos_q1", "sin_q2", "cos_q2", "q1_dot", "q2_dot", "delta_q1", "delta_q2",
-        "delta_q1_dot", "delta_q2_dot",
-    ),
 }
+STATES["sensitivity"] = STATES["variational"]
 PARAMETERS: tuple[str, ...] = ("l1", "l2", "c1", "c2", "m1", "m2", "I1", "I2", "g", "tau1", "tau2")
 INPUTS = ("tau1", "tau2")
 DEFAULTS: tuple[float, ...] = (0.4, 0.3, 0.2, 0.15, 2.0, 1.0, 0.03, 0.01, 9.81, 0.0, 0.0)

@@ -379,7 +379,7 @@ def _constants(contents: Contents) -> str:
         "COORDINATES": _literal(q.name for q in system.q),
         "STATE": _literal(contents.states["lagrangian"]),
         "FORMS": _literal(forms),
-        "STATES": _dict({form: _literal(contents.states[form]) for form in forms}),
+        **_states({form: contents.states[form] for form in forms}),
         "PARAMETERS: tuple[str, ...]": _literal(parameters),
         **({"INPUTS": _literal(u.name for u in system.u)} if system.u else {}),
         "DEFAULTS: tuple[float, ...]": _literal(
@@ -400,6 +400,16 @@ def _constants(contents: Contents) -> str:
     }
     texts = [f'SYSTEM = "{system.name}"', f'DIGEST = "{DIGEST}"']
     return "\n".join([*texts, *(f"{k} = {v}" for k, v in tables.items())])
+
+
+def _states(components: Mapping[Form, Sequence[str]]) -> dict[str, str]:
+    """The table of components of the state in each form, without repetitions."""
+    rows = {str(form): _literal(names) for form, names in components.items()}
+    rows["lagrangian"] = "STATE"
+    if "sensitivity" not in rows or rows["sensitivity"] != rows["variational"]:
+        return {"STATES": _dict(rows)}
+    del rows["sensitivity"]
+    return {"STATES": _dict(rows), 'STATES["sensitivity"]': 'STATES["variational"]'}
 
 
 def _variables(functions: Iterable[Function]) -> dict[str, str]:
