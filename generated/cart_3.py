@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "258a60354629552a"
+DIGEST = "bff9ed0dc240386d"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",
@@ -156,7 +156,7 @@ CALLS_FUNCTIONS = (
     "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (131, 13), "jacobian": (396, 14), "parameter_jacobian": (418, 15),
+    "rhs": (131, 13), "jacobian": (396, 14), "parameter_jacobian": (410, 15),
     "energy": (66, 15), "mass_matrix": (27, 12), "positions": (20, 0), "points": (36, 4),
     "hamiltonian_state": (53, 7), "rhs_hamiltonian": (138, 14),
     "jacobian_hamiltonian": (453, 14), "energy_hamiltonian": (111, 11),

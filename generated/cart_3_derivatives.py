@@ -38,13 +38,13 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "258a60354629552a"
+DIGEST = "bff9ed0dc240386d"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    418 operations, 15 of them on parameters alone.
+    410 operations, 15 of them on parameters alone.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x3 = sin_theta2*x2
     sin_theta3 = sin(theta3)
     x4 = theta3_dot*theta3_dot
-    x5 = sin_theta3*x4
+    x5 = c5*x4
     cos_theta3 = cos(theta3)
     cos_theta1 = cos(theta1)
     x6 = cos_theta3*sin_theta1 - sin_theta3*cos_theta1
@@ -102,126 +102,122 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x11 = m3*cos_theta3
     x12 = cos_theta2*sin_theta1 - sin_theta2*cos_theta1
     x13 = x12*x0
-    x14 = x8*x4
-    x15 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
-    x16 = m3*x15
-    x17 = c6*x13 - c5*x14 - c7*sin_theta2 - x10*x16
-    x18 = c3*cos_theta2 - x15*x11
-    x19 = 1.0/(m2 + m3*x8*x8)
-    x20 = x18*x19
+    x14 = cos_theta2*cos_theta3 + sin_theta3*sin_theta2
+    x15 = m3*x14
+    x16 = c6*x13 - x8*x5 - c7*sin_theta2 - x10*x15
+    x17 = c3*cos_theta2 - x14*x11
+    x18 = 1.0/(m2 + m3*x8*x8)
+    x19 = x17*x18
+    x20 = c2*x1 + c4*x3 + sin_theta3*x5 - x10*x11 - x16*x19
     x21 = x12*x2
-    x22 = x6*x4
-    x23 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
-    x24 = m3*x23
-    x25 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
-    x26 = c3*x25 - x23*x16
-    x27 = x19*x26
-    x28 = c4*x21 + c5*x22 + c8*sin_theta1 + x10*x24 + x17*x27
-    x29 = c1*cos_theta1 - x23*x11 - x26*x20
-    x30 = 1.0/(c0 + m3*x6*x6 - x26*x27)
-    x31 = x29*x30
-    x32 = c2*x1 + c4*x3 + c5*x5 - x10*x11 - x17*x20 + x28*x31
-    x33 = c9 + m3*sin_theta3*sin_theta3 - x18*x20 - x29*x31
-    x34 = x32/x33
-    x35 = x34/x33
-    x36 = l1*x1
-    x37 = x30*(x28 + x29*x34)
-    x38 = x34 - cos_theta1*x37
-    x39 = g*sin_theta1
-    x40 = x37 - cos_theta1*x34
-    x41 = x39 - x40
-    x42 = (x36 - x38 + x41*x31)/x33
-    x43 = x19*(x17 + x26*x37 - x18*x34)
-    x44 = cos_theta2*x43 + x38
-    x45 = x36 + l2*x3
-    x46 = l1*x13
-    x47 = g*sin_theta2
-    x48 = x25*x37 - (x43 + cos_theta2*x34)
-    x49 = -(x46 - x47 + x48)
-    x50 = l2*x21
-    x51 = x25*x43 - x40
-    x52 = x39 + x50 + x51 - x49*x27
-    x53 = (x44 - x45 - x49*x20 - x52*x31)/x33
-    x54 = x10 + x23*x37 - cos_theta3*x34 - x15*x43
-    x55 = x47 - (x46 - l3*x14) + x15*x54 - x48
-    x56 = x39 + (x50 + l3*x22) + x23*x54 + x51 - x55*x27
-    x57 = cos_theta3*x54 + x44 - (x45 + l3*x5) - x55*x20 - x56*x31
-    x58 = x57/x33
-    x59 = c10*x37
-    x60 = x7 + x23*x59
-    x61 = c3*(x13 + x25*x59) - x60*x16
-    x62 = c11*x37 - x60*x24 - x61*x27
-    x63 = c1*(x1 + cos_theta1*x59) - x60*x11 - x61*x20 - x62*x31
-    x64 = x63/x33
-    x65 = c12*x43
-    x66 = x9 - x15*x65
-    x67 = c13*x43 + x66*x16
-    x68 = c3*(x21 + x25*x65) + x66*x24 - x67*x27
-    x69 = c3*(x3 - cos_theta2*x65) - x66*x11 + x67*x20 + x68*x31
-    x70 = x69/x33
-    x71 = c14*x54
-    x72 = cos_theta3*x71
-    x73 = x15*x71
-    x74 = x73 - (x73 + x14)
-    x75 = x23*x71
-    x76 = x75 - (x75 + x22) - x74*x27
-    x77 = m3*(x72 - (x72 - x5) - x74*x20 - x76*x31)/x33
-    x78 = c3*sin_theta2 - sin_theta3*x16
-    x79 = c1*sin_theta1 - sin_theta3*x24 - x78*x27
-    x80 = (sin_theta3*x11 + x78*x20 + x79*x31)/x33
-    x81 = x35*x31
-    x82 = x30*(x41 + x29*x42)
-    x83 = x30*(x52 - x29*x53)
-    x84 = x30*(x56 - x29*x58)
-    x85 = x30*(x62 - x29*x64)
-    x86 = x30*(x68 + x29*x70)
-    x87 = x30*(m3*x76 - x29*x77)
-    x88 = x30*(x79 + x29*x80)
-    x89 = x19*(x18*x35 - x26*x81)
-    x90 = x19*(x18*x42 - x26*x82)
-    x91 = x19*(x18*x53 + x26*x83 - x49)
-    x92 = x19*(x18*x58 + x26*x84 - x55)
-    x93 = x19*(x18*x64 + x26*x85 - x61)
-    x94 = x19*(x67 + x18*x70 - x26*x86)
-    x95 = x19*(x18*x77 + x26*x87 - m3*x74)
-    x96 = x19*(x78 + x18*x80 - x26*x88)
-    x97 = c14*(sin_theta3 + cos_theta3*x80 - x23*x88 - x15*x96)
+    x22 = cos_theta3*cos_theta1 + sin_theta3*sin_theta1
+    x23 = m3*x22
+    x24 = cos_theta2*cos_theta1 + sin_theta2*sin_theta1
+    x25 = c3*x24 - x22*x15
+    x26 = x18*x25
+    x27 = c4*x21 + x6*x5 + c8*sin_theta1 + x10*x23 + x16*x26
+    x28 = c1*cos_theta1 - x22*x11 - x25*x19
+    x29 = 1.0/(c0 + m3*x6*x6 - x25*x26)
+    x30 = x28*x29
+    x31 = c9 + m3*sin_theta3*sin_theta3 - x17*x19 - x28*x30
+    x32 = (x20 + x27*x30)/x31
+    x33 = x32/x31
+    x34 = l1*x1
+    x35 = x29*(x27 + x28*x32)
+    x36 = x32 - cos_theta1*x35
+    x37 = g*sin_theta1
+    x38 = x35 - cos_theta1*x32
+    x39 = x37 - x38
+    x40 = (x34 - x36 + x39*x30)/x31
+    x41 = x18*(x16 + x25*x35 - x17*x32)
+    x42 = cos_theta2*x41 + x36
+    x43 = x34 + l2*x3
+    x44 = l1*x13
+    x45 = g*sin_theta2
+    x46 = x24*x35 - (x41 + cos_theta2*x32)
+    x47 = -(x44 - x45 + x46)
+    x48 = l2*x21
+    x49 = x24*x41 - x38
+    x50 = x37 + x48 + x49 - x47*x26
+    x51 = (x42 - x43 - x47*x19 - x50*x30)/x31
+    x52 = x10 + x22*x35 - cos_theta3*x32 - x14*x41
+    x53 = l3*x4
+    x54 = x45 - (x44 - x8*x53) + x14*x52 - x46
+    x55 = cos_theta3*x52 + x42 - (x43 + sin_theta3*x53) - x54*x19
+    x56 = x37 + (x48 + x6*x53) + x22*x52 + x49 - x54*x26
+    x57 = (x55 - x56*x30)/x31
+    x58 = c10*x35
+    x59 = x7 + x22*x58
+    x60 = c3*(x13 + x24*x58) - x59*x15
+    x61 = c11*x35 - x59*x23 - x60*x26
+    x62 = c1*(x1 + cos_theta1*x58) - x59*x11 - x60*x19 - x61*x30
+    x63 = x62/x31
+    x64 = c12*x41
+    x65 = x9 - x14*x64
+    x66 = c13*x41 + x65*x15
+    x67 = c3*(x21 + x24*x64) + x65*x23 - x66*x26
+    x68 = c3*(x3 - cos_theta2*x64) - x65*x11 + x66*x19 + x67*x30
+    x69 = x68/x31
+    x70 = x6 - x8*x26
+    x71 = m3*x4
+    x72 = (sin_theta3 + x8*x19 + x70*x30)*x71/x31
+    x73 = c3*sin_theta2 - sin_theta3*x15
+    x74 = c1*sin_theta1 - sin_theta3*x23 - x73*x26
+    x75 = (sin_theta3*x11 + x73*x19 + x74*x30)/x31
+    x76 = x33*x30
+    x77 = x29*(x39 + x28*x40)
+    x78 = x29*(x50 - x28*x51)
+    x79 = x29*(x56 - x28*x57)
+    x80 = x29*(x61 - x28*x63)
+    x81 = x29*(x67 + x28*x69)
+    x82 = x29*(x70*x71 + x28*x72)
+    x83 = x29*(x74 + x28*x75)
+    x84 = x18*(x17*x33 - x25*x76)
+    x85 = x18*(x17*x40 - x25*x77)
+    x86 = x18*(x17*x51 + x25*x78 - x47)
+    x87 = x18*(x17*x57 + x25*x79 - x54)
+    x88 = x18*(x17*x63 + x25*x80 - x60)
+    x89 = x18*(x66 + x17*x69 - x25*x81)
+    x90 = x18*(x8*x71 + x17*x72 - x25*x82)
+    x91 = x18*(x73 + x17*x75 - x25*x83)
+    x92 = c14*(c14*x52 + cos_theta3*x72 - x22*x82 - x14*x90)
+    x93 = c14*(sin_theta3 + cos_theta3*x75 - x22*x83 - x14*x91)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (-x35, x42, -x53, -x58, x64, x70, x77, x80),
+        (-x33, x40, -x51, -x57, x63, x69, x72, x75),
         (
-            c10*x81,
+            c10*x76,
+            -c10*x77,
+            -c10*x78,
+            -c10*x79,
+            c10*x80,
+            -c10*x81,
             -c10*x82,
             -c10*x83,
-            -c10*x84,
-            c10*x85,
-            -c10*x86,
-            c10*x87,
-            -c10*x88,
         ),
         (
-            c12*x89,
+            c12*x84,
+            -c12*x85,
+            c12*x86,
+            c12*x87,
+            -c12*x88,
+            -c12*x89,
             -c12*x90,
-            c12*x91,
-            c12*x92,
-            -c12*x93,
-            -c12*x94,
-            -c12*x95,
-            -c12*x96,
+            -c12*x91,
         ),
         (
-            -c14*(x23*x81 + x15*x89 - cos_theta3*x35),
-            c14*(x23*x82 + x15*x90 - cos_theta3*x42),
-            c14*(cos_theta3*x53 + x23*x83 - x15*x91),
-            c14*(cos_theta3*x58 + x23*x84 - x15*x92),
-            c14*(x60 + x15*x93 - cos_theta3*x64 - x23*x85),
-            c14*(x66 + x23*x86 + x15*x94 - cos_theta3*x70),
-            -c14*(x71 + cos_theta3*x77 + x23*x87 - x15*x95),
-            -x97,
+            -c14*(x22*x76 + x14*x84 - cos_theta3*x33),
+            c14*(x22*x77 + x14*x85 - cos_theta3*x40),
+            c14*(cos_theta3*x51 + x22*x78 - x14*x86),
+            c14*(cos_theta3*x57 + x22*x79 - x14*x87),
+            c14*(x59 + x14*x88 - cos_theta3*x63 - x22*x80),
+            c14*(x65 + x22*x81 + x14*x89 - cos_theta3*x69),
+            -x92,
+            -x93,
         ),
     )
 

@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "7d1fac1378013962"
+DIGEST = "958bce6f0da5863b"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -127,7 +127,7 @@ CALLS_FUNCTIONS = (
     "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (91, 11), "jacobian": (254, 12), "parameter_jacobian": (244, 13),
+    "rhs": (91, 11), "jacobian": (254, 12), "parameter_jacobian": (240, 13),
     "energy": (50, 14), "mass_matrix": (20, 11), "positions": (19, 0),
     "hamiltonian_state": (34, 6), "rhs_hamiltonian": (94, 13),
     "jacobian_hamiltonian": (271, 13), "energy_hamiltonian": (76, 10),

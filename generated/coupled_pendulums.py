@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "coupled_pendulums"
-DIGEST = "9cf80092c6538a18"
+DIGEST = "fcbda5cf98eabeaf"
 COORDINATES = ("theta1", "theta2")
 STATE = ("theta1", "theta2", "theta1_dot", "theta2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -243,7 +243,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x9 = x8*x8
     x10 = (
         l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
+        - (l*cos_theta1*cos_theta1 + sin_theta1*x4)
     )
     x11 = x5*x5
     x12 = x6*x11
@@ -257,7 +257,7 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x20 = x16*x16
     x21 = (
         l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+        + (l*cos_theta2*cos_theta2 - sin_theta2*x4)
     )
     x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c3*cos_theta2
     # outputs

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "9cf80092c6538a18"
+DIGEST = "fcbda5cf98eabeaf"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -152,7 +152,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x9 = x8*x8
     x10 = (
         l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
+        - (l*cos_theta1*cos_theta1 + sin_theta1*x4)
     )
     x11 = x5*x5
     x12 = x6*x11
@@ -166,7 +166,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x20 = x16*x16
     x21 = (
         l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+        + (l*cos_theta2*cos_theta2 - sin_theta2*x4)
     )
     x22 = k*(x13*x20 + x21*x12 - x7*x20)/x14 + c2*cos_theta2
     # outputs
@@ -218,42 +218,42 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     x2 = sin_theta1 - sin_theta2
     x3 = l*x2
     x4 = d - x3
-    x5 = sqrt(c2*x0*x0 + x4*x4)
-    x6 = l*(x0*x1 - x2*(2.0*d - x3))/(d + x5)
+    x5 = c2*x0*x0 + x4*x4
+    sqrt_x5 = sqrt(x5)
+    x6 = l*(x0*x1 - x2*(2.0*d - x3))/(d + sqrt_x5)
     x7 = sin_theta1*x1 + cos_theta1*x4
     x8 = x6*x7
     x9 = sin_theta2*x1 + cos_theta2*x4
     x10 = x6*x9
     x11 = (
         l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x4 + l*cos_theta1*cos_theta1)
+        - (l*cos_theta1*cos_theta1 + sin_theta1*x4)
     )
-    x12 = x5*x5
-    x13 = x6*x12
-    x14 = l*x5
-    x15 = x5*x12
-    x16 = k*(l*x7*x8 + x11*x13 - x7*x7*x14)/x15 - c3*cos_theta1
-    x17 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x13
-    x18 = c4*(x5*x7*x9 + x17 - x9*x8)
-    x19 = c0*(c1*(delta_theta1*x16 + delta_theta2*x18/x15))
-    x20 = (
+    x12 = x5*x6
+    x13 = l*sqrt_x5
+    x14 = sqrt_x5*sqrt_x5*sqrt_x5
+    x15 = k*(l*x7*x8 + x11*x12 - x7*x7*x13)/x14 - c3*cos_theta1
+    x16 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x12
+    x17 = c4*(sqrt_x5*x7*x9 + x16 - x9*x8)
+    x18 = c0*(c1*(delta_theta1*x15 + delta_theta2*x17/x14))
+    x19 = (
         l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x4 - l*cos_theta2*cos_theta2)
+        + (l*cos_theta2*cos_theta2 - sin_theta2*x4)
     )
-    x21 = k*(x9*x9*x14 + x20*x13 - l*x9*x10)/x15 + c3*cos_theta2
-    x22 = c0*(c1*(delta_theta1*x18/x15 - delta_theta2*x21))
+    x20 = k*(x9*x9*x13 + x19*x12 - l*x9*x10)/x14 + c3*cos_theta2
+    x21 = c0*(c1*(delta_theta1*x17/x14 - delta_theta2*x20))
     # outputs
     return (
         theta1_dot*cos_theta1,
         -theta1_dot*sin_theta1,
         theta2_dot*cos_theta2,
         -theta2_dot*sin_theta2,
-        c0*(c1*(k*x8/x5 - c3*sin_theta1)),
-        -c0*(c1*(k*x10/x5 + c3*sin_theta2)),
+        c0*(c1*(k*x8/sqrt_x5 - c3*sin_theta1)),
+        -c0*(c1*(k*x10/sqrt_x5 + c3*sin_theta2)),
         delta_theta1_dot,
         delta_theta2_dot,
-        x19,
-        x22,
+        x18,
+        x21,
     )
 
 
@@ -302,48 +302,48 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     x3 = sin_theta1 - sin_theta2
     x4 = l*x3
     x5 = d - x4
-    x6 = sqrt(c2*x0*x0 + x5*x5)
-    x7 = l*(x2 - x3*(2.0*d - x4))/(d + x6)
+    x6 = c2*x0*x0 + x5*x5
+    sqrt_x6 = sqrt(x6)
+    x7 = l*(x2 - x3*(2.0*d - x4))/(d + sqrt_x6)
     x8 = sin_theta1*x1 + cos_theta1*x5
     x9 = x7*x8
-    x10 = k*x9/x6 - c3*sin_theta1
+    x10 = k*x9/sqrt_x6 - c3*sin_theta1
     x11 = c1*x10
     x12 = sin_theta2*x1 + cos_theta2*x5
     x13 = x7*x12
-    x14 = k*x13/x6 + c3*sin_theta2
+    x14 = k*x13/sqrt_x6 + c3*sin_theta2
     x15 = c1*x14
     x16 = l*x8
     x17 = (
         l*(cos_theta1*x0 - sin_theta1*sin_theta1)
-        - (sin_theta1*x5 + l*cos_theta1*cos_theta1)
+        - (l*cos_theta1*cos_theta1 + sin_theta1*x5)
     )
-    x18 = x6*x6
-    x19 = x7*x18
-    x20 = x6*x8
-    x21 = x6*x18
-    x22 = k*(x9*x16 + x17*x19 - x20*x16)/x21 - c3*cos_theta1
-    x23 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x19
-    x24 = c4*(x12*x20 + x23 - x12*x9)
-    x25 = x2 - x3*x5
-    x26 = x25*x20 + (sin_theta1*x0 - cos_theta1*x3)*x19 - x25*x9
-    x27 = (1.0 - x5/x6)*x18
-    x28 = (
-        delta_theta1*x22 + delta_theta2*x24/x21 + delta_l*(k*x26/x21 - c0*x10)
-        + delta_k*x9/x6 - delta_m*(x11 + g*sin_theta1)
-        - c5*(x5*x9 + x8*x27 - cos_theta1*x19)/x21 - c6*sin_theta1
+    x18 = x6*x7
+    x19 = sqrt_x6*x8
+    x20 = sqrt_x6*sqrt_x6*sqrt_x6
+    x21 = k*(x9*x16 + x17*x18 - x19*x16)/x20 - c3*cos_theta1
+    x22 = (sin_theta1*sin_theta2 + cos_theta1*cos_theta2)*x18
+    x23 = c4*(x12*x19 + x22 - x12*x9)
+    x24 = x2 - x3*x5
+    x25 = x24*x19 + (sin_theta1*x0 - cos_theta1*x3)*x18 - x24*x9
+    x26 = x6*(1.0 - x5/sqrt_x6)
+    x27 = (
+        delta_theta1*x21 + delta_theta2*x23/x20 + delta_l*(k*x25/x20 - c0*x10)
+        + delta_k*x9/sqrt_x6 - delta_m*(x11 + g*sin_theta1)
+        - c5*(x5*x9 + x8*x26 - cos_theta1*x18)/x20 - c6*sin_theta1
     )
-    x29 = l*x12
-    x30 = x6*x12
-    x31 = (
+    x28 = l*x12
+    x29 = sqrt_x6*x12
+    x30 = (
         l*(cos_theta2*x0 + sin_theta2*sin_theta2)
-        - (sin_theta2*x5 - l*cos_theta2*cos_theta2)
+        + (l*cos_theta2*cos_theta2 - sin_theta2*x5)
     )
-    x32 = k*(x29*x30 + x31*x19 - x13*x29)/x21 + c3*cos_theta2
-    x33 = x25*x30 + (sin_theta2*x0 - cos_theta2*x3)*x19 - x25*x13
-    x34 = (
-        delta_theta2*x32 + delta_l*(k*x33/x21 - c0*x14) + delta_k*x13/x6 + c6*sin_theta2
-        - delta_theta1*x24/x21 - delta_m*(x15 - g*sin_theta2)
-        - c5*(x5*x13 + x12*x27 - cos_theta2*x19)/x21
+    x31 = k*(x28*x29 + x30*x18 - x13*x28)/x20 + c3*cos_theta2
+    x32 = x24*x29 + (sin_theta2*x0 - cos_theta2*x3)*x18 - x24*x13
+    x33 = (
+        delta_theta2*x31 + delta_l*(k*x32/x20 - c0*x14) + delta_k*x13/sqrt_x6
+        + c6*sin_theta2 - delta_theta1*x23/x20 - delta_m*(x15 - g*sin_theta2)
+        - c5*(x5*x13 + x12*x26 - cos_theta2*x18)/x20
     )
     # outputs
     return (
@@ -355,8 +355,8 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
         -c0*x15,
         delta_theta1_dot,
         delta_theta2_dot,
-        c0*(c1*x28),
-        -c0*(c1*x34),
+        c0*(c1*x27),
+        -c0*(c1*x33),
     )
 
 

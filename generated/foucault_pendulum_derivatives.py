@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "5efa80397d1ad288"
+DIGEST = "b843254e1b1382cc"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    282 operations, 9 of them on parameters alone.
+    275 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -51,101 +51,100 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """
     # inputs
     x, y_, x_dot, y_dot = y.tolist() if hasattr(y, "tolist") else y
-    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
+    _, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = l*l
-    cos_latitude = cos(latitude)
-    c1 = Omega*cos_latitude
-    c2 = Omega*Omega
-    c3 = cos_latitude*c2
     sin_latitude = sin(latitude)
-    c4 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
+    cos_latitude = cos(latitude)
+    c1 = Omega*Omega
+    c2 = Omega*cos_latitude
+    c3 = cos_latitude*c1
+    c4 = sin_latitude*c3
     # intermediate terms
-    x0 = x*y_
-    x1 = y_*y_dot
-    x2 = y_dot*x1
-    x3 = x0*x2
-    x4 = x*x
+    x0 = x*x
+    x1 = x*y_
+    x2 = y_*y_dot
+    x3 = y_dot*x2
+    x4 = x1*x3
     x5 = y_*y_
-    x6 = x4 + x5 - c0
-    x7 = x6*x6
-    x8 = x6*x7
-    x9 = sqrt(-x6)
-    x10 = x9*x9
-    x11 = c1*(3.0*x4 + x10)
-    x12 = x9*x10
-    x13 = x10*x12
-    x14 = cos_latitude*x9
-    x15 = sin_latitude*y_
-    x16 = x14 + x15
-    x17 = x6 - x4
-    x18 = x_dot*x_dot
-    x19 = x*x18
-    x20 = 2.0*x5 - x6
-    x21 = y_dot*(x*y_dot)
-    x22 = x*x0
-    x23 = x_dot*y_dot*x22
-    x24 = x10 - x4
-    x25 = c1*(2.0*x10 - 3.0*x24)
-    x26 = (
-        4.0*x3/x8 + x1*x11/x13 + c3*x*(x16 - x14)/x12
-        + 2.0*((2.0*x17 - x6)*x19/x8 - (x6 + 2.0*x20)*x21/x8) - 8.0*x23/x8 - x1*x25/x13
+    x6 = x0 - c0
+    x7 = x5 + x6
+    x8 = x7*x7
+    x9 = cos_latitude*y_
+    x10 = sqrt(-x7)
+    x11 = sin_latitude - x9/x10
+    x12 = x*x1
+    x13 = x10*x10
+    x14 = x10*x13
+    x15 = x11 - cos_latitude*x12/x14
+    x16 = Omega*y_dot
+    x17 = sin_latitude*y_
+    x18 = x17 + cos_latitude*x10
+    x19 = 1.0 - cos_latitude*x18/x10
+    x20 = x13 - x0
+    x21 = sin_latitude - x20*x9/x14
+    x22 = c0 - x5
+    x23 = x_dot*x_dot
+    x24 = x*x23
+    x25 = x_dot*y_dot*x12
+    x26 = 2.0*x5 - x7
+    x27 = y_dot*(x*y_dot)
+    x28 = x4/x8 + x15*x16 + c1*x*x19 + x21*x16 - x22*x24/x8 - 2.0*x25/x8 - x26*x27/x8
+    x29 = g*x
+    x30 = x12*x23
+    x31 = x11*x18
+    x32 = x7 - 2.0*x0
+    x33 = y_*x23
+    x34 = Omega*x_dot
+    x35 = x_dot*x1*x2
+    x36 = x30/x8 + x6*x3/x8 + c1*x31 + x32*x33/x8 - x21*x34 - 2.0*x35/x8 - x15*x34
+    x37 = g*y_
+    x38 = x36 - x37/x10
+    x39 = 1.0/(1.0 - x5/x7)
+    x40 = x39*x1
+    x41 = y_*x39
+    x42 = 1.0 - x0/x7 - x12*x41/x8
+    x43 = (x28 - x29/x10 + x38*x40/x7)/x42
+    x44 = x43*x1
+    x45 = x39*(x38 + x44/x7)
+    x46 = x7*x8
+    x47 = c2*(2.0*x13 - 3.0*x20)
+    x48 = x13*x14
+    x49 = c2*(3.0*x0 + x13)
+    x50 = (
+        8.0*x25/x46 + x2*x47/x48 + 2.0*((x7 + 2.0*x22)*x24/x46 + (x7 + 2.0*x26)*x27/x46)
+        - 4.0*x4/x46 - x2*x49/x48 - c4*x1/x14
     )
-    x27 = g*x
-    x28 = cos_latitude*y_
-    x29 = sin_latitude - x28/x9
-    x30 = x29 - cos_latitude*x22/x12
-    x31 = Omega*y_dot
-    x32 = c4 - cos_latitude*x16/x9
-    x33 = sin_latitude - x24*x28/x12
-    x34 = x17*x19/x7 + x3/x7 + x30*x31 + c2*x*x32 + x33*x31 - 2.0*x23/x7 - x20*x21/x7
-    x35 = x22*x18
-    x36 = x6 - x5
-    x37 = x16*x29
-    x38 = x6 - 2.0*x4
-    x39 = y_*x18
-    x40 = Omega*x_dot
-    x41 = x_dot*x0*x1
-    x42 = x35/x7 + x36*x2/x7 + c2*x37 + x38*x39/x7 - x33*x40 - 2.0*x41/x7 - x30*x40
-    x43 = g*y_
-    x44 = x42 - x43/x9
-    x45 = m*(1.0/(m*(1.0 - x5/x6)))
-    x46 = x0*x45
-    x47 = y_*x45
-    x48 = 1.0 - x4/x6 - x22*x47/x7
-    x49 = (x34 - x27/x9 + x44*x46/x6)/x48
-    x50 = x49*x0
-    x51 = (x44 + x50/x6)*x45
-    x52 = y_*x_dot
-    x53 = (
-        4.0*x35/x8 + x52*x25/x13 + c3*(y_*x16 + x10*x29)/x12
-        + 2.0*((2.0*x36 - x6)*x2/x8 + (2.0*x38 - x6)*x39/x8) - 8.0*x41/x8 - x52*x11/x13
+    x51 = y_*x_dot
+    x52 = (
+        4.0*x30/x46 + x51*x47/x48 + c3*(y_*x18 + x13*x11)/x14
+        + 2.0*((2.0*x6 - x7)*x3/x46 + (2.0*x32 - x7)*x33/x46) - 8.0*x35/x46 - x51*x49/x48
     )
-    x54 = x53 + x43/x12 + 2.0*(x50/x7 + x5*x51/x7)
-    x55 = x26 + x27/x12 + 2.0*(x4*x49/x7 + x51*x0/x7) + x54*x46/x6
-    x56 = l*x55/x48
-    x57 = x*(1.0 + x5*x45/x6)/(x48*x9)
-    x58 = Omega*x
-    x59 = x_dot*x33 + x_dot*x30 - 2.0*Omega*x37
-    x60 = (y_dot*x30 + 2.0*x32*x58 + y_dot*x33 - x59*x46/x6)/x48
-    x61 = cos_latitude + x15/x9
-    x62 = x61 + sin_latitude*x22/x12
-    x63 = x28 - sin_latitude*x9
-    x64 = cos_latitude + x15*x24/x12
-    x65 = y_dot*x62 + (sin_latitude*x16 - cos_latitude*x63)*x58/x9 + y_dot*x64
-    x66 = x_dot*x64 + x_dot*x62 - Omega*(x16*x61 + x29*x63)
-    x67 = Omega*(x65 - x66*x46/x6)/x48
+    x53 = x52 + x37/x14 + 2.0*(x44/x8 + x5*x45/x8)
+    x54 = 2.0*(x0*x43/x8 + x45*x1/x8) - (x50 - x29/x14) + x53*x40/x7
+    x55 = l*x54/x42
+    x56 = x*(1.0 + x5*x39/x7)/(x42*x10)
+    x57 = Omega*x
+    x58 = x_dot*x21 + x_dot*x15 - 2.0*Omega*x31
+    x59 = (y_dot*x15 + 2.0*x19*x57 + y_dot*x21 - x58*x40/x7)/x42
+    x60 = cos_latitude + x17/x10
+    x61 = x60 + sin_latitude*x12/x14
+    x62 = x9 - sin_latitude*x10
+    x63 = cos_latitude + x20*x17/x14
+    x64 = y_dot*x61 + (sin_latitude*x18 - cos_latitude*x62)*x57/x10 + y_dot*x63
+    x65 = x_dot*x63 + x_dot*x61 - Omega*(x18*x60 + x11*x62)
+    x66 = Omega*(x64 - x65*x40/x7)/x42
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, x56, -x57, x60, x67),
+        (0.0, x55, -x56, x59, x66),
         (
             0.0,
-            (l*x54 + x56*x0/x6)*x45,
-            -(1.0/x9 + x*x57/x6)*x47,
-            -(x59 - x60*x0/x6)*x45,
-            -(Omega*x66 - x67*x0/x6)*x45,
+            x39*(l*x53 + x55*x1/x7),
+            -(1.0/x10 + x*x56/x7)*x41,
+            -x39*(x58 - x59*x1/x7),
+            -x39*(Omega*x65 - x66*x1/x7),
         ),
     )
 
@@ -153,7 +152,7 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    390 operations, 10 of them on parameters alone.
+    382 operations, 9 of them on parameters alone.
 
     Parameters
     ----------
@@ -174,124 +173,122 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = l*l
-    c1 = m*Omega
+    c1 = 1.0/m
+    c2 = m*Omega
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
-    c2 = Omega*cos_latitude
-    c3 = Omega*Omega
-    c4 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c5 = cos_latitude*c3
+    c3 = Omega*cos_latitude
+    c4 = Omega*Omega
+    c5 = sin_latitude*cos_latitude
+    c6 = cos_latitude*c4
     # intermediate terms
-    x0 = x*x
-    x1 = y_*y_
-    x2 = x0 + x1 - c0
-    x3 = x2 - x0
-    x4 = sin_latitude*y_
-    x5 = sqrt(-x2)
-    x6 = cos_latitude*y_
-    x7 = sin_latitude - x6/x5
-    x8 = p_y - c1*x*x7
-    x9 = x*y_
-    x10 = 1.0/(m*(1.0 - x1/x2))
-    x11 = m*x10
-    x12 = x9*x11
-    x13 = p_x + c1*(x4 + cos_latitude*(x5 + x0/x5)) + x8*x12/x2
-    x14 = x2*x2
-    x15 = 1.0 - x0/x2 - x9*x12/x14
-    x16 = m*x15
-    x17 = x13/x16
-    x18 = x*x17
-    x19 = x3*x18
-    x20 = x2 - 2.0*x0
-    x21 = x17*x9
-    x22 = x10*(x8 + m*x21/x2)
-    x23 = y_*x22
-    x24 = x20*x23
-    x25 = x5*x5
-    x26 = x25 - (x0 + 2.0*x25)
-    x27 = c2*x
-    x28 = x26*x27
-    x29 = x5*x25
-    x30 = x17*x20
-    x31 = x22*x9
-    x32 = Omega*(x7 - cos_latitude*x*x9/x29)
-    x33 = y_*(x30 - 2.0*x31)/x14 - x32
-    x34 = ((2.0*x19 + x24)/x14 - x28/x29 + x33*x12/x2)/x15
-    x35 = x1 - 0.5*x2
+    x0 = y_*y_
+    x1 = c0 - x0
+    x2 = sin_latitude*y_
+    x3 = x*x
+    x4 = x3 - c0
+    x5 = x0 + x4
+    x6 = sqrt(-x5)
+    x7 = cos_latitude*y_
+    x8 = sin_latitude - x7/x6
+    x9 = p_y - c2*x*x8
+    x10 = 1.0/(1.0 - x0/x5)
+    x11 = x*y_
+    x12 = x10*x11
+    x13 = p_x + c2*(x2 + cos_latitude*(x6 + x3/x6)) + x9*x12/x5
+    x14 = x5*x5
+    x15 = 1.0 - x3/x5 - x11*x12/x14
+    x16 = c1*x13/x15
+    x17 = x*x16
+    x18 = x1*x17
+    x19 = x5 - 2.0*x3
+    x20 = x16*x11
+    x21 = x10*(c1*x9 + x20/x5)
+    x22 = y_*x21
+    x23 = x19*x22
+    x24 = x6*x6
+    x25 = x24 - (x3 + 2.0*x24)
+    x26 = c3*x
+    x27 = x25*x26
+    x28 = x6*x24
+    x29 = x16*x19
+    x30 = x21*x11
+    x31 = x*x11
+    x32 = Omega*(x8 - cos_latitude*x31/x28)
+    x33 = y_*(x29 - 2.0*x30)/x14 - x32
+    x34 = ((2.0*x18 - x23)/x14 + x27/x28 - x33*x12/x5)/x15
+    x35 = x0 - 0.5*x5
     x36 = 2.0*x35
-    x37 = x22*x36
-    x38 = x25 - x0
-    x39 = Omega*(sin_latitude - x6*x38/x29)
-    x40 = x36*x18
-    x41 = x2 - x1
-    x42 = x41*x23
-    x43 = x1 + x25
-    x44 = x43*x27
-    x45 = (x40 - 2.0*x42)/x14 - x44/x29
-    x46 = (x*(2.0*x21 + x37)/x14 - x39 + x45*x12/x2)/x15
-    x47 = 1.0/x16
-    x48 = x10*x9/(x2*x15)
-    x49 = (x33 + x34*x9/x2)*x11
-    x50 = (x45 + x46*x9/x2)*x11
-    x51 = cos_latitude*x5
-    x52 = x4 + x51
+    x37 = x21*x36
+    x38 = x24 - x3
+    x39 = Omega*(sin_latitude - x7*x38/x28)
+    x40 = x36*x17
+    x41 = x4*x22
+    x42 = x0 + x24
+    x43 = x42*x26
+    x44 = (x40 - 2.0*x41)/x14 - x43/x28
+    x45 = (x*(2.0*x20 + x37)/x14 - x39 + x44*x12/x5)/x15
+    x46 = c1/x15
+    x47 = c1*x12/(x5*x15)
+    x48 = x34*x11
+    x49 = x10*(x33 - x48/x5)
+    x50 = x45*x11
+    x51 = x10*(x44 + x50/x5)
+    x52 = x2 + cos_latitude*x6
     x53 = cos_latitude*x52
-    x54 = c3*(c4 - x53/x5 - cos_latitude*x0*(x52 - x51)/x29)
-    x55 = c2*x17
-    x56 = x25*x29
-    x57 = x2 - 4.0*x0
-    x58 = x2*x14
-    x59 = x22*x21
-    x60 = x9*x23
-    x61 = (x2 + 2.0*x20)*x59/x58 + x49*x60/x14 - x19*x34/x14
-    x62 = x17*x17
-    x63 = c2*x31
-    x64 = y_*x30
-    x65 = (
-        x54 + x26*(3.0*x0 + x25)*x55/x56 + x57*x23*x23/x58 + x28*x34/x29 + x32*x49 + 2.0*x61
-        - x3*x57*x62/x58 - (x25 + (3.0*x0 + 2.0*x25))*x63/x56 - x24*x34/x14 - x49*x64/x14
-        - g*(x0 + x25)/x29
+    x54 = x5 - 4.0*x3
+    x55 = x5*x14
+    x56 = c3*x16
+    x57 = x24*x28
+    x58 = x20*x21
+    x59 = x11*x22
+    x60 = (x5 + 2.0*x19)*x58/x55 + x49*x59/x14 - x18*x34/x14
+    x61 = c3*x30
+    x62 = y_*x29
+    x63 = (
+        c4*(1.0 - x53/x6 - c5*x31/x28) + x16*x16*x1*x54/x55 + x25*(3.0*x3 + x24)*x56/x57
+        + x54*x22*x22/x55 + x23*x34/x14 + x32*x49 + 2.0*x60
+        - (x24 + (3.0*x3 + 2.0*x24))*x61/x57 - x27*x34/x28 - x49*x62/x14 - g*(x3 + x24)/x28
     )
-    x66 = x17*x22
-    x67 = x25*x43
-    x68 = c2*x22
-    x69 = x22*x31
-    x70 = x17*x21*(x2 - 2.0*x3)/x58 + x50*x60/x14 - (-2.0*x35)*x69/x58 - x19*x46/x14
-    x71 = c5*x*(y_*x52 + x7*x25)/x29 + g*x9/x29
-    x72 = c2*x21
-    x73 = (
-        (2.0*x1*x2 + x2*x20 - 4.0*x1*x20)*x66/x58 + (x67 + x0*(3.0*x1 + x25))*x68/x56
-        + x28*x46/x29 + x32*x50 + 2.0*x70 + x71 - (2.0*x25 + 3.0*x26)*x72/x56 - x24*x46/x14
-        - x50*x64/x14
+    x64 = x16*x21
+    x65 = x24*x42
+    x66 = c3*x21
+    x67 = x21*x30
+    x68 = x16*x20*(x5 + 2.0*x1)/x55 + x18*x45/x14 + x51*x59/x14 - (-2.0*x35)*x67/x55
+    x69 = c6*x*(y_*x52 + x8*x24)/x28 + g*x11/x28
+    x70 = c3*x20
+    x71 = (
+        (2.0*x0*x5 + x5*x19 - 4.0*x0*x19)*x64/x55 + (x65 + x3*(3.0*x0 + x24))*x66/x57
+        + x27*x45/x28 + x32*x51 + 2.0*x68 + x69 - (2.0*x24 + 3.0*x25)*x70/x57 - x23*x45/x14
+        - x51*x62/x14
     )
-    x74 = x*x34
-    x75 = (x2 - 2.0*x41)*x69/x58 + x42*x49/x14 - x30*x21/x58 - x21*x74/x14
-    x76 = (
-        (4.0*x0*x36 + 2.0*x0*x2 - x2*x36)*x66/x58 + (4.0*x25 - 3.0*x38)*x72/x56
-        + (x67 + 3.0*x0*x43 - 2.0*x0*x25)*x68/x56 + x34*x39 + x44*x49/x29 + 2.0*x75 + x71
-        - x37*x74/x14 - x40*x49/x14
+    x72 = x*x37
+    x73 = (x5 - 2.0*x4)*x67/x55 + x48*x17/x14 + x41*x49/x14 - x20*x29/x55
+    x74 = (
+        (4.0*x3*x36 + 2.0*x3*x5 - x5*x36)*x64/x55 + (4.0*x24 - 3.0*x38)*x70/x57
+        + (x65 + 3.0*x3*x42 - 2.0*x3*x24)*x66/x57 + x34*x72/x14 + x43*x49/x28 + 2.0*x73
+        + x69 - x34*x39 - x40*x49/x14
     )
-    x77 = x1 - 0.25*x2
-    x78 = x*x46
-    x79 = x21*x78/x14 - (x2 - 2.0*x36)*x59/x58 - x42*x50/x14
-    x80 = (
-        c3*(x43*x53/x29 - x7*x7) + x0*(4.0*x77)*x62/x58 + x22*x22*x41*(-4.0*x77)/x58
-        + 3.0*x43*x63/x56 + x37*x78/x14 + x40*x50/x14 + g*x43/x29 + 2.0*x79
-        - (x25*x38 + 3.0*x1*x38 - 2.0*x1*x25)*x55/x56 - x39*x46 - x44*x50/x29
+    x75 = x0 - 0.25*x5
+    x76 = x50*x17/x14 - (x5 - 2.0*x36)*x58/x55 - x41*x51/x14
+    x77 = (
+        c4*(x42*x53/x28 - x8*x8) + (4.0*x75)*x17*x17/x55 + x21*x21*x4*(-4.0*x75)/x55
+        + 3.0*x42*x61/x57 + x45*x72/x14 + x40*x51/x14 + g*x42/x28 + 2.0*x76
+        - (x24*x38 + 3.0*x0*x38 - 2.0*x0*x24)*x56/x57 - x39*x45 - x43*x51/x28
     )
     # outputs
     return (
-        (x34, -x46, x47, x48),
-        (x49, -x50, x47*x12/x2, x10*(1.0 + m*x48*x9/x2)),
-        (m*x65, -m*x73, -x34, -x49),
-        (-m*x76, -m*x80, x46, x50),
+        (-x34, -x45, x46, x47),
+        (x49, -x51, x46*x12/x5, x10*(c1 + x47*x11/x5)),
+        (m*x63, -m*x71, x34, -x49),
+        (-m*x74, -m*x77, x45, x51),
     )
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    359 operations, 9 of them on parameters alone.
+    349 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -311,123 +308,122 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     # inputs
     y = y.tolist() if hasattr(y, "tolist") else y
     x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y
-    m, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
+    _, l, g, Omega, latitude = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = l*l
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
     c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
+    c2 = Omega*cos_latitude
+    c3 = sin_latitude*cos_latitude
     c4 = cos_latitude*c1
     # intermediate terms
-    x0 = y_dot*y_dot
-    x1 = x*y_
-    x2 = y_*x1
-    x3 = x*x
-    x4 = y_*y_
-    x5 = x3 + x4 - c0
-    x6 = x5*x5
-    x7 = cos_latitude*y_
-    x8 = sqrt(-x5)
-    x9 = sin_latitude - x7/x8
-    x10 = x*x1
-    x11 = x8*x8
-    x12 = x8*x11
-    x13 = Omega*(x9 - cos_latitude*x10/x12)
-    x14 = cos_latitude*x8
-    x15 = sin_latitude*y_ + x14
+    x0 = x*y_
+    x1 = y_dot*y_dot
+    x2 = x0*x1
+    x3 = y_*y_
+    x4 = x*x
+    x5 = x4 - c0
+    x6 = x3 + x5
+    x7 = x6*x6
+    x8 = cos_latitude*y_
+    x9 = sqrt(-x6)
+    x10 = sin_latitude - x8/x9
+    x11 = x*x0
+    x12 = x9*x9
+    x13 = x9*x12
+    x14 = Omega*(x10 - cos_latitude*x11/x13)
+    x15 = sin_latitude*y_ + cos_latitude*x9
     x16 = cos_latitude*x15
-    x17 = c2 - x16/x8
-    x18 = x3 - x11
-    x19 = Omega*(sin_latitude + x7*x18/x12)
+    x17 = 1.0 - x16/x9
+    x18 = x4 + x6
+    x19 = Omega*(sin_latitude + x8*x18/x13)
     x20 = x_dot*x_dot
-    x21 = x3 - x5
+    x21 = c0 - x3
     x22 = x*x21
-    x23 = x_dot*x1
+    x23 = x_dot*x0
     x24 = y_dot*x23
-    x25 = 2.0*x4 - x5
+    x25 = 2.0*x3 - x6
     x26 = x*x25
     x27 = (
-        x0*x2/x6 + y_dot*x13 + c1*x*x17 + y_dot*x19 - x20*x22/x6 - 2.0*x*x24/x6 - x0*x26/x6
+        y_*x2/x7 + y_dot*x14 + c1*x*x17 + y_dot*x19 - x20*x22/x7 - 2.0*x*x24/x7 - x1*x26/x7
     )
-    x28 = x4 - x5
+    x28 = 2.0*x4 - x6
     x29 = y_*x28
-    x30 = 2.0*x3 - x5
-    x31 = y_*x30
-    x32 = x_dot*x23
-    x33 = (
-        x_dot*x19 + x0*x29/x6 + x20*x31/x6 + 2.0*y_*x24/x6 + x_dot*x13 - x*x32/x6
-        - c1*x9*x15
+    x30 = x_dot*x23
+    x31 = y_*x5
+    x32 = (
+        x_dot*x19 + x20*x29/x7 + 2.0*y_*x24/x7 + x_dot*x14 - x*x30/x7 - x1*x31/x7
+        - c1*x10*x15
     )
-    x34 = x33 + g*y_/x8
-    x35 = m*(1.0/(m*(1.0 - x4/x5)))
-    x36 = x1*x35
-    x37 = 1.0 - x3/x5 - x*x35*x2/x6
-    x38 = (x27 - g*x/x8 - x34*x36/x5)/x37
-    x39 = (x34 - x38*x1/x5)*x35
-    x40 = 4.0*x3 - x5
-    x41 = x5*x6
-    x42 = 4.0*x11 + 3.0*x18
-    x43 = c3*y_dot
-    x44 = x1*x43
-    x45 = x12*x11
-    x46 = x4*x40
-    x47 = x11 + (3.0*x3 + 2.0*x11)
-    x48 = (
-        x21*x40*x20/x41 + c1*(x17 + cos_latitude*x3*(x14 - x15)/x12) + 4.0*x30*x24/x41
-        + (4.0*x3*x25 + 2.0*x3*x5 - x5*x25)*x0/x41 + x42*x44/x45 - x0*x46/x41 - x47*x44/x45
+    x33 = x32 + g*y_/x9
+    x34 = 1.0/(1.0 - x3/x6)
+    x35 = x34*x0
+    x36 = 1.0 - x4/x6 - y_*x34*x11/x7
+    x37 = (x27 - g*x/x9 - x33*x35/x6)/x36
+    x38 = x34*(x33 - x37*x0/x6)
+    x39 = 4.0*x4 - x6
+    x40 = x6*x7
+    x41 = x6 - (3.0*x4 - 2.0*x6)
+    x42 = c2*y_dot
+    x43 = x0*x42
+    x44 = x13*x12
+    x45 = x3*x39
+    x46 = 4.0*x6 - 3.0*x18
+    x47 = (
+        x21*x39*x20/x40 + x41*x43/x44 + c1*(x17 - c3*x11/x13) + 4.0*x28*x24/x40
+        + (4.0*x4*x25 + 2.0*x4*x6 - x6*x25)*x1/x40 - x1*x45/x40 - x46*x43/x44
     )
-    x49 = x48 - g*(x3 + x11)/x12 + x39*x31/x6 - 2.0*x38*x22/x6
-    x50 = y_dot*x2/x6 - x*x23/x6
-    x51 = x13 + x19
-    x52 = x4 + x11
-    x53 = x11*x52 + x3*(3.0*x4 + x11)
-    x54 = c4*x*(y_*x15 + x9*x11)/x12
-    x55 = x1*x0
+    x48 = delta_x*(x47 - g*x21/x13 + x38*x29/x7 - 2.0*x37*x22/x7)
+    x49 = y_dot*x0
+    x50 = y_*x49/x7 - x*x23/x7
+    x51 = x14 + x19
+    x52 = x6*x5 + x4*(3.0*x3 - x6)
+    x53 = c4*x*(y_*x15 - x6*x10)/x13
+    x54 = x3*x6
+    x55 = 2.0*x54 + x6*x18 - 3.0*x3*x18
     x56 = x_dot*y_dot
-    x57 = 4.0*x4 - x5
-    x58 = x3*x57
-    x59 = x25*x55/x41 + (x5 - 2.0*x25)*x55/x41 - (x5 + 2.0*x21)*x32/x41 - x56*x58/x41
-    x60 = 2.0*x4*x11 + x11*x18 + 3.0*x4*x18
-    x61 = g*x1/x12
-    x62 = x53*x43/x45 + x54 + 2.0*x59 - x60*x43/x45 + x61 + 2.0*x38*x10/x6 - x39*x26/x6
-    x63 = (
-        delta_x*x49 + delta_y_dot*(2.0*(x50 - y_dot*x26/x6) + x51) - delta_y*x62
-        - 2.0*x*delta_x_dot*(x_dot*x21 + y_dot*x1)/x6
+    x57 = 4.0*x3 - x6
+    x58 = x4*x57
+    x59 = x25*x2/x40 + (x6 - 2.0*x25)*x2/x40 - (x6 + 2.0*x21)*x30/x40 - x56*x58/x40
+    x60 = g*x0/x13
+    x61 = x52*x42/x44 + x53 + x55*x42/x44 + 2.0*x59 + x60 + 2.0*x37*x11/x7 - x38*x26/x7
+    x62 = (
+        x48 + delta_y_dot*(2.0*(x50 - y_dot*x26/x7) + x51) - delta_y*x61
+        - 2.0*x*delta_x_dot*(x_dot*x21 + x49)/x7
     )
-    x64 = c3*x23
-    x65 = x30*x32/x41 + (x5 - 2.0*x30)*x32/x41 - (x5 + 2.0*x28)*x55/x41 - x56*x46/x41
-    x66 = x61 + (x54 + x42*x64/x45 + 2.0*x65 - x47*x64/x45)
-    x67 = c3*x_dot
-    x68 = (
-        x28*x57*x0/x41 + (4.0*x4*x30 + 2.0*x4*x5 - x5*x30)*x20/x41 + 4.0*x25*x24/x41
-        + x53*x67/x45 - x20*x58/x41 - x60*x67/x45 - c1*(x16*x52/x12 - x9*x9)
+    x63 = c2*x23
+    x64 = x28*x30/x40 + (x6 - 2.0*x28)*x30/x40 - (x6 - 2.0*x5)*x2/x40 - x56*x45/x40
+    x65 = x60 + (x53 + x41*x63/x44 + 2.0*x64 - x46*x63/x44)
+    x66 = c2*x_dot
+    x67 = (
+        x55*x66/x44 + c1*(x16*x5/x13 + x10*x10) + (2.0*x54 + 4.0*x3*x28 - x6*x28)*x20/x40
+        + 4.0*x25*x24/x40 + x52*x66/x44 - x20*x58/x40 - x5*x57*x1/x40
     )
-    x69 = delta_y*(x68 - g*x52/x12 + 2.0*x39*x29/x6 - x38*x26/x6)
-    x70 = (
-        delta_x*(x66 + x38*x31/x6 - 2.0*x39*x2/x6)
-        + delta_x_dot*(2.0*(x_dot*x31/x6 + x50) + x51)
-        + 2.0*y_*delta_y_dot*(y_dot*x28 + x23)/x6 - x69
+    x68 = delta_y*(x37*x26/x7 + 2.0*x38*x31/x7 - (x67 + g*x5/x13))
+    x69 = (
+        delta_x*(x65 + x37*x29/x7 - 2.0*y_*x38*x0/x7) + x68
+        + delta_x_dot*(2.0*(x_dot*x29/x7 + x50) + x51)
+        - 2.0*y_*delta_y_dot*(y_dot*x5 - x23)/x7
     )
-    x71 = (x63 - x70*x36/x5)/x37
+    x70 = (x62 - x69*x35/x6)/x36
     # outputs
     return (
         x_dot,
         y_dot,
-        x38,
-        -x39,
+        x37,
+        -x38,
         delta_x_dot,
         delta_y_dot,
-        x71,
-        -(x70 - x71*x1/x5)*x35,
+        x70,
+        -x34*(x69 - x70*x0/x6),
     )
 
 
 def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     """`rhs_variational` with perturbed parameters, whose perturbations precede them.
 
-    492 operations, 11 of them on parameters alone.
+    483 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -449,149 +445,147 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     y = y.tolist() if hasattr(y, "tolist") else y
     x, y_, x_dot, y_dot, delta_x, delta_y, delta_x_dot, delta_y_dot = y
     params = params.tolist() if hasattr(params, "tolist") else params
-    _, delta_l, delta_g, delta_Omega, delta_latitude, m, l, g, Omega, latitude = params
+    _, delta_l, delta_g, delta_Omega, delta_latitude, _, l, g, Omega, latitude = params
     # terms of the parameters alone
     c0 = l*l
     sin_latitude = sin(latitude)
     cos_latitude = cos(latitude)
     c1 = Omega*Omega
-    c2 = cos_latitude*cos_latitude + sin_latitude*sin_latitude
-    c3 = Omega*cos_latitude
-    c4 = Omega*delta_latitude
-    c5 = cos_latitude*c1
-    c6 = l*delta_l
+    c2 = Omega*cos_latitude
+    c3 = sin_latitude*cos_latitude
+    c4 = l*delta_l
+    c5 = c1*c3
+    c6 = Omega*delta_latitude
+    c7 = cos_latitude*c1
     # intermediate terms
     x0 = x*y_
     x1 = y_dot*y_dot
     x2 = x0*x1
     x3 = y_*x2
-    x4 = x*x
-    x5 = y_*y_
-    x6 = x4 + x5 - c0
-    x7 = x6*x6
-    x8 = cos_latitude*y_
-    x9 = sqrt(-x6)
-    x10 = sin_latitude - x8/x9
-    x11 = x*x0
-    x12 = x9*x9
-    x13 = x9*x12
-    x14 = x10 - cos_latitude*x11/x13
-    x15 = Omega*x14
-    x16 = sin_latitude*y_
-    x17 = cos_latitude*x9
-    x18 = x16 + x17
+    x4 = y_*y_
+    x5 = x*x
+    x6 = x5 - c0
+    x7 = x4 + x6
+    x8 = x7*x7
+    x9 = cos_latitude*y_
+    x10 = sqrt(-x7)
+    x11 = sin_latitude - x9/x10
+    x12 = x*x0
+    x13 = x10*x10
+    x14 = x10*x13
+    x15 = x11 - cos_latitude*x12/x14
+    x16 = Omega*x15
+    x17 = sin_latitude*y_
+    x18 = x17 + cos_latitude*x10
     x19 = cos_latitude*x18
-    x20 = c2 - x19/x9
-    x21 = x4 - x12
-    x22 = sin_latitude + x8*x21/x13
+    x20 = 1.0 - x19/x10
+    x21 = x5 + x7
+    x22 = sin_latitude + x9*x21/x14
     x23 = Omega*x22
     x24 = x_dot*x_dot
-    x25 = x4 - x6
+    x25 = c0 - x4
     x26 = x*x25
     x27 = x_dot*x0
     x28 = y_dot*x27
     x29 = x*x28
-    x30 = 2.0*x5 - x6
+    x30 = 2.0*x4 - x7
     x31 = x*x30
-    x32 = x3/x7 + y_dot*x15 + c1*x*x20 + y_dot*x23 - x24*x26/x7 - 2.0*x29/x7 - x1*x31/x7
+    x32 = x3/x8 + y_dot*x16 + c1*x*x20 + y_dot*x23 - x24*x26/x8 - 2.0*x29/x8 - x1*x31/x8
     x33 = g*x
-    x34 = x5 - x6
+    x34 = 2.0*x5 - x7
     x35 = y_*x34
-    x36 = 2.0*x4 - x6
-    x37 = y_*x36
-    x38 = y_*x28
-    x39 = x_dot*x27
-    x40 = x*x39
-    x41 = x10*x18
-    x42 = x_dot*x23 + x1*x35/x7 + x24*x37/x7 + 2.0*x38/x7 + x_dot*x15 - x40/x7 - c1*x41
-    x43 = g*y_
-    x44 = x42 + x43/x9
-    x45 = m*(1.0/(m*(1.0 - x5/x6)))
-    x46 = x0*x45
-    x47 = 1.0 - x4/x6 - y_*x45*x11/x7
-    x48 = (x32 - x33/x9 - x44*x46/x6)/x47
-    x49 = x48*x0
-    x50 = (x44 - x49/x6)*x45
-    x51 = 4.0*x4 - x6
-    x52 = x6*x7
-    x53 = x17 - x18
-    x54 = 4.0*x12 + 3.0*x21
-    x55 = c3*y_dot
-    x56 = x0*x55
-    x57 = x13*x12
-    x58 = x5*x51
-    x59 = x12 + (3.0*x4 + 2.0*x12)
-    x60 = (
-        x25*x51*x24/x52 + c1*(x20 + cos_latitude*x4*x53/x13) + 4.0*x36*x28/x52
-        + (4.0*x4*x30 + 2.0*x4*x6 - x6*x30)*x1/x52 + x54*x56/x57 - x1*x58/x52 - x59*x56/x57
+    x36 = y_*x28
+    x37 = x_dot*x27
+    x38 = x*x37
+    x39 = y_*x6
+    x40 = x11*x18
+    x41 = x_dot*x23 + x24*x35/x8 + 2.0*x36/x8 + x_dot*x16 - x38/x8 - x1*x39/x8 - c1*x40
+    x42 = g*y_
+    x43 = x41 + x42/x10
+    x44 = 1.0/(1.0 - x4/x7)
+    x45 = x44*x0
+    x46 = 1.0 - x5/x7 - y_*x44*x12/x8
+    x47 = (x32 - x33/x10 - x43*x45/x7)/x46
+    x48 = x47*x0
+    x49 = x44*(x43 - x48/x7)
+    x50 = 4.0*x5 - x7
+    x51 = x7*x8
+    x52 = x7 - (3.0*x5 - 2.0*x7)
+    x53 = c2*y_dot
+    x54 = x0*x53
+    x55 = x14*x13
+    x56 = x4*x50
+    x57 = 4.0*x7 - 3.0*x21
+    x58 = (
+        x25*x50*x24/x51 + x52*x54/x55 + c1*(x20 - c3*x12/x14) + 4.0*x34*x28/x51
+        + (4.0*x5*x30 + 2.0*x5*x7 - x7*x30)*x1/x51 - x1*x56/x51 - x57*x54/x55
     )
-    x61 = x60 - g*(x4 + x12)/x13 + x50*x37/x7 - 2.0*x48*x26/x7
-    x62 = y_dot*x0
-    x63 = y_*x62/x7 - x*x27/x7
-    x64 = x15 + x23
-    x65 = Omega*x
-    x66 = delta_Omega*(y_dot*x14 + 2.0*x20*x65 + y_dot*x22)
-    x67 = cos_latitude + x16/x9
-    x68 = x67 + sin_latitude*x11/x13
-    x69 = x8 - sin_latitude*x9
-    x70 = cos_latitude - x16*x21/x13
-    x71 = y_dot*x68 + (sin_latitude*x18 - cos_latitude*x69)*x65/x9 + y_dot*x70
-    x72 = x5 + x12
-    x73 = x12*x72 + x4*(3.0*x5 + x12)
-    x74 = y_*x18 + x10*x12
-    x75 = c5*x
-    x76 = x74*x75/x13
-    x77 = x6 + 2.0*x25
-    x78 = x_dot*y_dot
-    x79 = 4.0*x5 - x6
-    x80 = x4*x79
-    x81 = x30*x2/x52 + (x6 - 2.0*x30)*x2/x52 - x77*x39/x52 - x78*x80/x52
-    x82 = 2.0*x5*x12 + x12*x21 + 3.0*x5*x21
-    x83 = g*x0/x13
-    x84 = x73*x55/x57 + x76 + 2.0*x81 - x82*x55/x57 + x83 + 2.0*x48*x11/x7 - x50*x31/x7
-    x85 = y_*(2.0*x12 + 3.0*x21)
-    x86 = y_*(3.0*x4 + x12)
-    x87 = (
-        x53*x75/x13 + 8.0*x29/x52 + x55*x85/x57
-        + 2.0*(x*x77*x24/x52 + x*(x6 + 2.0*x30)*x1/x52) - 4.0*x3/x52 - x55*x86/x57
+    x59 = delta_x*(x58 - g*x25/x14 + x49*x35/x8 - 2.0*x47*x26/x8)
+    x60 = y_dot*x0
+    x61 = y_*x60/x8 - x*x27/x8
+    x62 = x16 + x23
+    x63 = y_*(3.0*x5 - x7)
+    x64 = y_*(2.0*x7 - 3.0*x21)
+    x65 = x7 + 2.0*x25
+    x66 = (
+        4.0*x3/x51 + x53*x63/x55 + c5*x0/x14 + x53*x64/x55
+        + 2.0*(-(x*x65*x24/x51 + x*(x7 + 2.0*x30)*x1/x51)) - 8.0*x29/x51
     )
-    x88 = x50*x0
-    x89 = (
-        delta_x*x61 + delta_y_dot*(2.0*(x63 - y_dot*x31/x7) + x64) + x66 + c4*x71
-        - delta_y*x84 - 2.0*x*delta_x_dot*(x_dot*x25 + x62)/x7
-        - c6*(x87 - x33/x13 + 2.0*(x88/x7 - x4*x48/x7)) - delta_g*x/x9
+    x67 = x49*x0
+    x68 = Omega*x
+    x69 = delta_Omega*(y_dot*x15 + 2.0*x20*x68 + y_dot*x22)
+    x70 = cos_latitude + x17/x10
+    x71 = x70 + sin_latitude*x12/x14
+    x72 = x9 - sin_latitude*x10
+    x73 = cos_latitude - x17*x21/x14
+    x74 = y_dot*x71 + (sin_latitude*x18 - cos_latitude*x72)*x68/x10 + y_dot*x73
+    x75 = x7*x6 + x5*(3.0*x4 - x7)
+    x76 = c7*(y_*x18 - x7*x11)
+    x77 = x*x76/x14
+    x78 = x4*x7
+    x79 = 2.0*x78 + x7*x21 - 3.0*x4*x21
+    x80 = x_dot*y_dot
+    x81 = 4.0*x4 - x7
+    x82 = x5*x81
+    x83 = x30*x2/x51 + (x7 - 2.0*x30)*x2/x51 - x65*x37/x51 - x80*x82/x51
+    x84 = g*x0/x14
+    x85 = x75*x53/x55 + x77 + x79*x53/x55 + 2.0*x83 + x84 + 2.0*x47*x12/x8 - x49*x31/x8
+    x86 = (
+        x59 + delta_y_dot*(2.0*(x61 - y_dot*x31/x8) + x62)
+        + c4*(x66 + x33/x14 + 2.0*(x5*x47/x8 - x67/x8)) + x69 + c6*x74 - delta_y*x85
+        - 2.0*x*delta_x_dot*(x_dot*x25 + x60)/x8 - delta_g*x/x10
     )
-    x90 = c3*x27
-    x91 = x6 + 2.0*x34
-    x92 = x36*x39/x52 + (x6 - 2.0*x36)*x39/x52 - x91*x2/x52 - x78*x58/x52
-    x93 = x83 + (x76 + x54*x90/x57 + 2.0*x92 - x59*x90/x57)
-    x94 = c3*x_dot
-    x95 = (
-        8.0*x38/x52 + x94*x86/x57 + 2.0*(y_*x91*x1/x52 + y_*(x6 + 2.0*x36)*x24/x52)
-        - 4.0*x40/x52 - x94*x85/x57 - c5*x74/x13
+    x87 = c2*x27
+    x88 = x7 - 2.0*x6
+    x89 = x34*x37/x51 + (x7 - 2.0*x34)*x37/x51 - x88*x2/x51 - x80*x56/x51
+    x90 = x84 + (x77 + x52*x87/x55 + 2.0*x89 - x57*x87/x55)
+    x91 = c2*x_dot
+    x92 = (
+        x79*x91/x55 + c1*(x19*x6/x14 + x11*x11) + (2.0*x78 + 4.0*x4*x34 - x7*x34)*x24/x51
+        + 4.0*x30*x28/x51 + x75*x91/x55 - x24*x82/x51 - x6*x81*x1/x51
     )
-    x96 = delta_Omega*(x_dot*x22 + x_dot*x14 - 2.0*Omega*x41)
-    x97 = x_dot*x70 + x_dot*x68 - Omega*(x18*x67 + x10*x69)
-    x98 = (
-        x34*x79*x1/x52 + (4.0*x5*x36 + 2.0*x5*x6 - x6*x36)*x24/x52 + 4.0*x30*x28/x52
-        + x73*x94/x57 - x24*x80/x52 - x82*x94/x57 - c1*(x19*x72/x13 - x10*x10)
+    x93 = delta_y*(x47*x31/x8 + 2.0*x49*x39/x8 - (x92 + g*x6/x14))
+    x94 = (
+        x91*x64/x55 + 8.0*x36/x51 + x91*x63/x55
+        + 2.0*(y_*x88*x1/x51 + y_*(x7 + 2.0*x34)*x24/x51) - 4.0*x38/x51 - x76/x14
     )
-    x99 = delta_y*(x98 - g*x72/x13 + 2.0*x50*x35/x7 - x48*x31/x7)
-    x100 = (
-        delta_x*(x93 + x48*x37/x7 - 2.0*y_*x88/x7)
-        + delta_x_dot*(2.0*(x_dot*x37/x7 + x63) + x64)
-        + 2.0*y_*delta_y_dot*(y_dot*x34 + x27)/x7
-        + c6*(x95 - x43/x13 + 2.0*(x5*x50/x7 - x49/x7)) + delta_g*y_/x9 + x96 + c4*x97 - x99
+    x95 = delta_Omega*(x_dot*x22 + x_dot*x15 - 2.0*Omega*x40)
+    x96 = x_dot*x73 + x_dot*x71 - Omega*(x18*x70 + x11*x72)
+    x97 = (
+        delta_x*(x90 + x47*x35/x8 - 2.0*y_*x67/x8) + x93
+        + delta_x_dot*(2.0*(x_dot*x35/x8 + x61) + x62)
+        + c4*(x94 - x42/x14 + 2.0*(x4*x49/x8 - x48/x8)) + delta_g*y_/x10 + x95 + c6*x96
+        - 2.0*y_*delta_y_dot*(y_dot*x6 - x27)/x8
     )
-    x101 = (x89 - x100*x46/x6)/x47
+    x98 = (x86 - x97*x45/x7)/x46
     # outputs
     return (
         x_dot,
         y_dot,
-        x48,
-        -x50,
+        x47,
+        -x49,
         delta_x_dot,
         delta_y_dot,
-        x101,
-        -(x100 - x101*x0/x6)*x45,
+        x98,
+        -x44*(x97 - x98*x0/x7),
     )

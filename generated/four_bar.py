@@ -88,7 +88,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "0c66456443cf0e39"
+DIGEST = "13bec0f7f1ccee49"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")
@@ -122,7 +122,7 @@ CALLS_FUNCTIONS = (
     "points", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (141, 11), "jacobian": (413, 13), "parameter_jacobian": (437, 12),
+    "rhs": (141, 11), "jacobian": (413, 13), "parameter_jacobian": (428, 12),
     "energy": (40, 15), "constraints": (29, 0), "constraints_jacobian": (25, 0),
     "multipliers": (118, 8), "correction": (143, 7), "correction_rational": (137, 7),
     "correction_variational": (216, 7), "correction_sensitivity": (244, 7),

@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "0c66456443cf0e39"
+DIGEST = "13bec0f7f1ccee49"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    437 operations, 12 of them on parameters alone.
+    428 operations, 12 of them on parameters alone.
 
     Parameters
     ----------
@@ -89,107 +89,104 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x11 = cos_psi*x1
     cos_chi = cos(chi)
     x12 = chi_dot*chi_dot
-    x13 = cos_chi*x12
-    x14 = x5 + x6*x9
+    x13 = x5 + x6*x9
     sin_chi = sin(chi)
-    x15 = g*cos_chi
-    x16 = cos_phi*x4 + b*x11 - c*x13 + (1.5*(sin_psi*x14 + sin_chi*x15) - sin_phi*x9)
-    x17 = sin_psi*x1
-    x18 = sin_chi*x12
-    x19 = sin_phi*x4 + b*x17 - c*x18 - (1.5*(cos_psi*x14 + cos_chi*x15) - cos_phi*x9)
-    x20 = (2.0*cos_phi - 3.0*cos_psi*x6)/x8
-    x21 = c6*cos_psi - 0.5*x6*x20
-    x22 = c7*cos_chi
-    x23 = sin_phi*x20 + 3.0*(sin_psi*x21 + sin_chi*x22)
-    x24 = 1.0/(cos_phi*x20 + 3.0*(cos_psi*x21 + cos_chi*x22))
-    x25 = x23*x24
-    x26 = c6*sin_psi - 0.5*x6*x10
-    x27 = c7*sin_chi
-    x28 = sin_phi*x10 + 3.0*(sin_psi*x26 + sin_chi*x27) - x23*x25
-    x29 = (x16 + x19*x25)/x28
-    x30 = x24*(x19 + x23*x29)
-    x31 = x9 + x10*x29 - x20*x30
-    x32 = c0*x31
-    x33 = x0*x3 + x6*x32
-    x34 = (2.0*c2*x31 - 1.5*x33*x7)/x8
-    x35 = x33 - x6*x34
-    x36 = sin_phi*x32 - cos_phi*x3 - (sin_phi*x34 + 1.5*sin_psi*x35)
-    x37 = cos_phi*x32 + sin_phi*x3 - (cos_phi*x34 + 1.5*cos_psi*x35)
-    x38 = (x36 - x37*x25)/x28
-    x39 = x24*(x37 - x23*x38)
-    x40 = 0.5*x14 + x21*x30 - x26*x29
-    x41 = c8*x40
-    x42 = x6*x40
-    x43 = m2*(x2 + 3.0*x6*x41 - 3.0*c8*x42)/x8
-    x44 = x41 - 0.5*x6*x43
-    x45 = 3.0*sin_psi*x41 + x11 - (sin_phi*x43 + 3.0*sin_psi*x44)
-    x46 = 3.0*cos_psi*x41 - x17 - (cos_phi*x43 + 3.0*cos_psi*x44)
-    x47 = (x45 - x46*x25)/x28
-    x48 = x24*(x46 - x23*x47)
-    x49 = 0.5*x15 + x22*x30 - x27*x29
-    x50 = c9*x49
-    x51 = sin_chi*x50
-    x52 = cos_chi*x50
-    x53 = 3.0*x52 - (3.0*x52 + x18)
-    x54 = (3.0*x51 - (3.0*x51 - x13) - x53*x25)/x28
-    x55 = x24*(x53 - x23*x54)
-    x56 = (2.0*c4*cos_phi - 1.5*cos_psi*x7)/x8
-    x57 = cos_psi - x6*x56
-    x58 = sin_phi*x56 + 1.5*(sin_psi*x57 - sin_chi*cos_chi)
-    x59 = cos_phi*x56 + 1.5*(cos_psi*x57 - cos_chi*cos_chi)
-    x60 = (x58 - x59*x25)/x28
-    x61 = x24*(x59 - x23*x60)
-    x62 = g*cos_phi
-    x63 = (2.0*x31 - 3.0*x62)/x8
-    x64 = x6*x63
-    x65 = (1.0/3.0)*cos_phi*x63 - 0.5*cos_psi*x64
-    x66 = (1.0/3.0)*sin_phi*x63 - 0.5*sin_psi*x64 - x65*x25
-    x67 = x66/x28
-    x68 = x24*(x65 - x23*x67)
-    x69 = x5 + x6*x31 - 2.0*x40
-    x70 = 3.0*x42 + 2.0*(x62 + 0.5*b*x2 - x31) + 1.5*x6*x69
-    x71 = x70/x8
-    x72 = c6*x69 + x6*x71
-    x73 = cos_phi*x71 - 1.5*cos_psi*x72
-    x74 = (sin_phi*x71 - 1.5*sin_psi*x72 - x73*x25)/x28
-    x75 = x24*(x73 - x23*x74)
-    x76 = c7*(x15 - 2.0*x49)
-    x77 = x76*(sin_chi - cos_chi*x25)/x28
-    x78 = x24*(cos_chi*x76 - x23*x77)
+    x14 = g*cos_chi
+    x15 = (
+        cos_phi*x4 + b*x11 - c*cos_chi*x12 + (1.5*(sin_psi*x13 + sin_chi*x14) - sin_phi*x9)
+    )
+    x16 = sin_psi*x1
+    x17 = sin_chi*x12
+    x18 = sin_phi*x4 + b*x16 - c*x17 - (1.5*(cos_psi*x13 + cos_chi*x14) - cos_phi*x9)
+    x19 = (2.0*cos_phi - 3.0*cos_psi*x6)/x8
+    x20 = c6*cos_psi - 0.5*x6*x19
+    x21 = c7*cos_chi
+    x22 = sin_phi*x19 + 3.0*(sin_psi*x20 + sin_chi*x21)
+    x23 = 1.0/(cos_phi*x19 + 3.0*(cos_psi*x20 + cos_chi*x21))
+    x24 = x22*x23
+    x25 = c6*sin_psi - 0.5*x6*x10
+    x26 = c7*sin_chi
+    x27 = sin_phi*x10 + 3.0*(sin_psi*x25 + sin_chi*x26) - x22*x24
+    x28 = (x15 + x18*x24)/x27
+    x29 = x23*(x18 + x22*x28)
+    x30 = x9 + x10*x28 - x19*x29
+    x31 = c0*x30
+    x32 = x0*x3 + x6*x31
+    x33 = (2.0*c2*x30 - 1.5*x32*x7)/x8
+    x34 = x32 - x6*x33
+    x35 = sin_phi*x31 - cos_phi*x3 - (sin_phi*x33 + 1.5*sin_psi*x34)
+    x36 = cos_phi*x31 + sin_phi*x3 - (cos_phi*x33 + 1.5*cos_psi*x34)
+    x37 = (x35 - x36*x24)/x27
+    x38 = x23*(x36 - x22*x37)
+    x39 = 0.5*x13 + x20*x29 - x25*x28
+    x40 = c8*x39
+    x41 = x6*x39
+    x42 = m2*(x2 + 3.0*x6*x40 - 3.0*c8*x41)/x8
+    x43 = x40 - 0.5*x6*x42
+    x44 = 3.0*sin_psi*x40 + x11 - (sin_phi*x42 + 3.0*sin_psi*x43)
+    x45 = 3.0*cos_psi*x40 - x16 - (cos_phi*x42 + 3.0*cos_psi*x43)
+    x46 = (x44 - x45*x24)/x27
+    x47 = x23*(x45 - x22*x46)
+    x48 = (cos_chi + sin_chi*x24)*x12/x27
+    x49 = x23*(x17 + x22*x48)
+    x50 = (2.0*c4*cos_phi - 1.5*cos_psi*x7)/x8
+    x51 = cos_psi - x6*x50
+    x52 = sin_phi*x50 + 1.5*(sin_psi*x51 - sin_chi*cos_chi)
+    x53 = cos_phi*x50 + 1.5*(cos_psi*x51 - cos_chi*cos_chi)
+    x54 = (x52 - x53*x24)/x27
+    x55 = x23*(x53 - x22*x54)
+    x56 = g*cos_phi
+    x57 = (2.0*x30 - 3.0*x56)/x8
+    x58 = x6*x57
+    x59 = (1.0/3.0)*cos_phi*x57 - 0.5*cos_psi*x58
+    x60 = (1.0/3.0)*sin_phi*x57 - 0.5*sin_psi*x58 - x59*x24
+    x61 = x60/x27
+    x62 = x23*(x59 - x22*x61)
+    x63 = x5 + x6*x30 - 2.0*x39
+    x64 = 3.0*x41 + 2.0*(x56 + 0.5*b*x2 - x30) + 1.5*x6*x63
+    x65 = x64/x8
+    x66 = c6*x63 + x6*x65
+    x67 = cos_phi*x65 - 1.5*cos_psi*x66
+    x68 = (sin_phi*x65 - 1.5*sin_psi*x66 - x67*x24)/x27
+    x69 = x23*(x67 - x22*x68)
+    x70 = 0.5*x14 + x21*x29 - x26*x28
+    x71 = c7*(x14 - 2.0*x70)
+    x72 = x71*(sin_chi - cos_chi*x24)/x27
+    x73 = x23*(cos_chi*x71 - x22*x72)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            c0*(x34 + x10*x38 + x20*x39),
-            -c0*(x43 + x10*x47 + x20*x48),
-            c0*(x10*x54 + x20*x55),
+            c0*(x33 + x10*x37 + x19*x38),
+            -c0*(x42 + x10*x46 + x19*x47),
+            c0*(x10*x48 - x19*x49),
             0.0,
-            c0*(x10*x60 + x20*x61 - x56),
-            -c0*(x10*x67 + x20*x68 - (1.0/3.0)*x63),
-            c0*(x10*x74 + x20*x75 - x71),
-            -1.5*c0*(x10*x77 + x20*x78),
+            c0*(x10*x54 + x19*x55 - x50),
+            -c0*(x10*x61 + x19*x62 - (1.0/3.0)*x57),
+            c0*(x10*x68 + x19*x69 - x65),
+            -1.5*c0*(x10*x72 + x19*x73),
         ),
         (
-            3.0*c8*(0.5*x35 + x26*x38 + x21*x39),
-            -3.0*c8*(x44 + x26*x47 + x21*x48),
-            3.0*c8*(x26*x54 + x21*x55),
+            3.0*c8*(0.5*x34 + x25*x37 + x20*x38),
+            -3.0*c8*(x43 + x25*x46 + x20*x47),
+            3.0*c8*(x25*x48 - x20*x49),
             0.0,
-            3.0*c8*(x26*x60 + x21*x61 - 0.5*x57),
-            -c8*(0.5*x64 + 3.0*(x26*x67 + x21*x68)),
-            3.0*c8*(0.5*x72 + x26*x74 + x21*x75),
-            -4.5*c8*(x26*x77 + x21*x78),
+            3.0*c8*(x25*x54 + x20*x55 - 0.5*x51),
+            -c8*(0.5*x58 + 3.0*(x25*x61 + x20*x62)),
+            3.0*c8*(0.5*x66 + x25*x68 + x20*x69),
+            -4.5*c8*(x25*x72 + x20*x73),
         ),
         (
-            -3.0*c9*(x27*x38 + x22*x39),
-            3.0*c9*(x27*x47 + x22*x48),
-            -3.0*c9*(x27*x54 + x22*x55 - x50),
+            -3.0*c9*(x26*x37 + x21*x38),
+            3.0*c9*(x26*x46 + x21*x47),
+            3.0*c9*(c9*x70 + x21*x49 - x26*x48),
             0.0,
-            -3.0*c9*(0.5*cos_chi + x27*x60 + x22*x61),
-            3.0*c9*(x27*x67 + x22*x68),
-            -3.0*c9*(x27*x74 + x22*x75),
-            1.5*c9*(3.0*(x27*x77 + x22*x78) - x76),
+            -3.0*c9*(0.5*cos_chi + x26*x54 + x21*x55),
+            3.0*c9*(x26*x61 + x21*x62),
+            -3.0*c9*(x26*x68 + x21*x69),
+            1.5*c9*(3.0*(x26*x72 + x21*x73) - x71),
         ),
     )
 

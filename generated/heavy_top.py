@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "b3418c89ff35b25d"
+DIGEST = "836cba8e5e96f89e"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")
@@ -113,12 +113,12 @@ CALLS_FUNCTIONS = (
     "energy_hamiltonian", "lagrangian_state", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (34, 6), "jacobian": (79, 9), "parameter_jacobian": (88, 10), "energy": (27, 4),
+    "rhs": (28, 6), "jacobian": (76, 10), "parameter_jacobian": (83, 10), "energy": (27, 4),
     "mass_matrix": (12, 3), "positions": (9, 0), "points": (49, 0),
-    "angular_momentum": (76, 2), "hamiltonian_state": (19, 3), "rhs_hamiltonian": (32, 7),
-    "jacobian_hamiltonian": (59, 7), "energy_hamiltonian": (31, 6),
-    "lagrangian_state": (23, 5), "rational_state": (4, 0), "rhs_rational": (37, 6),
-    "rhs_variational": (85, 6), "rhs_sensitivity": (133, 11), "equilibrium": (0, 0),
+    "angular_momentum": (76, 2), "hamiltonian_state": (19, 3), "rhs_hamiltonian": (25, 7),
+    "jacobian_hamiltonian": (55, 7), "energy_hamiltonian": (25, 6),
+    "lagrangian_state": (16, 5), "rational_state": (4, 0), "rhs_rational": (31, 6),
+    "rhs_variational": (82, 6), "rhs_sensitivity": (131, 11), "equilibrium": (0, 0),
     "linear": (5, 5),
 }
 UNITS = {
@@ -152,7 +152,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    34 operations, 6 of them on parameters alone.
+    28 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -173,36 +173,32 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = c1 - C
+    c4 = g*c0
     # intermediate terms
     cos_theta = cos(theta)
     x0 = phi_dot*cos_theta
     x1 = c3*x0
     x2 = C*psi_dot
     sin_theta = sin(theta)
-    x3 = theta_dot*sin_theta
-    x4 = C*cos_theta*cos_theta
-    x5 = sin_theta*sin_theta
-    x6 = (2.0*x1 - x2 + C*x0)*x3/(x4 - (x4 + A*x5 + c1*x5))
+    x3 = c2*theta_dot*(2.0*x1 - x2 + C*x0)/sin_theta
     # outputs
     return (
         phi_dot,
         psi_dot,
         theta_dot,
-        x6,
-        phi_dot*x3 - cos_theta*x6,
-        c4*sin_theta*(c5 + phi_dot*(x1 - x2)),
+        -x3,
+        phi_dot*theta_dot*sin_theta + cos_theta*x3,
+        c2*sin_theta*(c4 + phi_dot*(x1 - x2)),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    79 operations, 9 of them on parameters alone.
+    76 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -223,60 +219,52 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = C + 2.0*c3
-    c5 = 1.0/c2
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = c1 - C
+    c4 = c2*(C + 2.0*c3)
+    c5 = C*c2
     c6 = g*c0
-    c7 = C*c5
     # intermediate terms
     cos_theta = cos(theta)
-    x0 = c3*phi_dot
-    x1 = cos_theta*x0
+    x0 = cos_theta*phi_dot
+    x1 = c3*x0
     x2 = C*psi_dot
     x3 = 2.0*x1 - x2
+    x4 = c2*(x3 + C*x0)
     sin_theta = sin(theta)
-    x4 = sin_theta*sin_theta
-    x5 = x4*x0
-    x6 = C*cos_theta
-    x7 = x3 + phi_dot*x6
-    x8 = sin_theta*theta_dot
-    x9 = cos_theta*x6
-    x10 = x9 - (x9 + A*x4 + c1*x4)
-    x11 = x7*x8/x10
-    x12 = cos_theta*x11
-    x13 = (
-        theta_dot*(cos_theta*x3 - 2.0*x5) + 2.0*c3*sin_theta*x12
-        - C*sin_theta*(phi_dot*x8 - x12)
-    )
-    x14 = cos_theta*theta_dot*phi_dot + sin_theta*x11
-    x15 = (x13 + x14*x6)/x10
-    x16 = c4*cos_theta*x8/x10
-    x17 = C*x8/x10
-    x18 = sin_theta*x7/x10
-    x19 = sin_theta*phi_dot
-    x20 = x1 - x2
+    x5 = theta_dot*x4/sin_theta
+    x6 = cos_theta*x5
+    x7 = c3*sin_theta
+    x8 = sin_theta*phi_dot
+    x9 = x8*x7
+    x10 = 2.0*x6*x7 + C*sin_theta*(theta_dot*x8 + x6) - theta_dot*(cos_theta*x3 - 2.0*x9)
+    x11 = theta_dot*x0 - sin_theta*x5
+    x12 = (x10 - C*cos_theta*x11)/(c1*sin_theta*sin_theta)
+    x13 = c4*theta_dot*cos_theta/sin_theta
+    x14 = c5*theta_dot/sin_theta
+    x15 = x4/sin_theta
+    x16 = x1 - x2
     # outputs
     return (
         (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 1.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-        (0.0, 0.0, x15, x16, -x17, x18),
+        (0.0, 0.0, x12, -x13, x14, -x15),
         (
             0.0,
             0.0,
-            x14 - cos_theta*x15,
-            x8 - cos_theta*x16,
-            cos_theta*x17,
-            x19 - cos_theta*x18,
+            x11 - cos_theta*x12,
+            sin_theta*theta_dot + cos_theta*x13,
+            -cos_theta*x14,
+            x8 + cos_theta*x15,
         ),
         (
             0.0,
             0.0,
-            c5*(cos_theta*(c6 + phi_dot*x20) - phi_dot*x5),
-            c5*sin_theta*(x1 + x20),
-            -c7*x19,
+            c2*(cos_theta*(c6 + phi_dot*x16) - phi_dot*x9),
+            c2*sin_theta*(x1 + x16),
+            -c5*x8,
             0.0,
         ),
     )
@@ -529,7 +517,7 @@ def hamiltonian_state(t: float, y: Numbers, params: Numbers) -> Vector:
 def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_hamiltonian(t, y, params) for y = (q, p).
 
-    32 operations, 7 of them on parameters alone.
+    25 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -550,28 +538,25 @@ def rhs_hamiltonian(t: float, y: Numbers, params: Numbers) -> Vector:
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
+    c1 = A + l*c0
     c2 = 1.0/C
-    c3 = A + c1
-    c4 = 1.0/c3
-    c5 = g*c0
-    c6 = c3 - C
+    c3 = 1.0/c1
+    c4 = g*c0
+    c5 = c1 - C
     # intermediate terms
     cos_theta = cos(theta)
-    x0 = C*cos_theta*cos_theta
     sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_phi - cos_theta*p_psi)/(x0 - (x0 + A*x1 + c1*x1))
-    x3 = cos_theta*x2
-    x4 = c2*p_psi + x3
+    x0 = (p_phi - p_psi*cos_theta)/(c1*sin_theta*sin_theta)
+    x1 = cos_theta*x0
+    x2 = c2*p_psi - x1
     # outputs
-    return (-x2, x4, c4*p_theta, 0.0, 0.0, sin_theta*(c5 + c6*x2*x3 + C*x2*x4))
+    return (x0, x2, c3*p_theta, 0.0, 0.0, sin_theta*(c4 + c5*x0*x1 - C*x0*x2))
 
 
 def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     """Hamiltonian H(q, p): `energy` by momenta.
 
-    31 operations, 6 of them on parameters alone.
+    25 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -593,24 +578,22 @@ def energy_hamiltonian(t: float, y: Numbers, params: Numbers) -> float:
     # terms of the parameters alone
     c0 = m*l
     c1 = g*c0
-    c2 = 1.0/C
-    c3 = l*c0
-    c4 = 1.0/(A + c3)
+    c2 = A + l*c0
+    c3 = 1.0/C
+    c4 = 1.0/c2
     # intermediate terms
     cos_theta = cos(theta)
-    x0 = C*cos_theta*cos_theta
     sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_phi - cos_theta*p_psi)/(x0 - (x0 + A*x1 + c3*x1))
-    x3 = p_psi*(c2*p_psi + cos_theta*x2) + p_theta*(c4*p_theta) - p_phi*x2
+    x0 = (p_phi - p_psi*cos_theta)/(c2*sin_theta*sin_theta)
+    x1 = p_phi*x0 + p_psi*(c3*p_psi - cos_theta*x0) + p_theta*(c4*p_theta)
     # outputs
-    return c1*cos_theta + 0.5*x3
+    return c1*cos_theta + 0.5*x1
 
 
 def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     """State (q, qdot) of the Lagrangian form at y = (q, p).
 
-    23 operations, 5 of them on parameters alone.
+    16 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
@@ -630,17 +613,15 @@ def lagrangian_state(t: float, y: Numbers, params: Numbers) -> Vector:
     phi, psi, theta, p_phi, p_psi, p_theta = y.tolist() if hasattr(y, "tolist") else y
     m, l, A, C, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*l*l
+    c0 = A + m*l*l
     c1 = 1.0/C
-    c2 = 1.0/(A + c0)
+    c2 = 1.0/c0
     # intermediate terms
     cos_theta = cos(theta)
-    x0 = C*cos_theta*cos_theta
     sin_theta = sin(theta)
-    x1 = sin_theta*sin_theta
-    x2 = (p_phi - cos_theta*p_psi)/(x0 - (x0 + A*x1 + c0*x1))
+    x0 = (p_phi - p_psi*cos_theta)/(c0*sin_theta*sin_theta)
     # outputs
-    return (phi, psi, theta, -x2, c1*p_psi + cos_theta*x2, c2*p_theta)
+    return (phi, psi, theta, x0, c1*p_psi - cos_theta*x0, c2*p_theta)
 
 
 def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
@@ -680,7 +661,7 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
-    37 operations, 6 of them on parameters alone.
+    31 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -703,19 +684,16 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = c1 - C
+    c4 = g*c0
     # intermediate terms
     x0 = theta_dot*sin_theta
     x1 = phi_dot*cos_theta
     x2 = c3*x1
     x3 = C*psi_dot
-    x4 = C*cos_theta*cos_theta
-    x5 = sin_theta*sin_theta
-    x6 = x0*(2.0*x2 - x3 + C*x1)/(x4 - (x4 + A*x5 + c1*x5))
+    x4 = c2*theta_dot*(2.0*x2 - x3 + C*x1)/sin_theta
     # outputs
     return (
         phi_dot*cos_phi,
@@ -723,9 +701,9 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         psi_dot,
         theta_dot*cos_theta,
         -x0,
-        x6,
-        phi_dot*x0 - cos_theta*x6,
-        c4*sin_theta*(c5 + phi_dot*(x2 - x3)),
+        -x4,
+        phi_dot*x0 + cos_theta*x4,
+        c2*sin_theta*(c4 + phi_dot*(x2 - x3)),
     )
 
 

@@ -33,13 +33,13 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "b3418c89ff35b25d"
+DIGEST = "836cba8e5e96f89e"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    88 operations, 10 of them on parameters alone.
+    83 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -59,57 +59,55 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     _, _, theta, phi_dot, psi_dot, theta_dot = y.tolist() if hasattr(y, "tolist") else y
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = l*l
-    c1 = l*m
-    c2 = l*c1
-    c3 = A + c2
-    c4 = c3 - C
-    c5 = 1.0/c3
-    c6 = l*c5
-    c7 = c1*g
-    c8 = m*c5
-    c9 = c1*c5
+    c0 = l*m
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = l*c2
+    c4 = l*c3
+    c5 = c1 - C
+    c6 = c2*c0
+    c7 = g*c0
+    c8 = m*c2
     # intermediate terms
-    sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = cos_theta*phi_dot
-    x1 = c4*x0
+    x0 = phi_dot*cos_theta
+    sin_theta = sin(theta)
+    x1 = c5*x0
     x2 = C*psi_dot
-    x3 = sin_theta*theta_dot
-    x4 = cos_theta*cos_theta
-    x5 = C*x4
-    x6 = sin_theta*sin_theta
-    x7 = x5 - (x5 + A*x6 + c2*x6)
-    x8 = (2.0*x1 - x2 + C*x0)*x3/x7
-    x9 = sin_theta*(2.0*theta_dot*x0 + sin_theta*x8)
-    x10 = c0*x9/x7
-    x11 = c1*x9/x7
-    x12 = x9/x7
-    x13 = sin_theta*phi_dot
-    x14 = x8*x4 + cos_theta*(theta_dot*x13 - cos_theta*x8) - (psi_dot + 2.0*x0)*x3
-    x15 = x14/x7
-    x16 = l*phi_dot*x0
-    x17 = c5*sin_theta*(c7 + phi_dot*(x1 - x2))
-    x18 = l*x17
+    x3 = c2*theta_dot*(2.0*x1 - x2 + C*x0)/sin_theta
+    x4 = 2.0*theta_dot*x0 - sin_theta*x3
+    x5 = c4*x4/sin_theta
+    x6 = c6*x4/sin_theta
+    x7 = c2*x4/sin_theta
+    x8 = cos_theta*x3
+    x9 = sin_theta*phi_dot
+    x10 = (
+        cos_theta*x8 + sin_theta*theta_dot*(psi_dot + 2.0*x0)
+        - cos_theta*(theta_dot*x9 + x8)
+    )
+    x11 = x10/(c1*sin_theta*sin_theta)
+    x12 = l*phi_dot*x0
+    x13 = c2*sin_theta*(c7 + phi_dot*(x1 - x2))
+    x14 = l*x13
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
-        (x10, 2.0*x11, x12, x15, 0.0),
+        (-x5, -2.0*x6, -x7, x11, 0.0),
         (
-            -cos_theta*x10,
-            -2.0*cos_theta*x11,
-            -cos_theta*x12,
-            -cos_theta*x15,
+            cos_theta*x5,
+            2.0*cos_theta*x6,
+            cos_theta*x7,
+            -cos_theta*x11,
             0.0,
         ),
         (
-            c6*(sin_theta*(g + x16) - x18),
-            c8*(sin_theta*(g + 2.0*x16) - 2.0*x18),
-            -c5*(x17 - x0*x13),
-            -c5*(psi_dot + x0)*x13,
-            c9*sin_theta,
+            c3*(sin_theta*(g + x12) - x14),
+            c8*(sin_theta*(g + 2.0*x12) - 2.0*x14),
+            -c2*(x13 - x0*x9),
+            -c2*(psi_dot + x0)*x9,
+            c6*sin_theta,
         ),
     )
 
@@ -117,7 +115,7 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
 def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs_hamiltonian`.
 
-    59 operations, 7 of them on parameters alone.
+    55 operations, 7 of them on parameters alone.
 
     Parameters
     ----------
@@ -138,44 +136,45 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = c1 - C
     c4 = 1.0/C
     c5 = g*c0
     # intermediate terms
-    sin_theta = sin(theta)
     cos_theta = cos(theta)
-    x0 = cos_theta*cos_theta
-    x1 = C*x0
-    x2 = sin_theta*sin_theta
-    x3 = x1 - (x1 + A*x2 + c1*x2)
-    x4 = (p_phi - cos_theta*p_psi)/x3
-    x5 = cos_theta*x4
-    x6 = c3*x5
-    x7 = C*(c4*p_psi + x5)
-    x8 = sin_theta*(2.0*x6 + x7 + C*x5)/x3
-    x9 = 1.0/x3
-    x10 = cos_theta/x3
-    x11 = sin_theta*x4
-    x12 = x11 - cos_theta*x8
-    x13 = sin_theta*x8
-    x14 = c5*cos_theta + c3*x4*x4*(x0 - x2) + x5*x7 + 2.0*x6*x13 + x7*x13 - C*x11*x12
+    sin_theta = sin(theta)
+    x0 = sin_theta*sin_theta
+    x1 = c1*x0
+    x2 = (p_phi - cos_theta*p_psi)/x1
+    x3 = cos_theta*x2
+    x4 = c3*x3
+    x5 = C*(c4*p_psi - x3)
+    x6 = c2*(2.0*x4 - x5 + C*x3)/sin_theta
+    x7 = 1.0/x1
+    x8 = cos_theta/x1
+    x9 = sin_theta*x2
+    x10 = x9 + cos_theta*x6
+    x11 = sin_theta*x6
+    x12 = (
+        c5*cos_theta + c3*x2*x2*(cos_theta*cos_theta - x0) + x5*x11 - x3*x5 - 2.0*x4*x11
+        - C*x9*x10
+    )
     # outputs
     return (
-        (0.0, 0.0, -x8, -x9, x10, 0.0),
-        (0.0, 0.0, -x12, cos_theta*x9, c4 - cos_theta*x10, 0.0),
-        (0.0, 0.0, 0.0, 0.0, 0.0, 1.0/c2),
+        (0.0, 0.0, -x6, x7, -x8, 0.0),
+        (0.0, 0.0, x10, -cos_theta*x7, c4 + cos_theta*x8, 0.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0, c2),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        (0.0, 0.0, x14, x8, x12, 0.0),
+        (0.0, 0.0, x12, x6, -x10, 0.0),
     )
 
 
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    85 operations, 6 of them on parameters alone.
+    82 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -202,38 +201,33 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     m, l, A, C, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = c1 - C
+    c4 = g*c0
     # intermediate terms
     x0 = theta_dot*sin_theta
     x1 = phi_dot*cos_theta
     x2 = c3*x1
     x3 = C*psi_dot
     x4 = 2.0*x2 - x3
-    x5 = C*cos_theta
-    x6 = cos_theta*x5
-    x7 = sin_theta*sin_theta
-    x8 = x6 - (x6 + A*x7 + c1*x7)
-    x9 = x0*(x4 + C*x1)/x8
-    x10 = cos_theta*x9
-    x11 = phi_dot*x0 - x10
-    x12 = x2 - x3
-    x13 = c5 + phi_dot*x12
-    x14 = phi_dot*sin_theta
-    x15 = c3*sin_theta
-    x16 = x14*x15
-    x17 = theta_dot*(cos_theta*x4 - 2.0*x16) + 2.0*x10*x15 - C*sin_theta*x11
-    x18 = x0*delta_phi_dot
-    x19 = C*delta_psi_dot
-    x20 = delta_theta*x17 + 2.0*c3*cos_theta*x18 + sin_theta*x4*delta_theta_dot - x0*x19
-    x21 = delta_theta*(theta_dot*x1 + sin_theta*x9) + x18 + delta_theta_dot*x14
-    x22 = (x20 + x21*x5)/x8
-    x23 = (
-        delta_theta*(cos_theta*x13 - phi_dot*x16) + sin_theta*delta_phi_dot*(x2 + x12)
-        - x14*x19
+    x5 = c2*theta_dot*(x4 + C*x1)/sin_theta
+    x6 = phi_dot*sin_theta
+    x7 = cos_theta*x5
+    x8 = theta_dot*x6 + x7
+    x9 = x2 - x3
+    x10 = c4 + phi_dot*x9
+    x11 = c3*sin_theta
+    x12 = x6*x11
+    x13 = 2.0*x7*x11 + C*sin_theta*x8 - theta_dot*(cos_theta*x4 - 2.0*x12)
+    x14 = C*delta_psi_dot
+    x15 = x0*delta_phi_dot
+    x16 = delta_theta*x13 + x0*x14 - 2.0*c3*cos_theta*x15 - sin_theta*x4*delta_theta_dot
+    x17 = delta_theta*(theta_dot*x1 - sin_theta*x5) + x15 + delta_theta_dot*x6
+    x18 = (x16 - C*cos_theta*x17)/(c1*sin_theta*sin_theta)
+    x19 = (
+        delta_theta*(cos_theta*x10 - phi_dot*x12) + sin_theta*delta_phi_dot*(x2 + x9)
+        - x6*x14
     )
     # outputs
     return (
@@ -242,22 +236,22 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
         psi_dot,
         theta_dot*cos_theta,
         -x0,
-        x9,
-        x11,
-        c4*sin_theta*x13,
+        -x5,
+        x8,
+        c2*sin_theta*x10,
         delta_phi_dot,
         delta_psi_dot,
         delta_theta_dot,
-        x22,
-        x21 - cos_theta*x22,
-        c4*x23,
+        x18,
+        x17 - cos_theta*x18,
+        c2*x19,
     )
 
 
 def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     """`rhs_variational` with perturbed parameters, whose perturbations precede them.
 
-    133 operations, 11 of them on parameters alone.
+    131 operations, 11 of them on parameters alone.
 
     Parameters
     ----------
@@ -286,55 +280,50 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     delta_m, delta_l, delta_A, delta_C, delta_g, m, l, A, C, g = params
     # terms of the parameters alone
     c0 = m*l
-    c1 = l*c0
-    c2 = A + c1
-    c3 = c2 - C
-    c4 = 1.0/c2
-    c5 = g*c0
-    c6 = l*delta_m
-    c7 = l*c6
-    c8 = delta_l*c0
-    c9 = delta_g*c0
-    c10 = m*delta_l
+    c1 = A + l*c0
+    c2 = 1.0/c1
+    c3 = c1 - C
+    c4 = g*c0
+    c5 = l*delta_m
+    c6 = l*c5
+    c7 = delta_l*c0
+    c8 = delta_g*c0
+    c9 = m*delta_l
     # intermediate terms
     x0 = theta_dot*sin_theta
     x1 = phi_dot*cos_theta
     x2 = c3*x1
     x3 = C*psi_dot
     x4 = 2.0*x2 - x3
-    x5 = C*cos_theta
-    x6 = cos_theta*x5
-    x7 = sin_theta*sin_theta
-    x8 = x6 - (x6 + A*x7 + c1*x7)
-    x9 = x0*(x4 + C*x1)/x8
-    x10 = phi_dot*sin_theta
-    x11 = cos_theta*x9
-    x12 = theta_dot*x10 - x11
-    x13 = x2 - x3
-    x14 = c5 + phi_dot*x13
-    x15 = c4*sin_theta*x14
+    x5 = c2*theta_dot*(x4 + C*x1)/sin_theta
+    x6 = phi_dot*sin_theta
+    x7 = cos_theta*x5
+    x8 = theta_dot*x6 + x7
+    x9 = x2 - x3
+    x10 = c4 + phi_dot*x9
+    x11 = c2*sin_theta*x10
+    x12 = theta_dot*x1
+    x13 = sin_theta*x5
+    x14 = sin_theta*(2.0*x12 - x13)
+    x15 = x0*delta_phi_dot
     x16 = c3*sin_theta
-    x17 = x10*x16
-    x18 = theta_dot*(cos_theta*x4 - 2.0*x17) + 2.0*x11*x16 - C*sin_theta*x12
-    x19 = theta_dot*x1
-    x20 = sin_theta*x9
-    x21 = sin_theta*(2.0*x19 + x20)
-    x22 = cos_theta*x11 + cos_theta*x12 - x0*(psi_dot + 2.0*x1)
-    x23 = x0*delta_phi_dot
-    x24 = C*delta_psi_dot
-    x25 = (
-        delta_theta*x18 + sin_theta*x4*delta_theta_dot + c7*x21 + delta_A*x21 + delta_C*x22
-        + 2.0*(c3*cos_theta*x23 + c8*x21) - x0*x24
+    x17 = x6*x16
+    x18 = 2.0*x7*x16 + C*sin_theta*x8 - theta_dot*(cos_theta*x4 - 2.0*x17)
+    x19 = C*delta_psi_dot
+    x20 = cos_theta*x7 + x0*(psi_dot + 2.0*x1) - cos_theta*x8
+    x21 = (
+        sin_theta*x4*delta_theta_dot + c6*x14 + delta_A*x14
+        + 2.0*(c3*cos_theta*x15 + c7*x14) - delta_theta*x18 - x0*x19 - delta_C*x20
     )
-    x26 = delta_theta*(x19 + x20) + x23 + delta_theta_dot*x10
-    x27 = (x25 + x26*x5)/x8
-    x28 = l*phi_dot*x1
-    x29 = l*x15
-    x30 = (
-        delta_theta*(cos_theta*x14 - phi_dot*x17) + sin_theta*delta_phi_dot*(x2 + x13)
-        + c6*(sin_theta*(g + x28) - x29) + c9*sin_theta - x10*x24
-        - c10*(2.0*x29 - sin_theta*(g + 2.0*x28)) - delta_A*(x15 - x1*x10)
-        - delta_C*(psi_dot + x1)*x10
+    x22 = delta_theta*(x12 - x13) + x15 + delta_theta_dot*x6
+    x23 = (x21 + C*cos_theta*x22)/(c1*sin_theta*sin_theta)
+    x24 = l*phi_dot*x1
+    x25 = l*x11
+    x26 = (
+        delta_theta*(cos_theta*x10 - phi_dot*x17) + sin_theta*delta_phi_dot*(x2 + x9)
+        + c5*(sin_theta*(g + x24) - x25) + c8*sin_theta - x6*x19
+        - c9*(2.0*x25 - sin_theta*(g + 2.0*x24)) - delta_A*(x11 - x1*x6)
+        - delta_C*(psi_dot + x1)*x6
     )
     # outputs
     return (
@@ -343,15 +332,15 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
         psi_dot,
         theta_dot*cos_theta,
         -x0,
-        x9,
-        x12,
-        x15,
+        -x5,
+        x8,
+        x11,
         delta_phi_dot,
         delta_psi_dot,
         delta_theta_dot,
-        x27,
-        x26 - cos_theta*x27,
-        c4*x30,
+        -x23,
+        x22 + cos_theta*x23,
+        c2*x26,
     )
 
 

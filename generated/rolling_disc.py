@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "8d7b42ae7598acd1"
+DIGEST = "306213fcdfffe233"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",
@@ -115,13 +115,13 @@ CALLS_FUNCTIONS = (
     "points", "angular_momentum", "rational_state",
 )
 OPERATIONS = {
-    "rhs": (214, 8), "jacobian": (724, 16), "parameter_jacobian": (521, 10),
+    "rhs": (201, 6), "jacobian": (686, 8), "parameter_jacobian": (506, 8),
     "energy": (52, 5), "constraints": (10, 0), "constraints_jacobian": (11, 1),
-    "multipliers": (178, 7), "correction": (133, 7), "correction_rational": (130, 7),
-    "correction_variational": (169, 7), "correction_sensitivity": (171, 7),
+    "multipliers": (165, 5), "correction": (117, 6), "correction_rational": (113, 6),
+    "correction_variational": (151, 6), "correction_sensitivity": (153, 6),
     "mass_matrix": (27, 6), "positions": (10, 0), "points": (37, 0),
-    "angular_momentum": (91, 3), "rational_state": (4, 0), "rhs_rational": (214, 8),
-    "rhs_variational": (451, 12), "rhs_sensitivity": (529, 16),
+    "angular_momentum": (91, 3), "rational_state": (4, 0), "rhs_rational": (200, 6),
+    "rhs_variational": (440, 9), "rhs_sensitivity": (522, 14),
 }
 UNITS = {
     "m": "kg", "R": "m", "k": "1", "g": "m/s^2", "x": "m", "x_dot": "m/s", "delta_x": "m",
@@ -155,7 +155,7 @@ def params(**values: float) -> Vector:
 def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs(t, y, params) for y = (q, qdot).
 
-    214 operations, 8 of them on parameters alone.
+    201 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -178,69 +178,74 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0 + k
-    c1 = m*(1.0/(m*c0))
-    c2 = m*R
-    c3 = 1.0/(m*k)
+    c1 = 1.0/c0
+    c2 = 1.0/m
+    c3 = 1.0/(k*m)
     c4 = 1.0/R
     # intermediate terms
-    sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = k*x0
-    cos_phi = cos(phi)
-    x2 = 1.0/(m*(2.0*x1 + x0 + k*cos_phi*cos_phi - 2.0*x1))
-    x3 = m*x2
-    x4 = 1.0 - x0*x3
     cos_psi = cos(psi)
     sin_psi = sin(psi)
-    x5 = cos_phi*cos_psi
-    x6 = c1*x5
+    cos_phi = cos(phi)
+    x0 = c1*cos_phi
+    x1 = cos_phi*x0
+    sin_phi = sin(phi)
+    x2 = 1.0/(sin_phi*sin_phi + k*cos_phi*cos_phi)
+    x3 = sin_phi*x2
+    x4 = sin_phi*x3
+    x5 = x1 - x4
+    x6 = sin_psi*x5
     x7 = sin_psi*sin_phi
-    x8 = x7*x3
-    x9 = 1.0/(m*(1.0 - x5*x6 - x8*x7))
-    x10 = cos_phi*sin_psi
-    x11 = c1*x10
+    x8 = sin_psi*x3
+    x9 = 1.0/(1.0 - cos_psi*cos_psi*x1 - x7*x8)
+    x10 = sin_psi*x9
+    x11 = c2*(1.0 - x4)
     x12 = cos_psi*sin_phi
-    x13 = x12*x3
-    x14 = x11*x5 - x13*x7
-    x15 = m*x14
-    x16 = x9*x15
-    x17 = 1.0 - x11*x10 - x13*x12 - x14*x16
-    x18 = m*x17
-    x19 = x4*(cos_psi - sin_psi*x16)/x18
-    x20 = phi_dot*cos_phi
-    x21 = R*psi_dot
-    x22 = psi_dot*sin_phi
-    x23 = c0*x22
-    x24 = k*chi_dot
-    x25 = c2*(x2*(x23 + x24 - k*x22))
-    x26 = x20*x25
-    x27 = psi_dot*psi_dot
-    x28 = phi_dot*phi_dot
-    x29 = phi_dot*x5
-    x30 = cos_phi*(x23 + 2.0*x24)*x21 + g*sin_phi
-    x31 = c1*x30
-    x32 = R*(x7*x27 + x7*x28 - 2.0*psi_dot*x29) - x31*x10 + 2.0*sin_phi*x25*x29
-    x33 = R*(x12*x27 + 2.0*psi_dot*sin_psi*x20 + x12*x28) - x30*x6
-    x34 = x33 - 2.0*x26*x7
-    x35 = (x32 + x34*x16)/x17
-    x36 = m*x9*(x34 + x14*x35)
-    x37 = 2.0*x26 + x13*x35 - x8*x36
-    x38 = x20*x21 - sin_phi*x37
-    x39 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x38 + cos_psi*x35 - sin_psi*x36)
-    x40 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x35 + cos_psi*x36)
-    x41 = (sin_psi + cos_psi*x16)/x18
-    x42 = x9*(cos_psi + x41*x15)
-    x43 = x13*x41 - x8*x42
+    x13 = cos_psi*x3
+    x14 = cos_psi*x9
+    x15 = x6*x14
+    x16 = 1.0 - sin_psi*sin_psi*x1 - x12*x13 - cos_psi*x15*x6
+    x17 = cos_psi*(1.0 - x6*x10)*x11/x16
+    x18 = phi_dot*cos_phi
+    x19 = R*x18
+    x20 = psi_dot*sin_phi
+    x21 = c0*x20
+    x22 = k*chi_dot
+    x23 = (x21 + x22 - k*x20)*x19
+    x24 = psi_dot*sin_psi
+    x25 = phi_dot*phi_dot
+    x26 = psi_dot*cos_psi
+    x27 = R*psi_dot*cos_phi*(x21 + 2.0*x22) + g*sin_phi
+    x28 = x27*x0
+    x29 = R*(x20*x24 + x7*x25 - 2.0*x18*x26) - sin_psi*x28 + 2.0*x23*x13
+    x30 = R*(x20*x26 + 2.0*x18*x24 + x12*x25) - cos_psi*x28
+    x31 = x30 - 2.0*x23*x8
+    x32 = (x29 + x15*x31)/x16
+    x33 = x9*x31 + x15*x32
+    x34 = x2*(2.0*x23 + x32*x12 - x33*x7)
+    x35 = psi_dot*x19 - sin_phi*x34
+    x36 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x35 + cos_psi*x32 - sin_psi*x33)
+    x37 = sin_psi*x32
+    x38 = cos_psi*x33
+    x39 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (x37 + x38)
+    x40 = c2*sin_psi*(1.0 + cos_psi*x5*x14)/x16
+    x41 = c2*x14 + x15*x40
+    x42 = cos_psi*x40 - sin_psi*x41
+    x43 = x42*x3
     x44 = sin_phi*x43
-    x45 = x44 + sin_psi*x42 - cos_psi*x41
-    x46 = 1.0/(sin_psi*x41 + cos_psi*x42)
-    x47 = x45*x46
-    x48 = x9*(sin_psi*x4 - x19*x15)
-    x49 = x13*x19 + x8*x48 - sin_phi*x2
-    x50 = 0.5*c3 - sin_phi*x49
-    x51 = (x39 + x40*x47)/(x50 + cos_psi*x19 + sin_psi*x48 - x45*x47)
-    x52 = x46*(x40 + x45*x51)
-    x53 = x51*(x11*x19 - x48*x6) + x52*(x11*x41 + x42*x6) - (x11*x35 + x36*x6 - x31)
+    x45 = x44 - x42
+    x46 = sin_psi*x40 + cos_psi*x41
+    x47 = 1.0/x46
+    x48 = x45*x47
+    x49 = x10*x11 - x15*x17
+    x50 = cos_psi*x17 + sin_psi*x49
+    x51 = (x50 - c2)*x3
+    x52 = 0.5*c3 - sin_phi*x51
+    x53 = (x36 + x39*x48)/(x52 + x50 - x45*x48)
+    x54 = x47*(x39 + x45*x53)
+    x55 = (
+        x53*((sin_psi*x17 - cos_psi*x49)*x0) + x54*(x46*x0)
+        - c1*(cos_phi*x37 + cos_phi*x38 - x27)
+    )
     # outputs
     return (
         x_dot,
@@ -248,18 +253,18 @@ def rhs(t: float, y: Numbers, params: Numbers) -> Vector:
         psi_dot,
         phi_dot,
         chi_dot,
-        -(x19*x51 + x41*x52 - x35),
-        -(x36 + x48*x51 - x42*x52),
-        c4*(x49*x51 + x43*x52 - x37),
-        c4*x53,
-        -c4*(x38 + x44*x52 - x50*x51),
+        -(x17*x53 + x40*x54 - x32),
+        -(x33 + x49*x53 - x41*x54),
+        c4*(x51*x53 + x43*x54 - x34),
+        c4*x55,
+        -c4*(x35 + x44*x54 - x52*x53),
     )
 
 
 def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Jacobian of `rhs`.
 
-    724 operations, 16 of them on parameters alone.
+    686 operations, 8 of them on parameters alone.
 
     Parameters
     ----------
@@ -281,20 +286,13 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*R
-    c1 = 1.0 + k
-    c2 = 1.0/(m*c1)
-    c3 = m*c2
-    c4 = 1.0/(m*k)
-    c5 = m*m
-    c6 = c2*c5
-    c7 = c1 - k
-    c8 = c0*c7
-    c9 = m*c7
-    c10 = k*c0
-    c11 = 1.0/R
-    c12 = c2*c0
-    c13 = c2*c10
+    c0 = 1.0/m
+    c1 = m*R
+    c2 = 1.0 + k
+    c3 = 1.0/c2
+    c4 = 1.0/(k*m)
+    c5 = k*R
+    c6 = 1.0/R
     # intermediate terms
     cos_psi = cos(psi)
     sin_phi = sin(phi)
@@ -307,148 +305,148 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x4 = phi_dot*phi_dot
     x5 = x0*x1 + 2.0*x2*x3 + x0*x4
     x6 = sin_psi*sin_phi
-    x7 = k*sin_phi
-    x8 = sin_phi*x7
-    x9 = cos_phi*cos_phi
-    x10 = 1.0/(m*(2.0*x8 + sin_phi*sin_phi + k*x9 - 2.0*x8))
+    x7 = c3*cos_phi
+    x8 = k*cos_phi
+    x9 = 1.0/(sin_phi*sin_phi + cos_phi*x8)
+    x10 = sin_phi*x9
     x11 = sin_phi*x10
-    x12 = m*x11
-    x13 = cos_psi*x12
-    x14 = 1.0 - sin_phi*x12
-    x15 = c3*x2
-    x16 = cos_phi*cos_psi
-    x17 = x15*x16 - x13*x6
-    x18 = c3*x16
-    x19 = sin_psi*x12
-    x20 = 1.0/(m*(1.0 - x16*x18 - x19*x6))
-    x21 = m*x20
-    x22 = x17*x21
-    x23 = 1.0 - x15*x2 - x13*x0 - x17*x22
-    x24 = m*x23
-    x25 = x14*(cos_psi - sin_psi*x22)/x24
-    x26 = m*x17
-    x27 = x20*(sin_psi*x14 - x25*x26)
-    x28 = x13*x25 + x19*x27 - x11
+    x12 = cos_phi*x7 - x11
+    x13 = sin_psi*x12
+    x14 = cos_phi*cos_psi
+    x15 = x14*x7
+    x16 = sin_psi*x10
+    x17 = 1.0/(1.0 - cos_psi*x15 - x6*x16)
+    x18 = sin_psi*x17
+    x19 = c0*(1.0 - x11)
+    x20 = x2*x7
+    x21 = cos_psi*x10
+    x22 = cos_psi*x17
+    x23 = x13*x22
+    x24 = 1.0 - sin_psi*x20 - x0*x21 - cos_psi*x23*x13
+    x25 = cos_psi*(1.0 - x13*x18)*x19/x24
+    x26 = x18*x19 - x23*x25
+    x27 = cos_psi*x25 + sin_psi*x26
+    x28 = (x27 - c0)*x10
     x29 = cos_psi*y_dot - sin_psi*x_dot
     x30 = psi_dot*x29
-    x31 = R*cos_phi
-    x32 = c1*sin_phi
-    x33 = psi_dot*x32
-    x34 = k*chi_dot
-    x35 = x33 + x34
-    x36 = x35 - psi_dot*x7
-    x37 = c0*x36
-    x38 = cos_phi*x10
-    x39 = phi_dot*x38
-    x40 = x6*x1 + x6*x4 - 2.0*x16*x3
-    x41 = x33 + 2.0*x34
-    x42 = psi_dot*x31
-    x43 = x41*x42 + g*sin_phi
-    x44 = phi_dot*x11
-    x45 = x16*x44
-    x46 = x2*x44
-    x47 = R*x5 - x43*x18 - 2.0*x37*x46
-    x48 = (R*x40 - x15*x43 + 2.0*x37*x45 + x47*x22)/x23
-    x49 = (x47 + x17*x48)*x21
-    x50 = 2.0*x37*x39 + x13*x48 - x19*x49
-    x51 = x3*x31 - sin_phi*x50
-    x52 = cos_psi*x_dot + sin_psi*y_dot
-    x53 = psi_dot*x52
-    x54 = x53 + (sin_psi*x48 + cos_psi*x49)
-    x55 = (sin_psi + cos_psi*x22)/x24
-    x56 = x20*(cos_psi + x55*x26)
-    x57 = x13*x55 - x19*x56
-    x58 = sin_phi*x57
-    x59 = x58 + sin_psi*x56 - cos_psi*x55
-    x60 = 1.0/(sin_psi*x55 + cos_psi*x56)
-    x61 = x59*x60
-    x62 = x30 + (x51 + cos_psi*x48 - sin_psi*x49) + x54*x61
-    x63 = 0.5*c4 - sin_phi*x28
-    x64 = x63 + cos_psi*x25 + sin_psi*x27 - x59*x61
-    x65 = x62/x64
-    x66 = x60*(x54 + x59*x65)
-    x67 = x28*x65 + x57*x66 - x50
-    x68 = m*x67
-    x69 = x15*x25 - x27*x18
-    x70 = x15*x55 + x56*x18
-    x71 = x65*x69 + x66*x70 - (x15*x48 + x49*x18 - c3*x43)
-    x72 = m*x71
-    x73 = c0*x5 + x6*x68 + sin_psi*x65 - x16*x72 - cos_psi*x66
-    x74 = x25*x65 + x55*x66 - x48
-    x75 = x49 + x27*x65 - x56*x66
-    x76 = cos_psi*x74 + sin_psi*x75
-    x77 = cos_phi*x76
-    x78 = c6*x77
-    x79 = sin_psi*x74 - cos_psi*x75
-    x80 = c5*(x11*x79)
-    x81 = x0*x68 + x2*x72 + cos_psi*x65 + sin_psi*x66 - c0*x40
-    x82 = x81 - x16*x78 - x6*x80
-    x83 = (x73 - x2*x78 + x0*x80 + x82*x22)/x24
-    x84 = x20*(x82 + x83*x26)
-    x85 = x79*x12 + x13*x83 - x19*x84
-    x86 = sin_phi*x85
-    x87 = x76 - x30 - (sin_psi*x83 + cos_psi*x84)
-    x88 = x53 - x79 + (x86 + sin_psi*x84 - cos_psi*x83) + x87*x61
-    x89 = x88/x64
-    x90 = x60*(x87 + x59*x89)
-    x91 = c1*psi_dot*x9
-    x92 = x74*x6 + (R*psi_dot*(sin_phi*x41 - x91) - g*cos_phi) - x75*x0
-    x93 = R*(x2*x1 + 2.0*x0*x3 + x2*x4) + x71*x6 - x67*x16 + x15*x92
-    x94 = cos_phi*x67
-    x95 = R*phi_dot*(sin_phi*x35 - x91) + k*cos_phi*(x51 + x58*x66 - x63*x65) - x94*x32
-    x96 = R*sin_phi*x3 - x94
-    x97 = x74*x16 + x75*x2 + 2.0*x95 - 2.0*x96*x7
-    x98 = R*(x16*x1 + x16*x4 - 2.0*x6*x3) + x67*x2 + x71*x0
-    x99 = x98 + x92*x18 + x19*x97
-    x100 = (x93 - x13*x97 + x99*x22)/x23
-    x101 = (x99 + x17*x100)*x21
-    x102 = m*x10*x97 + x19*x101 - x13*x100
-    x103 = x96 - sin_phi*x102
-    x104 = sin_psi*x100 + cos_psi*x101
-    x105 = (x103 + sin_psi*x101 - cos_psi*x100 - x104*x61)/x64
-    x106 = x60*(x104 - x59*x105)
-    x107 = psi_dot*(sin_psi - cos_psi*x61)/x64
-    x108 = x60*(cos_psi*psi_dot - x59*x107)
-    x109 = psi_dot*(cos_psi + sin_psi*x61)/x64
-    x110 = x60*(sin_psi*psi_dot + x59*x109)
-    x111 = cos_phi*(x33 + x41)
-    x112 = c9*sin_phi
-    x113 = 2.0*(psi_dot*x6 - phi_dot*x16) - x15*x111 + 2.0*x112*x45
-    x114 = 2.0*(psi_dot*x0 + phi_dot*x2) - x18*x111 - 2.0*x112*x46
-    x115 = R*(x113 + x114*x22)/x23
-    x116 = (R*x114 + x17*x115)*x21
-    x117 = 2.0*c8*cos_phi*x44 + x13*x115 - x19*x116
-    x118 = phi_dot*x31 - sin_phi*x117
-    x119 = x52 + (sin_psi*x115 + cos_psi*x116)
-    x120 = x29 + (x118 + cos_psi*x115 - sin_psi*x116) + x119*x61
-    x121 = x120/x64
-    x122 = x60*(x119 + x59*x121)
-    x123 = x36*x12
-    x124 = psi_dot*x2 + phi_dot*x0 - x2*x123
-    x125 = R*(psi_dot*x16 - phi_dot*x6 - x16*x123 - x124*x22)
-    x126 = x125/x23
-    x127 = (R*x124 - x17*x126)*x21
-    x128 = x13*x126 + x19*x127 - x37*x38
-    x129 = x42 + 2.0*sin_phi*x128
-    x130 = sin_psi*x126 - cos_psi*x127
-    x131 = 2.0*(cos_psi*x126 + sin_psi*x127) - x129 + 2.0*x130*x61
-    x132 = x131/x64
-    x133 = x60*(2.0*x130 + x59*x132)
-    x134 = c2*psi_dot
-    x135 = x16*x134 + sin_psi*x44
-    x136 = c10*cos_phi
-    x137 = (x2*x134 - cos_psi*x44 + x135*x22)*x136/x23
-    x138 = (x135*x136 + x17*x137)*x21
-    x139 = c10*x39 + x19*x138 - x13*x137
-    x140 = sin_phi*x139
-    x141 = sin_psi*x137 + cos_psi*x138
-    x142 = (x140 + cos_psi*x137 - sin_psi*x138 + x141*x61)/x64
-    x143 = x60*(x141 + x59*x142)
-    x144 = c11*(x15*x83 + x84*x18 - c3*x77 + x69*x89 + x70*x90)
-    x145 = c3*x92 + x15*x100 + x101*x18 + x69*x105 - x70*x106
-    x146 = x69*x121 + x70*x122 - (x15*x115 + x116*x18 - c12*x111)
-    x147 = c11*(x69*x132 + x70*x133 - 2.0*(x15*x126 - x127*x18))
-    x148 = x69*x142 + x70*x143 - (c13*cos_phi*psi_dot + x15*x137 + x138*x18)
+    x31 = R*phi_dot
+    x32 = cos_phi*psi_dot
+    x33 = sin_phi*psi_dot
+    x34 = c2*x33
+    x35 = k*chi_dot
+    x36 = x34 + x35
+    x37 = x36 - k*x33
+    x38 = cos_phi*x37
+    x39 = x6*x1 + x6*x4 - 2.0*x14*x3
+    x40 = x34 + 2.0*x35
+    x41 = R*x32
+    x42 = x40*x41 + g*sin_phi
+    x43 = c3*x2
+    x44 = x37*x10
+    x45 = x14*x44
+    x46 = c3*x14
+    x47 = x2*x44
+    x48 = R*x5 - x42*x46 - 2.0*x47*x31
+    x49 = (R*x39 - x42*x43 + 2.0*x45*x31 + x23*x48)/x24
+    x50 = x17*x48 + x23*x49
+    x51 = x9*(2.0*x31*x38 + x49*x0 - x50*x6)
+    x52 = x31*x32 - sin_phi*x51
+    x53 = cos_psi*x_dot + sin_psi*y_dot
+    x54 = psi_dot*x53
+    x55 = x54 + (sin_psi*x49 + cos_psi*x50)
+    x56 = c0*sin_psi*(1.0 + cos_psi*x12*x22)/x24
+    x57 = c0*x22 + x23*x56
+    x58 = cos_psi*x56 - sin_psi*x57
+    x59 = x58*x10
+    x60 = sin_phi*x59
+    x61 = x60 - x58
+    x62 = sin_psi*x56 + cos_psi*x57
+    x63 = 1.0/x62
+    x64 = x61*x63
+    x65 = x30 + (x52 + cos_psi*x49 - sin_psi*x50) + x55*x64
+    x66 = 0.5*c4 - sin_phi*x28
+    x67 = x66 + x27 - x61*x64
+    x68 = x65/x67
+    x69 = x63*(x55 + x61*x68)
+    x70 = x28*x68 + x59*x69 - x51
+    x71 = m*x70
+    x72 = (sin_psi*x25 - cos_psi*x26)*x7
+    x73 = x62*x7
+    x74 = x68*x72 + x69*x73 - c3*(x49*x2 + x50*x14 - x42)
+    x75 = m*x74
+    x76 = c1*x5 + x6*x71 + sin_psi*x68 - x14*x75 - cos_psi*x69
+    x77 = x25*x68 + x56*x69 - x49
+    x78 = x50 + x26*x68 - x57*x69
+    x79 = cos_psi*x77 + sin_psi*x78
+    x80 = sin_psi*x77 - cos_psi*x78
+    x81 = x80*x10
+    x82 = x0*x71 + x2*x75 + cos_psi*x68 + sin_psi*x69 - c1*x39
+    x83 = c0*x82 - x79*x15 - x6*x81
+    x84 = (c0*x76 - x79*x20 + x0*x81 + x23*x83)/x24
+    x85 = x17*x83 + x23*x84
+    x86 = cos_psi*x84 - sin_psi*x85
+    x87 = (x80 + x86)*x10
+    x88 = sin_phi*x87
+    x89 = sin_psi*x84 + cos_psi*x85
+    x90 = x79 - x30 - x89
+    x91 = (x54 - x80 + (x88 - x86) + x90*x64)/x67
+    x92 = x63*(x90 + x61*x91)
+    x93 = c2*cos_phi
+    x94 = x32*x93
+    x95 = x77*x6 + (R*psi_dot*(sin_phi*x40 - x94) - g*cos_phi) - x78*x0
+    x96 = R*(x2*x1 + 2.0*x0*x3 + x2*x4) + x74*x6 - x70*x14 + x95*x43
+    x97 = (sin_phi*x36 - x94)*x31 + (x52 + x60*x69 - x66*x68)*x8 - sin_phi*x70*x93
+    x98 = x31*x33 - cos_phi*x70
+    x99 = x77*x14 + x78*x2 + 2.0*x97 - 2.0*k*sin_phi*x98
+    x100 = R*(x14*x1 + x14*x4 - 2.0*x6*x3) + x70*x2 + x74*x0
+    x101 = x100 + x95*x46 + x99*x16
+    x102 = (x96 - x99*x21 + x23*x101)/x24
+    x103 = x17*x101 + x23*x102
+    x104 = x9*(x99 + x103*x6 - x102*x0)
+    x105 = x98 - sin_phi*x104
+    x106 = sin_psi*x102 + cos_psi*x103
+    x107 = (x105 + sin_psi*x103 - cos_psi*x102 - x106*x64)/x67
+    x108 = x63*(x106 - x61*x107)
+    x109 = psi_dot*(sin_psi - cos_psi*x64)/x67
+    x110 = x63*(cos_psi*psi_dot - x61*x109)
+    x111 = psi_dot*(cos_psi + sin_psi*x64)/x67
+    x112 = x63*(sin_psi*psi_dot + x61*x111)
+    x113 = cos_phi*x31
+    x114 = x34 + x40
+    x115 = phi_dot*x10
+    x116 = sin_phi*x115
+    x117 = 2.0*(psi_dot*x6 - phi_dot*x14) - x114*x20 + 2.0*x14*x116
+    x118 = 2.0*(psi_dot*x0 + phi_dot*x2) - x114*x15 - 2.0*x2*x116
+    x119 = R*(x117 + x23*x118)/x24
+    x120 = R*x17
+    x121 = x118*x120 + x23*x119
+    x122 = cos_psi*x119 - sin_psi*x121
+    x123 = (2.0*x113 + x122)*x10
+    x124 = x113 - sin_phi*x123
+    x125 = sin_psi*x119 + cos_psi*x121
+    x126 = x53 + x125
+    x127 = (x29 + (x124 + x122) + x126*x64)/x67
+    x128 = x63*(x126 + x61*x127)
+    x129 = psi_dot*x2 + phi_dot*x0 - x47
+    x130 = R*(psi_dot*x14 - phi_dot*x6 - x45 - x23*x129)/x24
+    x131 = x129*x120 - x23*x130
+    x132 = x9*(x130*x0 + x131*x6 - R*x38)
+    x133 = x41 + 2.0*sin_phi*x132
+    x134 = sin_psi*x130 - cos_psi*x131
+    x135 = 2.0*(cos_psi*x130 + sin_psi*x131) - x133 + 2.0*x134*x64
+    x136 = x135/x67
+    x137 = x63*(2.0*x134 + x61*x136)
+    x138 = c5*cos_phi
+    x139 = psi_dot*x46 + sin_psi*x115
+    x140 = (psi_dot*x43 - cos_psi*x115 + x23*x139)*x138/x24
+    x141 = x17*x139*x138 + x23*x140
+    x142 = x9*(phi_dot*x138 + x141*x6 - x140*x0)
+    x143 = sin_phi*x142
+    x144 = sin_psi*x140 + cos_psi*x141
+    x145 = (x143 + cos_psi*x140 - sin_psi*x141 + x144*x64)/x67
+    x146 = x63*(x144 + x61*x145)
+    x147 = c3*(x95 + x102*x2 + x103*x14) + x72*x107 - x73*x108
+    x148 = c6*(x72*x145 + x73*x146 - (x144 + c5*psi_dot)*x7)
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
@@ -459,62 +457,62 @@ def jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
         (
             0.0,
             0.0,
-            x83 + x25*x89 + x55*x90,
-            x100 + x25*x105 - x55*x106,
+            x84 + x25*x91 + x56*x92,
+            x102 + x25*x107 - x56*x108,
             0.0,
-            x25*x107 - x55*x108,
-            -(x25*x109 + x55*x110),
-            -(x25*x121 + x55*x122 - x115),
-            x25*x132 + x55*x133 - 2.0*x126,
-            2.0*(x25*x142 + x55*x143 - x137),
+            x25*x109 - x56*x110,
+            -(x25*x111 + x56*x112),
+            -(x25*x127 + x56*x128 - x119),
+            x25*x136 + x56*x137 - 2.0*x130,
+            2.0*(x25*x145 + x56*x146 - x140),
         ),
         (
             0.0,
             0.0,
-            -(x84 + x56*x90 - x27*x89),
-            x27*x105 + x56*x106 - x101,
+            -(x85 + x57*x92 - x26*x91),
+            x26*x107 + x57*x108 - x103,
             0.0,
-            x27*x107 + x56*x108,
-            -(x27*x109 - x56*x110),
-            -(x116 + x27*x121 - x56*x122),
-            -(2.0*x127 + x56*x133 - x27*x132),
-            2.0*(x138 + x27*x142 - x56*x143),
+            x26*x109 + x57*x110,
+            -(x26*x111 - x57*x112),
+            -(x121 + x26*x127 - x57*x128),
+            -(2.0*x131 + x57*x137 - x26*x136),
+            2.0*(x141 + x26*x145 - x57*x146),
         ),
         (
             0.0,
             0.0,
-            -c11*(x85 + x28*x89 + x57*x90),
-            c11*(x102 + x57*x106 - x28*x105),
+            -c6*(x87 + x28*x91 + x59*x92),
+            c6*(x104 + x59*x108 - x28*x107),
             0.0,
-            -c11*(x28*x107 - x57*x108),
-            c11*(x28*x109 + x57*x110),
-            c11*(x28*x121 + x57*x122 - x117),
-            -c11*(x28*x132 + x57*x133 - 2.0*x128),
-            -2.0*c11*(x139 + x28*x142 + x57*x143),
+            -c6*(x28*x109 - x59*x110),
+            c6*(x28*x111 + x59*x112),
+            c6*(x28*x127 + x59*x128 - x123),
+            -c6*(x28*x136 + x59*x137 - 2.0*x132),
+            -2.0*c6*(x142 + x28*x145 + x59*x146),
         ),
         (
             0.0,
             0.0,
-            -x144,
-            -c11*x145,
+            -c6*((x89 - x79)*x7 + x72*x91 + x73*x92),
+            -c6*x147,
             0.0,
-            -c11*(x69*x107 - x70*x108),
-            c11*(x69*x109 + x70*x110),
-            c11*x146,
-            -x147,
-            -2.0*c11*x148,
+            -c6*(x72*x109 - x73*x110),
+            c6*(x72*x111 + x73*x112),
+            c6*(x72*x127 + x73*x128 - (x125 - R*x114)*x7),
+            -c6*(x72*x136 + x73*x137 - 2.0*x134*x7),
+            -2.0*x148,
         ),
         (
             0.0,
             0.0,
-            c11*(x86 + x58*x90 - x63*x89),
-            -c11*(x63*x105 + x58*x106 - x103),
+            c6*(x88 + x60*x92 - x66*x91),
+            -c6*(x66*x107 + x60*x108 - x105),
             0.0,
-            -c11*(x63*x107 + x58*x108),
-            c11*(x63*x109 - x58*x110),
-            -c11*(x118 + x58*x122 - x63*x121),
-            -c11*(x129 + x63*x132 - x58*x133),
-            2.0*c11*(x140 + x58*x143 - x63*x142),
+            -c6*(x66*x109 + x60*x110),
+            c6*(x66*x111 - x60*x112),
+            -c6*(x124 + x60*x128 - x66*x127),
+            -c6*(x133 + x66*x136 - x60*x137),
+            2.0*c6*(x143 + x60*x146 - x66*x145),
         ),
     )
 
@@ -605,7 +603,7 @@ def constraints(t: float, y: Numbers, params: Numbers) -> Vector:
 def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     """Multipliers ground_along, ground_across of the constraints: their reactions.
 
-    178 operations, 7 of them on parameters alone.
+    165 operations, 5 of them on parameters alone.
 
     Parameters
     ----------
@@ -627,69 +625,68 @@ def multipliers(t: float, y: Numbers, params: Numbers) -> Vector:
     _, _, psi, phi, _, x_dot, y_dot, psi_dot, phi_dot, chi_dot = y
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*R
-    c1 = k + 1.0
-    c2 = m*(1.0/(m*c1))
+    c0 = 1.0 + k
+    c1 = 1.0/c0
+    c2 = 1.0/m
     c3 = 1.0/(m*k)
     # intermediate terms
     cos_psi = cos(psi)
     sin_psi = sin(psi)
     cos_phi = cos(phi)
     x0 = cos_phi*phi_dot
-    x1 = psi_dot*x0
+    x1 = R*x0
     sin_phi = sin(phi)
-    x2 = k*sin_phi
-    x3 = sin_phi*x2
-    x4 = 2.0*x3 + sin_phi*sin_phi + k*cos_phi*cos_phi - 2.0*x3
-    x5 = 1.0/(m*x4)
-    x6 = c1*sin_phi*psi_dot
-    x7 = k*chi_dot
-    x8 = x0*(c0*(x6 + x7 - psi_dot*x2))
-    x9 = sin_phi*x5
-    x10 = m*x9
-    x11 = cos_psi*x10
-    x12 = sin_phi*sin_psi
-    x13 = psi_dot*psi_dot
-    x14 = phi_dot*phi_dot
-    x15 = c2*cos_phi
-    x16 = sin_psi*x15
-    x17 = R*cos_phi*psi_dot*(x6 + 2.0*x7) + g*sin_phi
-    x18 = x9*x8
-    x19 = R*(x12*x13 + x12*x14 - 2.0*cos_psi*x1) - x16*x17 + 2.0*cos_psi*x18
-    x20 = sin_phi*cos_psi
-    x21 = cos_psi*x15
-    x22 = R*(x20*x13 + 2.0*sin_psi*x1 + x20*x14) - x17*x21 - 2.0*sin_psi*x18
-    x23 = cos_phi*cos_psi
-    x24 = sin_psi*x10
-    x25 = 1.0/(m*(1.0 - x23*x21 - x24*x12))
-    x26 = x16*x23 - x11*x12
-    x27 = m*x26
-    x28 = x25*x27
-    x29 = 1.0 - cos_phi*sin_psi*x16 - x11*x20 - x26*x28
-    x30 = (x19 + x22*x28)/x29
-    x31 = m*x25*(x22 + x26*x30)
-    x32 = R*x1 - sin_phi*(2.0*x5*x8 + x11*x30 - x24*x31) + cos_psi*x30 - sin_psi*x31
-    x33 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x30 + cos_psi*x31)
-    x34 = m*x29
-    x35 = (sin_psi + cos_psi*x28)/x34
-    x36 = x25*(cos_psi + x35*x27)
-    x37 = sin_phi*(x11*x35 - x24*x36) + sin_psi*x36 - cos_psi*x35
-    x38 = 1.0/(sin_psi*x35 + cos_psi*x36)
+    x2 = 1.0/(sin_phi*sin_phi + k*cos_phi*cos_phi)
+    x3 = sin_phi*psi_dot
+    x4 = c0*x3
+    x5 = k*chi_dot
+    x6 = (x4 + x5 - k*x3)*x1
+    x7 = sin_psi*sin_phi
+    x8 = psi_dot*psi_dot
+    x9 = phi_dot*phi_dot
+    x10 = psi_dot*x0
+    x11 = c1*cos_phi
+    x12 = (R*cos_phi*psi_dot*(x4 + 2.0*x5) + g*sin_phi)*x11
+    x13 = R*(x7*x8 + x7*x9 - 2.0*cos_psi*x10) - sin_psi*x12
+    x14 = sin_phi*x2
+    x15 = cos_psi*x14
+    x16 = cos_phi*x11
+    x17 = sin_phi*x14
+    x18 = x16 - x17
+    x19 = cos_psi*x18
+    x20 = sin_psi*x14
+    x21 = 1.0/(1.0 - cos_psi*cos_psi*x16 - x7*x20)
+    x22 = sin_psi*x21
+    x23 = x19*x22
+    x24 = cos_psi*sin_phi
+    x25 = R*(x24*x8 + 2.0*sin_psi*x10 + x24*x9) - cos_psi*x12
+    x26 = x25 - 2.0*x6*x20
+    x27 = 1.0 - sin_psi*sin_psi*x16 - x24*x15 - sin_psi*x23*x19
+    x28 = (x13 + 2.0*x6*x15 + x23*x26)/x27
+    x29 = x21*x26 + x23*x28
+    x30 = psi_dot*x1 - sin_phi*(x2*(2.0*x6 + x28*x24 - x29*x7))
+    x31 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + (x30 + cos_psi*x28 - sin_psi*x29)
+    x32 = psi_dot*(cos_psi*x_dot + sin_psi*y_dot) + (sin_psi*x28 + cos_psi*x29)
+    x33 = cos_psi*x21
+    x34 = c2*sin_psi*(1.0 + x19*x33)/x27
+    x35 = c2*x33 + x23*x34
+    x36 = cos_psi*x34 - sin_psi*x35
+    x37 = sin_phi*(x36*x14) - x36
+    x38 = 1.0/(sin_psi*x34 + cos_psi*x35)
     x39 = x37*x38
-    x40 = psi_dot*(cos_psi*y_dot - sin_psi*x_dot) + x32 + x33*x39
-    x41 = 1.0 - sin_phi*x10
-    x42 = x41*(cos_psi - sin_psi*x28)/x34
-    x43 = x25*(sin_psi*x41 - x42*x27)
-    x44 = 0.5*c3 - sin_phi*(x11*x42 + x24*x43 - x9) + cos_psi*x42 + sin_psi*x43
-    x45 = x40/(x44 - x37*x39)
+    x40 = c2*(1.0 - x17)
+    x41 = cos_psi*(1.0 - sin_psi*x18*x22)*x40/x27
+    x42 = cos_psi*x41 + sin_psi*(x22*x40 - x23*x41)
+    x43 = 0.5*c3 - sin_phi*((x42 - c2)*x14) + x42 - x37*x39
+    x44 = (x31 + x32*x39)/x43
     # outputs
-    return (-x45, x38*(x33 + x37*x45))
+    return (-x44, x38*(x32 + x37*x44))
 
 
 def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     """Changes of y that remove small residuals of the constraints, by one step of Newton's method.
 
-    133 operations, 7 of them on parameters alone.
+    117 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -711,49 +708,49 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
     _, _, psi, phi, _, x_dot, y_dot, _, _, chi_dot = y
     m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*(1.0/(m*(1.0 + k)))
-    c1 = 1.0/(m*k)
-    c2 = 1.0/R
+    c0 = 1.0/(1.0 + k)
+    c1 = 1.0/m
+    c2 = 1.0/(m*k)
+    c3 = 1.0/R
     # intermediate terms
     sin_phi = sin(phi)
-    x0 = sin_phi*sin_phi
-    x1 = k*x0
     cos_phi = cos(phi)
-    x2 = 1.0/(m*(2.0*x1 + x0 + k*cos_phi*cos_phi - 2.0*x1))
-    x3 = sin_phi*x2
-    x4 = m*x3
-    x5 = 1.0 - sin_phi*x4
-    cos_psi = cos(psi)
+    x0 = sin_phi*(1.0/(sin_phi*sin_phi + k*cos_phi*cos_phi))
+    x1 = sin_phi*x0
+    x2 = 1.0 - x1
     sin_psi = sin(psi)
-    x6 = c0*cos_phi
-    x7 = cos_psi*x6
-    x8 = sin_psi*x4
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x7 - x8*x9))
-    x11 = sin_psi*x6
-    x12 = cos_phi*x11
-    x13 = cos_psi*x4
-    x14 = cos_psi*x12 - x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 - cos_psi*sin_phi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x5*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*y_dot - sin_psi*x_dot
-    x21 = (sin_psi + cos_psi*x16)/x18
-    x22 = x10*(cos_psi + x21*x15)
-    x23 = x13*x21 - x8*x22
-    x24 = sin_phi*x23
-    x25 = x24 + sin_psi*x22 - cos_psi*x21
-    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
-    x27 = x25*x26
-    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x20*x27
-    x29 = x10*(sin_psi*x5 - x19*x15)
-    x30 = x13*x19 + x8*x29 - x3
-    x31 = 0.5*c1 - sin_phi*x30
-    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
-    x33 = x26*(x20 - x25*x32)
-    x34 = c2*(x32*(x11*x19 - x29*x7) - x33*(x11*x21 + x22*x7))
+    x3 = sin_psi*sin_psi
+    x4 = c0*cos_phi
+    x5 = cos_phi*x4
+    x6 = x5 - x1
+    cos_psi = cos(psi)
+    x7 = cos_psi*cos_psi
+    x8 = 1.0/(1.0 - x5*x7 - x1*x3)
+    x9 = x6*x8
+    x10 = c1*cos_psi
+    x11 = cos_psi*sin_psi
+    x12 = x9*x11
+    x13 = 1.0 - x5*x3 - x1*x7 - x6*x12*x11
+    x14 = x2*(1.0 - x3*x9)*x10/x13
+    x15 = cos_psi*y_dot - sin_psi*x_dot
+    x16 = c1*sin_psi
+    x17 = (1.0 + x7*x9)*x16/x13
+    x18 = x8*x10 + x12*x17
+    x19 = cos_psi*x17 - sin_psi*x18
+    x20 = x19*x0
+    x21 = sin_phi*x20
+    x22 = x21 - x19
+    x23 = sin_psi*x17 + cos_psi*x18
+    x24 = 1.0/x23
+    x25 = x22*x24
+    x26 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x15*x25
+    x27 = x8*x2*x16 - x12*x14
+    x28 = cos_psi*x14 + sin_psi*x27
+    x29 = (x28 - c1)*x0
+    x30 = 0.5*c2 - sin_phi*x29
+    x31 = x26/(x30 + x28 - x22*x25)
+    x32 = x24*(x15 - x22*x31)
+    x33 = x31*((sin_psi*x14 - cos_psi*x27)*x4) - x32*(x23*x4)
     # outputs
     return (
         0.0,
@@ -761,18 +758,18 @@ def correction(t: float, y: Numbers, params: Numbers) -> Vector:
         0.0,
         0.0,
         0.0,
-        -(x19*x32 - x21*x33),
-        -(x29*x32 + x22*x33),
-        c2*(x30*x32 - x23*x33),
-        x34,
-        c2*(x31*x32 + x24*x33),
+        -(x14*x31 - x17*x32),
+        -(x27*x31 + x18*x32),
+        c3*(x29*x31 - x20*x32),
+        c3*x33,
+        c3*(x30*x31 + x21*x32),
     )
 
 
 def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """`correction` of the rational state.
 
-    130 operations, 7 of them on parameters alone.
+    113 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -794,45 +791,45 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     _, _, sin_psi, cos_psi, sin_phi, cos_phi, _, x_dot, y_dot, _, _, chi_dot = y
     m, R, k, _ = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
-    c0 = m*(1.0/(m*(1.0 + k)))
-    c1 = 1.0/(m*k)
-    c2 = 1.0/R
+    c0 = 1.0/(1.0 + k)
+    c1 = 1.0/m
+    c2 = 1.0/(m*k)
+    c3 = 1.0/R
     # intermediate terms
-    x0 = sin_phi*sin_phi
-    x1 = k*x0
-    x2 = 1.0/(m*(2.0*x1 - (2.0*x1 + x0 + k*cos_phi*cos_phi)))
-    x3 = sin_phi*x2
-    x4 = m*x3
-    x5 = 1.0 + sin_phi*x4
-    x6 = c0*cos_phi
-    x7 = cos_psi*x6
-    x8 = sin_psi*x4
-    x9 = sin_psi*sin_phi
-    x10 = 1.0/(m*(1.0 - cos_phi*cos_psi*x7 + x8*x9))
-    x11 = sin_psi*x6
-    x12 = cos_phi*x11
-    x13 = cos_psi*x4
-    x14 = cos_psi*x12 + x13*x9
-    x15 = m*x14
-    x16 = x10*x15
-    x17 = 1.0 - sin_psi*x12 + sin_phi*cos_psi*x13 - x14*x16
-    x18 = m*x17
-    x19 = x5*(cos_psi - sin_psi*x16)/x18
-    x20 = cos_psi*y_dot - sin_psi*x_dot
-    x21 = (sin_psi + cos_psi*x16)/x18
-    x22 = x10*(cos_psi + x21*x15)
-    x23 = x13*x21 - x8*x22
-    x24 = sin_phi*x23
-    x25 = x24 + cos_psi*x21 - sin_psi*x22
-    x26 = 1.0/(sin_psi*x21 + cos_psi*x22)
-    x27 = x25*x26
-    x28 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot + x20*x27
-    x29 = x10*(sin_psi*x5 - x19*x15)
-    x30 = x13*x19 + x8*x29 - x3
-    x31 = 0.5*c1 + sin_phi*x30
-    x32 = x28/(x31 + cos_psi*x19 + sin_psi*x29 - x25*x27)
-    x33 = x26*(x20 + x25*x32)
-    x34 = c2*(x32*(x11*x19 - x29*x7) - x33*(x11*x21 + x22*x7))
+    x0 = sin_phi*(1.0/(sin_phi*sin_phi + k*cos_phi*cos_phi))
+    x1 = sin_phi*x0
+    x2 = 1.0 - x1
+    x3 = sin_psi*sin_psi
+    x4 = c0*cos_phi
+    x5 = cos_phi*x4
+    x6 = x5 - x1
+    x7 = cos_psi*cos_psi
+    x8 = 1.0/(1.0 - x5*x7 - x1*x3)
+    x9 = x6*x8
+    x10 = c1*cos_psi
+    x11 = cos_psi*sin_psi
+    x12 = x9*x11
+    x13 = 1.0 - x5*x3 - x1*x7 - x6*x12*x11
+    x14 = x2*(1.0 - x3*x9)*x10/x13
+    x15 = cos_psi*y_dot - sin_psi*x_dot
+    x16 = c1*sin_psi
+    x17 = (1.0 + x7*x9)*x16/x13
+    x18 = x8*x10 + x12*x17
+    x19 = cos_psi*x17 - sin_psi*x18
+    x20 = x19*x0
+    x21 = sin_phi*x20
+    x22 = x21 - x19
+    x23 = sin_psi*x17 + cos_psi*x18
+    x24 = 1.0/x23
+    x25 = x22*x24
+    x26 = cos_psi*x_dot + sin_psi*y_dot - R*chi_dot - x15*x25
+    x27 = x8*x2*x16 - x12*x14
+    x28 = cos_psi*x14 + sin_psi*x27
+    x29 = (x28 - c1)*x0
+    x30 = 0.5*c2 - sin_phi*x29
+    x31 = x26/(x30 + x28 - x22*x25)
+    x32 = x24*(x15 - x22*x31)
+    x33 = x31*((sin_psi*x14 - cos_psi*x27)*x4) - x32*(x23*x4)
     # outputs
     return (
         0.0,
@@ -840,11 +837,11 @@ def correction_rational(t: float, y: Numbers, params: Numbers) -> Vector:
         0.0,
         0.0,
         0.0,
-        -(x19*x32 - x21*x33),
-        -(x29*x32 + x22*x33),
-        -c2*(x30*x32 - x23*x33),
-        x34,
-        c2*(x31*x32 - x24*x33),
+        -(x14*x31 - x17*x32),
+        -(x27*x31 + x18*x32),
+        c3*(x29*x31 - x20*x32),
+        c3*x33,
+        c3*(x30*x31 + x21*x32),
     )
 
 
@@ -1084,7 +1081,7 @@ def rational_state(t: float, y: Numbers, params: Numbers) -> Vector:
 def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_rational(t, y, params), without sines and cosines of angles.
 
-    214 operations, 8 of them on parameters alone.
+    200 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -1107,79 +1104,83 @@ def rhs_rational(t: float, y: Numbers, params: Numbers) -> Vector:
     m, R, k, g = params.tolist() if hasattr(params, "tolist") else params
     # terms of the parameters alone
     c0 = 1.0 + k
-    c1 = m*(1.0/(m*c0))
-    c2 = m*R
-    c3 = 1.0/(m*k)
+    c1 = 1.0/c0
+    c2 = 1.0/m
+    c3 = 1.0/(k*m)
     c4 = 1.0/R
     # intermediate terms
-    x0 = psi_dot*sin_psi
-    x1 = phi_dot*cos_phi
-    x2 = phi_dot*sin_phi
-    x3 = sin_phi*sin_phi
-    x4 = k*x3
-    x5 = 1.0/(m*(2.0*x4 - (2.0*x4 + x3 + k*cos_phi*cos_phi)))
-    x6 = m*x5
-    x7 = 1.0 + x3*x6
-    x8 = cos_psi*cos_phi
-    x9 = c1*x8
-    x10 = sin_psi*sin_phi
-    x11 = x10*x6
-    x12 = 1.0/(m*(1.0 - x8*x9 + x11*x10))
-    x13 = sin_psi*cos_phi
-    x14 = c1*x13
-    x15 = cos_psi*sin_phi
-    x16 = x15*x6
-    x17 = x14*x8 + x16*x10
-    x18 = m*x17
-    x19 = x12*x18
-    x20 = 1.0 - x14*x13 + x16*x15 - x17*x19
-    x21 = m*x20
-    x22 = x7*(cos_psi - sin_psi*x19)/x21
-    x23 = R*psi_dot
-    x24 = psi_dot*sin_phi
-    x25 = c0*x24
-    x26 = k*chi_dot
-    x27 = c2*(x5*(x25 + x26 - k*x24))
-    x28 = x1*x27
-    x29 = psi_dot*psi_dot
-    x30 = phi_dot*phi_dot
-    x31 = cos_phi*(x25 + 2.0*x26)*x23 + g*sin_phi
-    x32 = c1*x31
-    x33 = R*(x10*x29 + x10*x30 - 2.0*psi_dot*phi_dot*x8) - x32*x13
-    x34 = R*(x15*x29 + 2.0*x0*x1 + x15*x30) - x31*x9 + 2.0*x28*x10
-    x35 = (x33 - 2.0*x2*x8*x27 + x34*x19)/x20
-    x36 = m*x12*(x34 + x17*x35)
-    x37 = 2.0*x28 + x16*x35 - x11*x36
-    x38 = x1*x23 + sin_phi*x37
-    x39 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x38 + cos_psi*x35 - sin_psi*x36)
-    x40 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (sin_psi*x35 + cos_psi*x36)
-    x41 = (sin_psi + cos_psi*x19)/x21
-    x42 = x12*(cos_psi + x41*x18)
-    x43 = x16*x41 - x11*x42
-    x44 = sin_phi*x43
-    x45 = x44 + cos_psi*x41 - sin_psi*x42
-    x46 = 1.0/(sin_psi*x41 + cos_psi*x42)
-    x47 = x45*x46
-    x48 = x12*(sin_psi*x7 - x22*x18)
-    x49 = x16*x22 + x11*x48 - sin_phi*x5
-    x50 = 0.5*c3 + sin_phi*x49
-    x51 = (x39 - x40*x47)/(x50 + cos_psi*x22 + sin_psi*x48 - x45*x47)
-    x52 = x46*(x40 - x45*x51)
-    x53 = x51*(x14*x22 - x48*x9) + x52*(x14*x41 + x42*x9) - (x14*x35 + x36*x9 - x32)
+    x0 = psi_dot*cos_psi
+    x1 = psi_dot*sin_psi
+    x2 = phi_dot*cos_phi
+    x3 = c1*cos_phi
+    x4 = cos_phi*x3
+    x5 = 1.0/(sin_phi*sin_phi + k*cos_phi*cos_phi)
+    x6 = sin_phi*x5
+    x7 = sin_phi*x6
+    x8 = x4 - x7
+    x9 = sin_psi*sin_phi
+    x10 = sin_psi*x6
+    x11 = 1.0/(1.0 - cos_psi*cos_psi*x4 - x9*x10)
+    x12 = sin_psi*x11
+    x13 = c2*(1.0 - x7)
+    x14 = cos_psi*sin_phi
+    x15 = cos_psi*x6
+    x16 = cos_psi*x8
+    x17 = x16*x12
+    x18 = 1.0 - sin_psi*sin_psi*x4 - x14*x15 - sin_psi*x17*x16
+    x19 = cos_psi*(1.0 - sin_psi*x8*x12)*x13/x18
+    x20 = R*x2
+    x21 = psi_dot*sin_phi
+    x22 = c0*x21
+    x23 = k*chi_dot
+    x24 = (x22 + x23 - k*x21)*x20
+    x25 = phi_dot*phi_dot
+    x26 = R*psi_dot*cos_phi*(x22 + 2.0*x23) + g*sin_phi
+    x27 = x26*x3
+    x28 = R*(x1*x21 + x9*x25 - 2.0*x0*x2) - sin_psi*x27 + 2.0*x24*x15
+    x29 = R*(x0*x21 + 2.0*x1*x2 + x14*x25) - cos_psi*x27 - 2.0*x24*x10
+    x30 = (x28 + x17*x29)/x18
+    x31 = x11*x29 + x17*x30
+    x32 = x5*(2.0*x24 + x30*x14 - x31*x9)
+    x33 = psi_dot*x20 - sin_phi*x32
+    x34 = psi_dot*(y_dot*cos_psi - x_dot*sin_psi) + (x33 + cos_psi*x30 - sin_psi*x31)
+    x35 = sin_psi*x30
+    x36 = cos_psi*x31
+    x37 = psi_dot*(x_dot*cos_psi + y_dot*sin_psi) + (x35 + x36)
+    x38 = cos_psi*x11
+    x39 = c2*sin_psi*(1.0 + x16*x38)/x18
+    x40 = c2*x38 + x17*x39
+    x41 = cos_psi*x39 - sin_psi*x40
+    x42 = x41*x6
+    x43 = sin_phi*x42
+    x44 = x43 - x41
+    x45 = sin_psi*x39 + cos_psi*x40
+    x46 = 1.0/x45
+    x47 = x44*x46
+    x48 = x12*x13 - x17*x19
+    x49 = cos_psi*x19 + sin_psi*x48
+    x50 = (x49 - c2)*x6
+    x51 = 0.5*c3 - sin_phi*x50
+    x52 = (x34 + x37*x47)/(x51 + x49 - x44*x47)
+    x53 = x46*(x37 + x44*x52)
+    x54 = (
+        x52*((sin_psi*x19 - cos_psi*x48)*x3) + x53*(x45*x3)
+        - c1*(cos_phi*x35 + cos_phi*x36 - x26)
+    )
     # outputs
     return (
         x_dot,
         y_dot,
-        psi_dot*cos_psi,
-        -x0,
-        x1,
-        -x2,
+        x0,
+        -x1,
+        x2,
+        -phi_dot*sin_phi,
         chi_dot,
-        -(x22*x51 + x41*x52 - x35),
-        -(x36 + x48*x51 - x42*x52),
-        -c4*(x49*x51 + x43*x52 - x37),
-        c4*x53,
-        c4*(x50*x51 + x44*x52 - x38),
+        -(x19*x52 + x39*x53 - x30),
+        -(x31 + x48*x52 - x40*x53),
+        c4*(x50*x52 + x42*x53 - x32),
+        c4*x54,
+        -c4*(x33 + x43*x53 - x51*x52),
     )
 
 

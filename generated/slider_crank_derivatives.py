@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "d470c675108b29f2"
+DIGEST = "94a49e9127dd3989"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     """Derivatives of `rhs` with respect to the parameters, without inputs.
 
-    215 operations, 9 of them on parameters alone.
+    212 operations, 10 of them on parameters alone.
 
     Parameters
     ----------
@@ -58,7 +58,8 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     c5 = c1*c4
     c6 = m1 + m2
     c7 = g*c6
-    c8 = r*M
+    c8 = r*l
+    c9 = r*M
     # intermediate terms
     sin_phi = sin(phi)
     cos_phi = cos(phi)
@@ -88,46 +89,44 @@ def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
     x22 = cos_phi*x6
     x23 = x12*x22
     x24 = x7*x6
-    x25 = x7 + x1
-    x26 = x21*x24 - x1*(x6*x9 + 3.0*x2*x9 - 2.0*c2*x6*x25)
-    x27 = x6*x10
-    x28 = x18*x22
-    x29 = c5*cos_phi
-    x30 = x3*x16
-    x31 = (
-        0.5*m2*(x21*x23 + x5*x26)/x27 + 2.0*M*(x21*x28 + x17*x26)/x27
-        - (1.0/3.0)*(2.0*x14*x1 - x3*x25)*x29/x30
+    x25 = x21*x24 - (x6*x9 + 3.0*x2*x9 - 2.0*c2*x6)*x1
+    x26 = x6*x10
+    x27 = x18*x22
+    x28 = c5*cos_phi
+    x29 = x3*x16
+    x30 = (
+        0.5*m2*(x21*x23 + x5*x25)/x26 + 2.0*M*(x21*x27 + x17*x25)/x26
+        - (1.0/3.0)*(2.0*x14*x1 - x3)*x28/x29
     )
-    x32 = phi_dot*phi_dot
-    x33 = x5*x1
-    x34 = x7 + x5*x33
-    x35 = x17*x1
-    x36 = (1.0/3.0)*m1 + 0.25*m2*x34 + x19*x35 + (1.0/12.0)*c3*x7/x3
-    x37 = 0.5*m2*x5*x21/x10 + 2.0*x21*x19/x10 + (1.0/6.0)*x29/x16
-    x38 = r*x32
-    x39 = sin_phi*x38
-    x40 = (x20*x39 - c7*cos_phi)/x36
-    x41 = sin_phi*(x20 - r*x31)*x32 - c0*(x36 + x0*x1*x37)*x40
-    x42 = x24 - x1*(3.0*x9 - 2.0*x6)
-    x43 = m2*cos_phi
-    x44 = (
-        0.5*c4*(x23 + x5*x42)/x27 + 2.0*c8*(x28 + x17*x42)/x27
-        + (1.0/3.0)*(x3*x14 + c1*x3 - 2.0*c1*x14)*x43/x30
+    x31 = phi_dot*phi_dot
+    x32 = x7 + x5*x5*x1
+    x33 = (1.0/3.0)*m1 + 0.25*m2*x32 + x17*x19*x1 + (1.0/12.0)*c3*x7/x3
+    x34 = m2*x5
+    x35 = (1.0/6.0)*x28/x16 + 0.5*x21*x34/x10 + 2.0*x21*x19/x10
+    x36 = r*x31
+    x37 = sin_phi*x36
+    x38 = (x20*x37 - c7*cos_phi)/x33
+    x39 = sin_phi*(x20 - r*x30)*x31 - c0*(x33 + x0*x35*x1)*x38
+    x40 = x24 - (3.0*x9 - 2.0*x6)*x1
+    x41 = (
+        0.5*c4*(x23 + x5*x40)/x26 + 2.0*c9*(x27 + x17*x40)/x26
+        + (1.0/3.0)*m2*cos_phi*(x3*x14 + c1*x3 - 2.0*c1*x14)/x29
     )
-    x45 = 0.5*c4*x33/x10 + 2.0*c8*x35/x10 - (1.0/6.0)*(x3 - c1)*x43/x16
-    x46 = g*cos_phi
-    x47 = x46 - 0.5*(x13 + (1.0/3.0)*c1*x15/x16)*x39 + 0.25*x40*(x34 + (1.0/3.0)*c1*x7/x3)
-    x48 = sin_phi*x17
+    x42 = 0.5*x34/x10 + 2.0*x19/x10 + (1.0/6.0)*c4*cos_phi/x16
+    x43 = c8*sin_phi*(x41*x31 + cos_phi*sin_phi*x38*x42)/x33
+    x44 = g*cos_phi
+    x45 = x44 - 0.5*(x13 + (1.0/3.0)*c1*x15/x16)*x37 + 0.25*x38*(x32 + (1.0/3.0)*c1*x7/x3)
+    x46 = sin_phi*x17
     # outputs
     return (
         (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         (
-            0.5*c0*(x41/x36),
-            0.5*c0*(l*(x44*x39 + cos_phi*x40*x45)/x36),
-            -0.5*c0*(((1.0/3.0)*x40 + x46)/x36),
-            -0.5*c0*(x47/x36),
-            -c0*((x18*x38 + 0.5*x40*x48)*x48/x36),
-            -0.5*c0*(c6*cos_phi/x36),
+            0.5*c0*(x39/x33),
+            0.5*c0*x43,
+            -0.5*c0*(((1.0/3.0)*x38 + x44)/x33),
+            -0.5*c0*(x45/x33),
+            -c0*((x18*x36 + 0.5*x38*x46)*x46/x33),
+            -0.5*c0*(c6*cos_phi/x33),
         ),
     )
 
@@ -297,7 +296,7 @@ def jacobian_hamiltonian(t: float, y: Numbers, params: Numbers) -> Matrix:
 def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     """Right-hand side of y' = rhs_variational(t, y, params): a motion and its linear perturbation.
 
-    116 operations, 6 of them on parameters alone.
+    115 operations, 6 of them on parameters alone.
 
     Parameters
     ----------
@@ -332,40 +331,41 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     sqrt_x4 = sqrt(x4)
     x5 = r*cos_phi/sqrt_x4
     x6 = 2.0 + x5
-    x7 = sqrt_x4*sqrt_x4
-    x8 = cos_phi*cos_phi
-    x9 = c2*x8
-    x10 = r*(x7 - x9)
-    x11 = sqrt_x4*x7
-    x12 = x2*x10/x11
-    x13 = cos_phi*x6 - x12
-    x14 = 1.0 + x5
-    x15 = x12 - cos_phi*x14
-    x16 = M*x14
-    x17 = c3*(x4 - x9)
-    x18 = x4*x4
-    x19 = 0.5*m2*(cos_phi - x6*x13) + 2.0*x15*x16 + (1.0/6.0)*cos_phi*x17/x18
-    x20 = x0*x19
-    x21 = (1.0/3.0)*m1 + 0.25*m2*(x8 + x6*x6*x2) + x14*x2*x16 + (1.0/12.0)*c3*x8/x4
-    x22 = (x1*x20 - c4*cos_phi)/x21
-    x23 = cos_phi*x10
-    x24 = x23/x11
-    x25 = x23*(3.0*x3 + 2.0*x7)/(x7*x11)
-    x26 = (
-        0.5*m2*(1.0 - (x13*x10/x11 + x6*(x6 + x24 + x25)))
-        + 2.0*M*(x15*x10/x11 - x14*(x25 + (x14 + x24)))
-        + (1.0/6.0)*(x4 - 4.0*x9)*x17/(x4*x18)
+    x7 = cos_phi*cos_phi
+    x8 = c2*x7
+    x9 = x4 - x8
+    x10 = r*x9
+    x11 = sqrt_x4*sqrt_x4
+    x12 = sqrt_x4*x11
+    x13 = x2*x10/x12
+    x14 = cos_phi*x6 - x13
+    x15 = 1.0 + x5
+    x16 = x13 - cos_phi*x15
+    x17 = M*x15
+    x18 = c3*x9
+    x19 = x4*x4
+    x20 = 0.5*m2*(cos_phi - x6*x14) + 2.0*x16*x17 + (1.0/6.0)*cos_phi*x18/x19
+    x21 = x0*x20
+    x22 = (1.0/3.0)*m1 + 0.25*m2*(x7 + x6*x6*x2) + x15*x2*x17 + (1.0/12.0)*c3*x7/x4
+    x23 = (x1*x21 - c4*cos_phi)/x22
+    x24 = cos_phi*x10
+    x25 = x24/x12
+    x26 = x24*(3.0*x3 + 2.0*x4)/(x12*x11)
+    x27 = (
+        0.5*m2*(1.0 - (x14*x10/x12 + x6*(x6 + x25 + x26)))
+        + 2.0*M*(x16*x10/x12 - x15*(x26 + (x15 + x25)))
+        + (1.0/6.0)*(x4 - 4.0*x8)*x18/(x4*x19)
     )
-    x27 = phi_dot*(cos_phi*x19 - x26*x2)*x1 + c4*sin_phi + sin_phi*x19*x22
-    x28 = c0*((0.5*delta_phi*x27 + r*delta_phi_dot*x20)/x21)
+    x28 = phi_dot*(cos_phi*x20 - x27*x2)*x1 + c4*sin_phi + sin_phi*x20*x23
+    x29 = c0*((0.5*delta_phi*x28 + r*delta_phi_dot*x21)/x22)
     # outputs
-    return (phi_dot*cos_phi, -x0, 0.5*c0*x22, delta_phi_dot, x28)
+    return (phi_dot*cos_phi, -x0, 0.5*c0*x23, delta_phi_dot, x29)
 
 
 def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     """`rhs_variational` with perturbed parameters, whose perturbations precede them.
 
-    260 operations, 11 of them on parameters alone.
+    246 operations, 13 of them on parameters alone.
 
     Parameters
     ----------
@@ -396,88 +396,80 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     c5 = g*c4
     c6 = r*m2
     c7 = c1*c6
-    c8 = l*delta_l
-    c9 = r*M
-    c10 = c4*delta_g
+    c8 = r*c1
+    c9 = r*l*delta_l
+    c10 = r*M
+    c11 = c4*delta_g
     # intermediate terms
     x0 = phi_dot*phi_dot
     x1 = r*x0
-    x2 = r*cos_phi
-    x3 = sin_phi*sin_phi
-    x4 = c2*x3
-    x5 = c1 - x4
-    sqrt_x5 = sqrt(x5)
-    x6 = x2/sqrt_x5
-    x7 = 2.0 + x6
-    x8 = sqrt_x5*sqrt_x5
-    x9 = cos_phi*cos_phi
-    x10 = c2*x9
-    x11 = x8 - x10
-    x12 = r*x11
-    x13 = sqrt_x5*x8
-    x14 = x3*x12/x13
-    x15 = cos_phi*x7 - x14
-    x16 = cos_phi - x7*x15
-    x17 = 1.0 + x6
-    x18 = x14 - cos_phi*x17
-    x19 = M*x17
-    x20 = x5 - x10
-    x21 = cos_phi*x20
-    x22 = x5*x5
-    x23 = 0.5*m2*x16 + 2.0*x18*x19 + (1.0/6.0)*c3*x21/x22
-    x24 = sin_phi*x23
-    x25 = x7*x3
-    x26 = x9 + x7*x25
-    x27 = x17*x3
-    x28 = (1.0/3.0)*m1 + 0.25*m2*x26 + x19*x27 + (1.0/12.0)*c3*x9/x5
-    x29 = (x1*x24 - c5*cos_phi)/x28
-    x30 = c0*x29
-    x31 = sin_phi*x17
-    x32 = cos_phi*x12
-    x33 = x32/x13
-    x34 = x8*x13
-    x35 = x32*(3.0*x4 + 2.0*x8)/x34
-    x36 = x5*x22
-    x37 = (
-        0.5*m2*(1.0 - (x15*x12/x13 + x7*(x7 + x33 + x35)))
-        + 2.0*M*(x18*x12/x13 - x17*(x35 + (x17 + x33)))
-        + (1.0/6.0)*c3*x20*(x5 - 4.0*x10)/x36
+    x2 = sin_phi*sin_phi
+    x3 = c2*x2
+    x4 = c1 - x3
+    sqrt_x4 = sqrt(x4)
+    x5 = r*cos_phi/sqrt_x4
+    x6 = 2.0 + x5
+    x7 = cos_phi*cos_phi
+    x8 = c2*x7
+    x9 = x4 - x8
+    x10 = r*x9
+    x11 = sqrt_x4*sqrt_x4
+    x12 = sqrt_x4*x11
+    x13 = x2*x10/x12
+    x14 = cos_phi*x6 - x13
+    x15 = cos_phi - x6*x14
+    x16 = 1.0 + x5
+    x17 = x13 - cos_phi*x16
+    x18 = M*x16
+    x19 = cos_phi*x9
+    x20 = x4*x4
+    x21 = 0.5*m2*x15 + 2.0*x17*x18 + (1.0/6.0)*c3*x19/x20
+    x22 = sin_phi*x21
+    x23 = x7 + x6*x6*x2
+    x24 = (1.0/3.0)*m1 + 0.25*m2*x23 + x16*x18*x2 + (1.0/12.0)*c3*x7/x4
+    x25 = (x1*x22 - c5*cos_phi)/x24
+    x26 = c0*x25
+    x27 = sin_phi*x16
+    x28 = cos_phi*x10
+    x29 = x28/x12
+    x30 = x12*x11
+    x31 = x28*(3.0*x3 + 2.0*x4)/x30
+    x32 = x4*x20
+    x33 = (
+        0.5*m2*(1.0 - (x14*x10/x12 + x6*(x6 + x29 + x31)))
+        + 2.0*M*(x17*x10/x12 - x16*(x31 + (x16 + x29))) + (1.0/6.0)*c3*x9*(x4 - 4.0*x8)/x32
     )
-    x38 = delta_phi*((cos_phi*x23 - x37*x3)*x1 + c5*sin_phi + x29*x24)
-    x39 = x4 + x8
-    x40 = cos_phi*x8
-    x41 = x18*x40
-    x42 = x8*x9
-    x43 = x9 + x3
-    x44 = x39*x42 - x3*(x8*x11 + 3.0*x4*x11 - 2.0*c2*x8*x43)
-    x45 = c7*cos_phi
-    x46 = x15*x40
-    x47 = (
-        2.0*M*(x39*x41 - x17*x44)/x34 + (1.0/3.0)*(2.0*x20*x3 - x5*x43)*x45/x36
-        - 0.5*m2*(x39*x46 + x7*x44)/x34
+    x34 = delta_phi*((cos_phi*x21 - x33*x2)*x1 + c5*sin_phi + x25*x22)
+    x35 = cos_phi*x4
+    x36 = c1*x35
+    x37 = c1*x4
+    x38 = x4*x9
+    x39 = x7*x37 - (x38 + 3.0*x3*x9 - 2.0*c2*x4)*x2
+    x40 = (
+        0.5*m2*(x14*x36 + x6*x39)/x30 + (1.0/3.0)*c7*cos_phi*(x4 - 2.0*x9*x2)/x32
+        - 2.0*M*(x17*x36 - x16*x39)/x30
     )
-    x48 = 0.5*m2*x7*x39/x13 + 2.0*x39*x19/x13 + (1.0/6.0)*x45/x22
-    x49 = delta_r*(sin_phi*(x23 + r*x47)*x0 - x30*(x28 + x2*x3*x48))
-    x50 = x42 + x3*(2.0*x8 - 3.0*x11)
-    x51 = m2*cos_phi
-    x52 = (
-        0.5*c6*(x46 + x7*x50)/x34 + (1.0/3.0)*(x5*x20 + c1*x5 - 2.0*c1*x20)*x51/x36
-        - 2.0*c9*(x41 - x17*x50)/x34
+    x41 = (1.0/6.0)*c6*cos_phi/x20 + 0.5*m2*x6/x12 + 2.0*x18/x12
+    x42 = cos_phi*x41
+    x43 = delta_r*(sin_phi*(x21 - r*x40)*x0 - x26*(x24 + c8*x2*x42))
+    x44 = x4*x7 + (2.0*x4 - 3.0*x9)*x2
+    x45 = (
+        0.5*c6*(x14*x35 + x6*x44)/x30 + (1.0/3.0)*m2*cos_phi*(x38 + x37 - 2.0*c1*x9)/x32
+        - 2.0*c10*(x17*x35 - x16*x44)/x30
     )
-    x53 = sin_phi*x1
-    x54 = 0.5*c6*x25/x13 + 2.0*c9*x27/x13 + (1.0/6.0)*(c1 - x5)*x51/x22
-    x55 = g*cos_phi
-    x56 = x55 - 0.5*(x16 + (1.0/3.0)*c1*x21/x22)*x53 + 0.25*x29*(x26 + (1.0/3.0)*c1*x9/x5)
-    x57 = (
-        x38 + x49 + c8*(x52*x53 + cos_phi*x29*x54) - delta_m1*((1.0/3.0)*x29 + x55)
-        - delta_m2*x56 - c10*cos_phi
+    x46 = g*cos_phi
+    x47 = x46 - 0.5*sin_phi*(x15 + (1.0/3.0)*c1*x19/x20)*x1
+    x48 = delta_m2*(x47 + 0.25*x25*(x23 + (1.0/3.0)*c1*x7/x4))
+    x49 = (
+        x34 + x43 + c9*sin_phi*(x45*x0 + sin_phi*x25*x42) - delta_m1*((1.0/3.0)*x25 + x46)
+        - x48 - c11*cos_phi
     )
-    x58 = r*phi_dot*delta_phi_dot*x24 + delta_M*(x18*x1 - 0.5*x29*x31)*x31 + 0.5*x57
+    x50 = r*phi_dot*delta_phi_dot*x22 + delta_M*(x17*x1 - 0.5*x25*x27)*x27 + 0.5*x49
     # outputs
     return (
         phi_dot*cos_phi,
         -phi_dot*sin_phi,
-        0.5*x30,
+        0.5*x26,
         delta_phi_dot,
-        c0*(x58/x28),
+        c0*(x50/x24),
     )

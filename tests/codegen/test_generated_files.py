@@ -134,3 +134,26 @@ def test_no_product_contains_a_factor_and_its_reciprocal() -> None:
     assert [path.name for path in MODULES if products_with_reciprocals(path.read_text())] == []
     planted = "def f(a):\n    c0 = a + 1.0\n    c1 = 1.0/c0\n    c2 = a*c0*c1\n    return c2\n"
     assert products_with_reciprocals(planted) == ["a * c0 * c1"]
+
+
+def opposite_terms(source: str) -> list[str]:
+    """Sums that contain a term and its opposite, also in brackets."""
+
+    def terms(node: ast.expr, sign: int) -> Iterator[tuple[str, int]]:
+        match node:
+            case ast.BinOp(left, ast.Add() | ast.Sub() as operation, right):
+                yield from terms(left, sign)
+                yield from terms(right, sign if isinstance(operation, ast.Add) else -sign)
+            case ast.UnaryOp(ast.USub(), operand):
+                yield from terms(operand, -sign)
+            case _:
+                yield ast.unparse(node), sign
+
+    sums = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.BinOp))
+    signs = ((node, {*terms(node, 1)}) for node in sums)
+    return [ast.unparse(node) for node, pairs in signs if len({x for x, _ in pairs}) < len(pairs)]
+
+
+def test_no_sum_contains_a_term_and_its_opposite() -> None:
+    assert [path.name for path in MODULES if opposite_terms(path.read_text())] == []
+    assert opposite_terms("x = 2.0*a + (b - 2.0*a)") == ["2.0 * a + (b - 2.0 * a)"]

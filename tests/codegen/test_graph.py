@@ -97,6 +97,8 @@ def test_lowered_expressions_have_the_value_of_the_original(seed: int) -> None:
         ([a * b + a * c], 2),
         ([a - a * sp.cos(x) ** 2], 3),
         ([b + a - a * sp.sin(x) ** 2], 4),
+        ([a * sp.sin(x) ** 2 + b + a * sp.cos(x) ** 2], 1),
+        ([sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1], 0),
         ([a / 2 + b / 2], 2),
         ([a / 2 + b], 2),
         ([-a - b], 2),
@@ -127,6 +129,25 @@ def test_unknown_functions_are_refused_and_known_ones_listed() -> None:
         lowered(sp.gamma(a))
     with pytest.raises(UnsupportedFunctionError, match="no generated code"):
         lowered(sp.zeta(a))
+
+
+def test_the_square_of_a_root_is_its_argument() -> None:
+    graph = Graph()
+    pair, r = graph.leaf("p") + graph.leaf("q"), graph.leaf("r")
+    root = graph.call("sqrt", pair)
+    assert root * root is pair
+    assert root * (r * root * 3) is r * pair * 3
+    assert graph.power(root, 3).exponents() == {root: 3}  # one product more otherwise
+
+
+def test_a_mass_that_all_entries_have_in_common_cancels() -> None:
+    graph = Graph()
+    m, *entries, r = map(graph.leaf, "mabcr")
+    a, b, c = (m * entry for entry in entries)
+    lowering = Lowering(Factorisation(graph, [[a, b], [b, c]]).solve([m * r, m * r * 2]), ())
+    assert "m" not in lowering.inputs
+    values = {"a": 3.0, "b": 1.0, "c": 2.0, "r": 5.0}
+    assert evaluated(lowering, values) == pytest.approx([0.0, 5.0], abs=1e-15)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
@@ -177,7 +198,7 @@ def test_common_lengths_of_rows_and_columns_are_factored_out() -> None:
     right = [graph.leaf("f1"), graph.leaf("f2")]
     matrix = [[m * l1 * l1, m * l1 * l2 * cosine], [m * l1 * l2 * cosine, m * l2 * l2]]
     pivots = Factorisation(graph, matrix).pivots
-    assert leaves(pivots) == {"m", "cosine"}
+    assert leaves(pivots) == {"cosine"}
     assert len(Factorisation(graph, matrix).solve(right)) == 2
 
 
@@ -210,6 +231,16 @@ def test_a_sum_that_cancels_with_a_shared_pair_is_the_number_0() -> None:
     assert evaluated(lowering, {"p": 2.0, "q": 3.0, "r": 7.0}) == [35.0, 0.0, 7.0]
     texts = Assignments(lowering, (), LanguageNotation()).outputs
     assert texts == ["r*(p + q)", "0.0", "r"]
+
+
+def test_opposite_terms_cancel_within_shared_sums() -> None:
+    graph = Graph()
+    p, q, r = map(graph.leaf, "pqr")
+    pair = p + q
+    lowering = Lowering([r * pair, pair - p, p * r - r * pair], ())
+    assert evaluated(lowering, {"p": 2.0, "q": 3.0, "r": 7.0}) == [35.0, 3.0, -21.0]
+    texts = Assignments(lowering, (), LanguageNotation()).outputs
+    assert texts == ["r*(p + q)", "q", "-r*q"]
 
 
 @pytest.mark.parametrize("expression", [

@@ -1,9 +1,10 @@
 """Symmetric elimination, also with constraints, as straight-line operations.
 
 M = c S U D Uᵀ S with U unit upper triangular, D diagonal, S the diagonal matrix
-of common factors of rows and columns (mostly lengths), and c the common number
-of all entries. It runs from the last coordinate to the first, since in a chain
-the last mass moves with the fewest others: its entries are the shortest.
+of common factors of rows and columns (mostly lengths), and c the common factor
+of all entries (a number, and the mass if there is one). It runs from the last
+coordinate to the first, since in a chain the last mass moves with the fewest
+others: its entries are the shortest.
 
 M x - Gᵀ μ = r and G x = s are solved through G M⁻¹ Gᵀ, of one row a constraint. Where M is
 singular, as for a unit quaternion, M + Gᵀ G and r + Gᵀ s take the places of M and r: since
@@ -16,7 +17,7 @@ from functools import reduce
 from math import gcd, lcm
 from typing import Protocol, Self
 
-from derive.codegen.expression_graph.graph import Graph
+from derive.codegen.expression_graph.graph import Graph, common_powers
 from derive.codegen.expression_graph.node import LeafNode, LetNode, Node
 
 Rows = Sequence[Sequence[Node]]
@@ -63,10 +64,9 @@ class Factorisation:
         n, zero = len(matrix), graph.zero
         self._graph, self._content = graph, _content(matrix)
         self._scale = scale = _common_scale(graph, matrix)
-        self._rows = rows = [
-            [matrix[i][j] / (scale[i] * scale[j] * self._content) for j in range(n)]
-            for i in range(n)
-        ]
+        rows = [[matrix[i][j] / (scale[i] * scale[j]) for j in range(n)] for i in range(n)]
+        self._common = common = _common_inputs(graph, [entry for row in rows for entry in row])
+        self._rows = rows = [[entry / (common * self._content) for entry in row] for row in rows]
         self.pivots, self._inverses = [zero] * n, [zero] * n  # all pivots are positive
         self._multipliers: dict[tuple[int, int], Node] = {}
         for k in reversed(range(n)):
@@ -92,7 +92,8 @@ class Factorisation:
     def solve(self, right: Sequence[Node]) -> list[Node]:
         """The solution x of M x = `right`."""
         n = len(right)
-        scaled = (node / scale for node, scale in zip(right, self._scale, strict=True))
+        scales = [scale * self._common for scale in self._scale]
+        scaled = (node / scale for node, scale in zip(right, scales, strict=True))
         y = [self._graph.spread(node, 1 / self._content) for node in scaled]
         for k in reversed(range(n)):
             y[k] = y[k] * self._inverses[k]
@@ -114,6 +115,12 @@ def _content(matrix: Rows) -> Fraction:
         reduce(gcd, (number.numerator for number in numbers)),
         reduce(lcm, (number.denominator for number in numbers)),
     )
+
+
+def _common_inputs(graph: Graph, entries: Sequence[Node]) -> Node:
+    """The product of powers of inputs that divides every entry."""
+    common = common_powers([entry.exponents() for entry in entries if not entry.is_number(0)])
+    return graph.product((f, p) for f, p in common.items() if isinstance(f, LeafNode))
 
 
 def _common_scale(graph: Graph, matrix: Rows) -> list[Node]:

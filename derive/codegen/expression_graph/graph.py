@@ -7,11 +7,12 @@ built:
 
 - a product is a set of (factor, integer power), so common factors cancel;
 - a sum is primitive: its numeric and its monomial content stand outside;
+- ``a + (b - a)`` becomes ``b``, also where the nested sum is shared;
 - ``a - a*cos(x)**2`` becomes ``a*sin(x)**2``: the same number of operations,
   and no cancellation where the cosine is near one.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property, reduce
 from math import gcd
@@ -154,6 +155,11 @@ class Graph:
         if not coefficient:
             return self.zero
         self._cancel(powers)
+        for node, power in powers.items():
+            match node:
+                case CallNode("sqrt", (square,)) if power > 0 and power % 2 == 0:
+                    rooted = {**powers, node: 0, self._constant(coefficient): 1}
+                    return self.product([*rooted.items(), (square, power // 2)])
         return self._scale(self._monomial(powers), coefficient)
 
     def _cancel(self, powers: dict[Node, int]) -> None:
@@ -197,7 +203,8 @@ class Graph:
             collected[key] = collected[key] + coefficient if key in collected else coefficient
         nonzero = {node: c for node, c in collected.items() if c}
         if len(nonzero) > 1:
-            nonzero = self._pythagoras(nonzero)
+            simplified = self._pythagoras(self._without_opposites(nonzero))
+            nonzero = {node: c for node, c in simplified.items() if c}
         if not nonzero:
             return self.zero
         if len(nonzero) == 1:
@@ -216,11 +223,16 @@ class Graph:
         ordered = sorted(terms.items(), key=lambda item: item[0].rank)
         one = self.one
         monomials = [{} if n is one else dict(n.factors()) for n, _ in ordered]
-        common = {
-            n: min(m.get(n, 0) for m in monomials)
-            for n in monomials[0]
-            if all(m.get(n, 0) > 0 for m in monomials) or all(m.get(n, 0) < 0 for m in monomials)
-        }
+        common = common_powers(monomials)
+        if common:
+            divided = {
+                self._monomial({n: p - common.get(n, 0) for n, p in monomial.items()}): coefficient
+                for (_, coefficient), monomial in zip(ordered, monomials, strict=True)
+            }
+            fewer = self._without_opposites(divided)
+            if fewer is not divided:
+                return self.product([*common.items(), (self.sum(fewer.items()), 1)])
+            ordered = [*divided.items()]
         # ½a + ½b is ½(a + b), but ½a + b stays: (a + 2b)/2 would multiply twice
         content = Fraction(
             reduce(gcd, (c.numerator for _, c in ordered)),
@@ -230,28 +242,39 @@ class Graph:
         negative = sum(c.numerator < 0 for _, c in ordered)
         if 2 * negative > len(ordered) or (2 * negative == len(ordered) and ordered[0][1] < 0):
             content = -content
-        rest = []
-        for (node, coefficient), monomial in zip(ordered, monomials, strict=True):
-            if common:
-                node = self._monomial({n: p - common.get(n, 0) for n, p in monomial.items()})
-            rest.append((node, coefficient if content == 1 else coefficient / content))
+        rest = [(node, c if content == 1 else c / content) for node, c in ordered]
         rest.sort(key=lambda item: item[0].rank)
         primitive = self._sum(tuple(rest))
         # the remaining sum may be one of the common factors
         powers = {**common, primitive: common.get(primitive, 0) + 1}
         return self._scale(self._monomial(powers), content)
 
+    def _without_opposites(self, terms: dict[Node, Fraction]) -> dict[Node, Fraction]:
+        """`terms` with a nested sum expanded that contains the opposite of one of them."""
+        for node, coefficient in terms.items():
+            if isinstance(node, SumNode) and any(
+                terms.get(inner) == -c * coefficient for inner, c in node.terms
+            ):
+                return _expansion(terms, node)
+        return terms
+
     def _pythagoras(self, terms: dict[Node, Fraction]) -> dict[Node, Fraction]:
-        """Replace ``a - a*cos(x)**2`` by ``a*sin(x)**2``, and with sine and cosine exchanged."""
+        """Replace ``a - a*cos(x)**2`` by ``a*sin(x)**2``, and their sum by ``a``.
+
+        The same with sine and cosine exchanged.
+        """
         for node, coefficient in terms.items():
             for factor, power in node.factors():
                 if power != 2 or not isinstance(factor, CallNode) or factor.function not in PARTNER:
                     continue
                 rest = self.product([(node, 1), (factor, -2)])
+                partner = self._intern(CallNode, PARTNER[factor.function], factor.arguments)
+                replaced = self.product([(rest, 1), (partner, 2)])
+                if terms.get(replaced) == coefficient:
+                    others = {n: c for n, c in terms.items() if n not in (node, replaced)}
+                    return others | {rest: others.get(rest, Fraction(0)) + coefficient}
                 expanded = self._expanded(terms, rest)
                 if expanded is not None and expanded.get(rest) == -coefficient:
-                    partner = self._intern(CallNode, PARTNER[factor.function], factor.arguments)
-                    replaced = self.product([(rest, 1), (partner, 2)])
                     expanded = {n: c for n, c in expanded.items() if n not in (rest, node)}
                     expanded[replaced] = expanded.get(replaced, Fraction(0)) - coefficient
                     return expanded
@@ -261,10 +284,22 @@ class Graph:
         """`terms` with the nested sum expanded that contains `term`; None if there is none."""
         if term in terms:
             return dict(terms)
-        for node, coefficient in terms.items():
-            if isinstance(node, SumNode) and term in operands(node):
-                expanded = {n: c for n, c in terms.items() if n is not node}
-                for inner, c in node.terms:
-                    expanded[inner] = expanded.get(inner, Fraction(0)) + c * coefficient
-                return expanded
-        return None
+        nested = (n for n in terms if isinstance(n, SumNode) and term in operands(n))
+        return next((_expansion(terms, node) for node in nested), None)
+
+
+def common_powers(monomials: Sequence[Mapping[Node, int]]) -> dict[Node, int]:
+    """The factors that all of these products have, or that divide all of them."""
+    return {
+        node: min(m[node] for m in monomials)
+        for node in monomials[0]
+        if all(m.get(node, 0) > 0 for m in monomials) or all(m.get(node, 0) < 0 for m in monomials)
+    }
+
+
+def _expansion(terms: Mapping[Node, Fraction], nested: SumNode) -> dict[Node, Fraction]:
+    """`terms` with one of them, a nested sum, replaced by its own terms."""
+    expanded = {node: c for node, c in terms.items() if node is not nested}
+    for inner, c in nested.terms:
+        expanded[inner] = expanded.get(inner, Fraction(0)) + c * terms[nested]
+    return expanded
