@@ -112,7 +112,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "cart_3"
-DIGEST = "bff9ed0dc240386d"
+DIGEST = "171f877f41d21bca"
 COORDINATES = ("x", "theta1", "theta2", "theta3")
 STATE = (
     "x", "theta1", "theta2", "theta3", "x_dot", "theta1_dot", "theta2_dot", "theta3_dot",

@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chain_3"
-DIGEST = "958bce6f0da5863b"
+DIGEST = "8f5f046ed2d3901e"
 COORDINATES = ("theta1", "theta2", "theta3")
 STATE = ("theta1", "theta2", "theta3", "theta1_dot", "theta2_dot", "theta3_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "chaplygin_sleigh"
-DIGEST = "933fd0b82a41fe67"
+DIGEST = "3742c0f487c246e3"
 COORDINATES = ("x", "y", "theta")
 STATE = ("x", "y", "theta", "x_dot", "y_dot", "theta_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "driven_pendulum"
-DIGEST = "6fa6e8cf0fd8ef0f"
+DIGEST = "e4e6085efb5368ea"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "duffing"
-DIGEST = "7ff1c666fc0a62ad"
+DIGEST = "10e065e80e9b42f3"
 COORDINATES = ("x",)
 STATE = ("x", "x_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")

@@ -94,7 +94,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "foucault_pendulum"
-DIGEST = "b843254e1b1382cc"
+DIGEST = "7c8dd94e3600984e"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational", "sensitivity")

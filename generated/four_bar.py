@@ -88,7 +88,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "four_bar"
-DIGEST = "13bec0f7f1ccee49"
+DIGEST = "695c86226191bd3e"
 COORDINATES = ("phi", "psi", "chi")
 STATE = ("phi", "psi", "chi", "phi_dot", "psi_dot", "chi_dot")
 FORMS = ("lagrangian", "rational", "variational", "sensitivity")

@@ -93,7 +93,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "free_body"
-DIGEST = "bbdcf4be3759d765"
+DIGEST = "908cd36514cd1d5e"
 COORDINATES = ("w", "x", "y", "z")
 STATE = ("w", "x", "y", "z", "w_dot", "x_dot", "y_dot", "z_dot")
 FORMS = ("lagrangian", "variational", "sensitivity")

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "furuta_pendulum"
-DIGEST = "dc67d75f05d7bc96"
+DIGEST = "af9d9a3bc12466ca"
 COORDINATES = ("alpha", "theta")
 STATE = ("alpha", "theta", "alpha_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

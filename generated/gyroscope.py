@@ -83,7 +83,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "gyroscope"
-DIGEST = "24661fe196fabbfc"
+DIGEST = "f3de831e5e279499"
 COORDINATES = ("alpha", "beta", "gamma")
 STATE = ("alpha", "beta", "gamma", "alpha_dot", "beta_dot", "gamma_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

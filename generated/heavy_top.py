@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "heavy_top"
-DIGEST = "836cba8e5e96f89e"
+DIGEST = "9ef67b51dc56ba4a"
 COORDINATES = ("phi", "psi", "theta")
 STATE = ("phi", "psi", "theta", "phi_dot", "psi_dot", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

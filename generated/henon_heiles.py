@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "henon_heiles"
-DIGEST = "6a202c722058f2ab"
+DIGEST = "9c060ce289c2e054"
 COORDINATES = ("x", "y")
 STATE = ("x", "y", "x_dot", "y_dot")
 FORMS = ("lagrangian", "hamiltonian", "variational")

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rolling_disc"
-DIGEST = "306213fcdfffe233"
+DIGEST = "e349443d666382c7"
 COORDINATES = ("x", "y", "psi", "phi", "chi")
 STATE = (
     "x", "y", "psi", "phi", "chi", "x_dot", "y_dot", "psi_dot", "phi_dot", "chi_dot",

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "rotating_hoop"
-DIGEST = "94b4806e2bbb4152"
+DIGEST = "80e2ccc477a80783"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "single_pendulum"
-DIGEST = "42e99583b3d9c8a8"
+DIGEST = "c6fd5722bc31e643"
 COORDINATES = ("theta",)
 STATE = ("theta", "theta_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "spherical_pendulum"
-DIGEST = "2ea1add3ecca96eb"
+DIGEST = "e2da21a49142a448"
 COORDINATES = ("theta", "phi")
 STATE = ("theta", "phi", "theta_dot", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -82,7 +82,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "two_link_arm"
-DIGEST = "c25725cf858b29c4"
+DIGEST = "036308f50e3d9e00"
 COORDINATES = ("q1", "q2")
 STATE = ("q1", "q2", "q1_dot", "q2_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -23,11 +23,13 @@ STATES: dict[Form, str] = {
     "lagrangian": "State y = (q, qdot)",
     "hamiltonian": "State y = (q, p), in functions of the Hamiltonian form",
     "rational": "State y in functions of the rational form",
-    "variational": "State y of `rhs_variational`: a motion and its linear perturbation",
-    "sensitivity": "State y of `rhs_sensitivity`: a motion and its linear perturbation",
+    "variational": "State y of `rhs_variational`",
+    "sensitivity": "State y of `rhs_sensitivity`",
 }
 #: Of the last two, where their states have the same components.
-PERTURBED = STATES["variational"].replace(":", " and `rhs_sensitivity`:")
+PERTURBED = "State y of `rhs_variational` and `rhs_sensitivity`"
+#: Forms of which a state and a linear perturbation are those of the last two.
+UNPERTURBED: dict[Form, str] = {"rational": "the rational one", "lagrangian": "(q, qdot)"}
 
 
 def units(system: System) -> dict[str, str]:
@@ -58,13 +60,19 @@ def summary(contents: Contents, forms: Iterable[Form]) -> str:
 
 def states(contents: Contents, forms: Iterable[Form]) -> str:
     """The components of the state in these forms, with units."""
-    unit = units(contents.system)
-    rows = {form: [f"{name} [{unit[name]}]" for name in contents.states[form]] for form in forms}
+    unit, rows = units(contents.system), {form: contents.states[form] for form in forms}
     titles = {form: STATES[form] for form in rows}
     if {"variational", "sensitivity"} <= {*rows} and rows["variational"] == rows["sensitivity"]:
         del rows["sensitivity"]
         titles["variational"] = PERTURBED
-    return "\n\n".join(_section(titles[form], lines) for form, lines in rows.items())
+    for form in rows.keys() - UNPERTURBED.keys():
+        for first, words in UNPERTURBED.items():
+            names = contents.states.get(first, ())
+            if names and rows[form][: len(names)] == names:
+                rows[form] = rows[form][len(names) :]
+                titles[form] += f": {words}, and a linear perturbation"
+    sections = ((titles[form], [f"{x} [{unit[x]}]" for x in names]) for form, names in rows.items())
+    return "\n\n".join(_section(title, lines) for title, lines in sections)
 
 
 @lru_cache(maxsize=1)  # for the files of all languages, and of parts of a module
