@@ -8,10 +8,10 @@ from solvers.app.scenes import load_scene as load_scene
 from solvers.app.scenes import load_sweep as load_sweep
 from solvers.app.scenes import run_scene as run_scene
 from solvers.app.scenes import sweep as sweep
+from solvers.equations.consistent_start import consistent_start as consistent_start
 from solvers.equations.linearisation.equilibria import equilibria as equilibria
 from solvers.equations.linearisation.linear_system import LinearSystem as LinearSystem
 from solvers.equations.linearisation.linear_system import linearise as linearise
-from solvers.equations.starts.consistent_start import consistent_start as consistent_start
 from solvers.integration.ensemble import ensemble as ensemble
 from solvers.integration.integrate import integrate as integrate
 from solvers.integration.ode_solver import ode_solver as ode_solver

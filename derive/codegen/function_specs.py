@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from derive.codegen.elimination.factorisation import LARGE
+from derive.codegen.forms.factorisation import LARGE
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 

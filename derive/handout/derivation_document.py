@@ -7,7 +7,7 @@ from textwrap import fill
 from typing import TypeAlias
 
 from derive.codegen.backend import find_backends
-from derive.codegen.elimination.factorisation import LARGE
+from derive.codegen.forms.factorisation import LARGE
 from derive.codegen.module_functions import contents
 from derive.handout.derived_letters import DerivedLetters, names_of, words
 from derive.handout.document_model import (

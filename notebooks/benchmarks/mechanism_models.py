@@ -14,8 +14,8 @@ import numpy as np
 
 from benchmarks.exudyn import Link, Model, Point
 from benchmarks.motions import Array
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule, has_constraints
-from solvers.equations.starts.consistent_start import consistent_start
 from solvers.references.taylor import taylor
 
 #: Duration in s.

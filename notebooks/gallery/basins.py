@@ -9,7 +9,7 @@ the two sets of starts is a fractal.
 from tempfile import mkdtemp
 
 from solvers import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 basins = sweep("basins", mkdtemp())
 picture = figure(basins)

@@ -9,7 +9,7 @@ At 4.6 m/s a push from the side decays, at 3 m/s the same push ends in a fall.
 import numpy as np
 
 from solvers import integrate, linearise, load, panels
-from solvers.equations.starts.consistent_start import consistent_start
+from solvers.equations.consistent_start import consistent_start
 
 bicycle = load("bicycle")
 

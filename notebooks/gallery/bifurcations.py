@@ -10,7 +10,7 @@ drive rises (blue) and falls (red) in small steps: where both differ, there are 
 from tempfile import mkdtemp
 
 from solvers import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 diagram = sweep("bifurcations", mkdtemp())
 picture = figure(diagram)

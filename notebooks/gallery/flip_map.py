@@ -9,7 +9,7 @@ Inside the line the energy does not suffice, so that nothing has to be integrate
 from tempfile import mkdtemp
 
 from solvers import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 flips = sweep("flips", mkdtemp())
 picture = figure(flips)

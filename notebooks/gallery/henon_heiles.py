@@ -9,7 +9,7 @@ islands shrink.
 from tempfile import mkdtemp
 
 from solvers import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 sections = sweep("henon_heiles", mkdtemp())
 picture = figure(sections)

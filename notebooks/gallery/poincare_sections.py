@@ -9,7 +9,7 @@ motions lie on curves, chaotic ones fill areas.
 from tempfile import mkdtemp
 
 from solvers import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 sections = sweep("sections", mkdtemp())
 picture = figure(sections)

@@ -9,7 +9,7 @@ when it falls.
 from tempfile import mkdtemp
 
 from solvers import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 response = sweep("response", mkdtemp())
 picture = figure(response)

@@ -7,6 +7,7 @@ from contextvars import ContextVar
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.assembly import Assembly
 from solvers.equations.module import (
     GeneratedModule,
     function,
@@ -14,7 +15,6 @@ from solvers.equations.module import (
     has_function,
     position_constraints,
 )
-from solvers.equations.starts.assembly import Assembly
 from solvers.io.suggestion import warn_caller
 
 Array = NDArray[np.float64]

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from solvers.equations.assembly import Assembly
 from solvers.equations.module import (
     GeneratedModule,
     has_constraints,
@@ -19,7 +20,6 @@ from solvers.equations.module import inputs as input_names
 from solvers.equations.number_checks import REAL, Values
 from solvers.equations.signature_checks import known_names
 from solvers.equations.singularities import check_condition
-from solvers.equations.starts.assembly import Assembly
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
 from solvers.integration.checks.singularity import singularity
 from solvers.integration.checks.step_stability import diagnosis

@@ -6,16 +6,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, has_constraints, has_perturbation
-from solvers.equations.number_checks import positive, real_numbers
-from solvers.equations.signature_checks import check_module, known_names
-from solvers.equations.singularities import check_condition
-from solvers.equations.starts.consistent_start import (
+from solvers.equations.consistent_start import (
     consistent_start,
     default_coordinates,
     default_words,
     given_names,
 )
+from solvers.equations.module import GeneratedModule, has_constraints, has_perturbation
+from solvers.equations.number_checks import positive, real_numbers
+from solvers.equations.signature_checks import check_module, known_names
+from solvers.equations.singularities import check_condition
 from solvers.integration.problem import validation
 from solvers.integration.problem.validation import check_splitting
 from solvers.io.argument_types import check_texts, check_type

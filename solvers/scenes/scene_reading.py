@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from solvers.equations.consistent_start import default_coordinates
 from solvers.equations.module import GeneratedModule, has_constraints, title
 from solvers.equations.number_checks import check_outputs
-from solvers.equations.starts.consistent_start import default_coordinates
 from solvers.io import toml_input
 from solvers.io.suggestion import shortened
 from solvers.io.toml_input import InputError

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
 from solvers.app.commands.chart import DEFAULT
-from solvers.app.verdict.evidence import Evidence
-from solvers.app.verdict.report import _chapter_3, _chapter_5, claims, objectives, recommendations
+from solvers.app.report_evidence import Evidence
+from solvers.app.report_verdicts import _chapter_3, _chapter_5, claims, objectives, recommendations
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
 from solvers.studies.failure_modes.largest_exponent import Mean

@@ -14,11 +14,11 @@ from sharing import Shared
 
 from derive.verification.report import contexts
 from derive.verification.report.equation import ReportEquation
+from solvers.app import report_verdicts as report
 from solvers.app.cli import COMMANDS, command_parser, main
 from solvers.app.commands import verify
 from solvers.app.commands.options import shipped
-from solvers.app.verdict import report
-from solvers.app.verdict.report import counted, report_verdicts, tables
+from solvers.app.report_verdicts import counted, report_verdicts, tables
 from solvers.runge_kutta.order_conditions import order
 
 

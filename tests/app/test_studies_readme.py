@@ -10,8 +10,8 @@ from folders import ROOT
 import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.modules import load
-from solvers.app.verdict.evidence import Evidence
-from solvers.app.verdict.report import objectives
+from solvers.app.report_evidence import Evidence
+from solvers.app.report_verdicts import objectives
 from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.scenes.scene import Scene
 from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, statistics

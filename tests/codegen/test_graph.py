@@ -7,10 +7,10 @@ from functools import cache
 import pytest
 import sympy as sp
 
-from derive.codegen.elimination.factorisation import LARGE, Factorisation, factorisation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.sympy_translation import Translation, UnsupportedFunctionError
+from derive.codegen.forms.factorisation import LARGE, Factorisation, factorisation
 from derive.codegen.operations import operation as op
 from derive.codegen.operations.assignments import Assignments, LanguageNotation
 from derive.codegen.operations.lowering import Lowering

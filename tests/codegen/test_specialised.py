@@ -25,8 +25,8 @@ from derive.mechanics.specialisation import specialised as folded
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.system import System
 from solvers.app.modules import generator_text, required_functions, specialiser
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module_cache import specialised_module
-from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.accuracy.method_choice import MethodChoice
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate

@@ -10,10 +10,10 @@ import generated.four_bar as four_bars
 import generated.rolling_disc as disc
 from derive import TIME, Coordinate, Parameter, PointMass, RigidBody, System
 from holonomic import build, consistent_start, ensemble, integrate, prepare
+from solvers.equations.assembly import EXACT, Assembly, tangent_start
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.equations.singularities import SingularConfigurationWarning
-from solvers.equations.starts.assembly import EXACT, Assembly, tangent_start
 from solvers.sweeps.definition.axes import Grid
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.initial_states import initial_states
@@ -249,7 +249,7 @@ def test_mistakes_in_the_assembly_are_noticed(
     if mistake == "velocities at rest":
         monkeypatch.setattr(Assembly, "_velocity_changes", lambda self, y, free: 0 * y[:, self.n :])
     if mistake == "one step only":
-        monkeypatch.setattr("solvers.equations.starts.assembly.STEPS", 1)
+        monkeypatch.setattr("solvers.equations.assembly.STEPS", 1)
     with pytest.raises((AssertionError, ValueError)):
         test_four_bar_linkages_have_freudenstein_s_angles_in_both_branches(1.0, 1, four_bar)
 

@@ -6,8 +6,8 @@ import numpy as np
 
 import generated
 from solvers.app.modules import load as load_module
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import function, has_constraints, has_function
-from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.accuracy.checked_motion import Motion
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.integrate import integrate

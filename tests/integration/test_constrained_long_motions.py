@@ -9,7 +9,7 @@ from linkages import four_bar
 
 from derive import System
 from holonomic import build, integrate
-from solvers.equations.starts.consistent_start import consistent_start
+from solvers.equations.consistent_start import consistent_start
 
 STEPS, H = 1_000_000, 0.01
 #: Of each system: what is given at the start, what is guessed, and the largest change of energy, J.

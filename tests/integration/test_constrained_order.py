@@ -18,9 +18,9 @@ from velocity_constraints import yoke
 
 from derive import System
 from holonomic import build, integrate
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.forms import Form, fastest_form
 from solvers.equations.module import with_functions
-from solvers.equations.starts.consistent_start import consistent_start
 from solvers.references.decimal_numbers import decimal_state, sine_and_cosine, with_exact_literals
 from solvers.references.taylor import DecimalProjection, decimal_motion
 from solvers.runge_kutta.method_catalogue import load, names

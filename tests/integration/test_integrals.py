@@ -37,8 +37,8 @@ from derive import (
 )
 from derive.mechanics.constraints.differentiated_constraints import Constraints
 from holonomic import build, ensemble, integrate, prepare
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import GeneratedModule
-from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.compiled.extended import integrate_extended
 from solvers.integration.problem.inputs import Held

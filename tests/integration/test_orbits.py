@@ -20,8 +20,8 @@ import generated.single_pendulum as single
 import generated.swinging_atwood as atwood
 from derive import Coordinate, Parameter, PointMass, System
 from solvers.app.modules import build
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.linearisation.normal_modes import Modes
-from solvers.equations.starts.consistent_start import consistent_start
 from solvers.integration.integrate import integrate
 from solvers.integration.orbits import orbit_shooting
 from solvers.integration.orbits.periodic_orbit import NoPeriodicOrbitError, periodic_orbit

@@ -20,7 +20,7 @@ from solvers.app.modules import load as load_module
 from solvers.io.figures import png
 from solvers.scenes.scene_reading import scene
 from solvers.scenes.scene_run import run_scene
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)

@@ -43,9 +43,9 @@ from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 from solvers.sweeps.maps.samples import Samples
 from solvers.sweeps.maps.section import Section
-from solvers.sweeps.plots.figure import figure
-from solvers.sweeps.plots.panels import CURVES, MARKED
-from solvers.sweeps.plots.plot_quantity import add_colour_bar, wrapped
+from solvers.sweeps.plot_quantity import add_colour_bar, wrapped
+from solvers.sweeps.sweep_figure import figure
+from solvers.sweeps.sweep_panels import CURVES, MARKED
 
 PI = np.pi
 

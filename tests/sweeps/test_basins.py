@@ -14,8 +14,8 @@ from solvers import Basins, Grid, Pool, Sweep, partial_results, sweep
 from solvers.app.modules import load as load_module
 from solvers.sweeps.execution import worker
 from solvers.sweeps.maps.basins import Attractor, classify
-from solvers.sweeps.plots.figure import figure
-from solvers.sweeps.plots.plot_quantity import Quantity
+from solvers.sweeps.plot_quantity import Quantity
+from solvers.sweeps.sweep_figure import figure
 from solvers.sweeps.sweep_summary import summary
 
 WELLS = """

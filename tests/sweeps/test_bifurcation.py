@@ -7,7 +7,7 @@ import pytest
 
 import generated.duffing as duffing
 from solvers import Bifurcation, Final, Grid, Results, Sweep, integrate, sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 PERIOD = "2*pi/Omega"
 #: A stiffening spring, whose resonance is bent over these frequencies.

@@ -12,7 +12,7 @@ from scipy.optimize import fsolve
 import generated.duffing as duffing
 from solvers import Extremes, Grid, Pool, Random, Response, Results, Sweep, partial_results, sweep
 from solvers.sweeps.execution import worker
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 from solvers.sweeps.sweep_summary import summary
 
 PERIOD = "2*pi/Omega"

@@ -21,8 +21,8 @@ from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import worker
 from solvers.sweeps.maps.stroboscopic import Stroboscopic
-from solvers.sweeps.plots.figure import figure
 from solvers.sweeps.results import Results
+from solvers.sweeps.sweep_figure import figure
 
 PERIOD = "2*pi/Omega"
 LINEAR = {"k": 2.0, "beta": 0.0, "c": 0.5, "F": 0.7, "m": 1.3}

@@ -19,7 +19,7 @@ from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
 from solvers.sweeps.maps.lyapunov import Lyapunov
-from solvers.sweeps.plots.plot_quantity import Quantity
+from solvers.sweeps.plot_quantity import Quantity
 from solvers.sweeps.results import STATUSES, Results
 from solvers.sweeps.sweep_summary import as_json, ranges, summary
 

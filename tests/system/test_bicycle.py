@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from holonomic import integrate
 from solvers import linearise
-from solvers.equations.starts.consistent_start import consistent_start
+from solvers.equations.consistent_start import consistent_start
 
 Array = NDArray[np.float64]
 

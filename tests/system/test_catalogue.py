@@ -30,9 +30,9 @@ from derive.system.files.shipped import large_names
 from derive.system.files.system_catalogue import drawing
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.forms import Form
 from solvers.equations.module import has_constraints
-from solvers.equations.starts.consistent_start import consistent_start
 
 SYSTEMS = Path(systems.__path__[0])
 #: Lines of a system's definition, and of one with many bodies.

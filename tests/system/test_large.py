@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 import generated.double_pendulum as dp
 from derive import TIME, Derivation, PointMass, load
-from derive.codegen.elimination.factorisation import LARGE
+from derive.codegen.forms.factorisation import LARGE
 from derive.codegen.module_files import files
 from derive.codegen.module_functions import contents
 from holonomic import build

@@ -22,8 +22,8 @@ import generated.two_link_arm as arm
 from derive import Coordinate, Parameter, PointMass, System, fixed_distance, load, reduced
 from solvers import build, consistent_start, integrate, load_scene, run_scene
 from solvers import load as load_module
+from solvers.equations.assembly import Assembly
 from solvers.equations.module import GeneratedModule
-from solvers.equations.starts.assembly import Assembly
 
 Array = NDArray[np.float64]
 

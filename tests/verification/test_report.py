@@ -15,9 +15,9 @@ from derive.formulas.syntax import ExpressionError
 from derive.verification.judging.engine import RELATION
 from derive.verification.report.equation import ReportEquation
 from derive.verification.report.programs import programs
+from derive.verification.report.report_equations import translations
 from derive.verification.report.report_judgement import EQUATIONS, check, equation_by_id, verdict
 from derive.verification.report.report_latex import STORED, read, translation
-from derive.verification.report.translations import translations
 from solvers.runge_kutta.order_conditions import order
 
 JUDGED = [equation for equation in EQUATIONS.values() if not equation.exempt]
@@ -276,6 +276,6 @@ def test_an_unknown_id_is_reported_with_a_suggestion() -> None:
 
 
 def test_stored_translations_are_those_of_the_latex() -> None:
-    command = "python -m derive.verification.report.translations"
+    command = "python -m derive.verification.report.report_equations"
     assert json.loads(STORED.read_text(encoding="utf-8")) == translations(), f"run: {command}"
     assert all(translation(one.latex) == read(one.latex) for one in EQUATIONS.values())

@@ -9,17 +9,17 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.factorisation import (
-    ConstrainedFactorisation,
-    Factorisation,
-    Loops,
-    factorisation,
-)
 from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import angles
 from derive.codegen.expression_graph.sympy_translation import Translation
+from derive.codegen.forms.factorisation import (
+    ConstrainedFactorisation,
+    Factorisation,
+    Loops,
+    factorisation,
+)
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 

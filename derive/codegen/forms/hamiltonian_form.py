@@ -6,10 +6,10 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.factorisation import Rows
 from derive.codegen.expression_graph.node import Node, Terms
 from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion
+from derive.codegen.forms.factorisation import Rows
 
 HALF = Fraction(1, 2)
 

@@ -9,13 +9,13 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.factorisation import ConstrainedFactorisation, Rows
-from derive.codegen.elimination.kinematic_tree_factorisation import TreeFactorisation
 from derive.codegen.expression_graph.differentiation import Differentiation
 from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import substitution
 from derive.codegen.expression_graph.sympy_translation import Translation, fraction
+from derive.codegen.forms.factorisation import ConstrainedFactorisation, Rows
+from derive.codegen.forms.kinematic_tree_factorisation import TreeFactorisation
 from derive.codegen.forms.lagrangian_form import HALF
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.mechanics.derivation import Derivation

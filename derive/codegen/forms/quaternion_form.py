@@ -5,9 +5,9 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.codegen.elimination.factorisation import ConstrainedFactorisation
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.sympy_translation import Translation
+from derive.codegen.forms.factorisation import ConstrainedFactorisation
 from derive.codegen.forms.lagrangian_form import HALF
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.mechanics.derivation import Derivation

@@ -47,8 +47,8 @@ def run(arguments: Namespace) -> int:
     from solvers.io.terminal import Progress
     from solvers.sweeps.definition.sweep_reading import find
     from solvers.sweeps.execution.sweep_run import convergence, partial_results, sweep
-    from solvers.sweeps.plots.figure import figure
     from solvers.sweeps.results import GOOD
+    from solvers.sweeps.sweep_figure import figure
     from solvers.sweeps.sweep_summary import as_json, summary
 
     definition = find(arguments.sweep, load)

@@ -54,7 +54,7 @@ def run(arguments: Namespace) -> int:
             annotation=arguments.annotate,
             hints=hints(arguments.system, arguments.names),
         )
-    from solvers.app.verdict.report import report_verdicts, tables
+    from solvers.app.report_verdicts import report_verdicts, tables
     from solvers.io.terminal import Progress
 
     with Progress() as report:

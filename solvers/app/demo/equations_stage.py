@@ -13,7 +13,7 @@ from derive.verification.judging.verdict import Verdict
 from derive.verification.report.derivation_beside_report import compare_steps, verdict_html
 from derive.verification.report.report_judgement import equation_by_id, verdict
 from solvers.app.demo.stage import ReportedNumber, Stage, details, table
-from solvers.app.verdict.report import counted, report_verdicts
+from solvers.app.report_verdicts import counted, report_verdicts
 from solvers.equations.module import GeneratedModule
 from solvers.runge_kutta.order_conditions import order
 

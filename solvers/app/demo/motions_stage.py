@@ -28,7 +28,7 @@ from solvers.studies.work_precision.measured_curves import curves
 from solvers.studies.work_precision.reference import Reference
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution.sweep_run import convergence, sweep, tighter_rtol
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 
 #: The compared methods: the report's, some with step control, and SciPy's.
 COMPARED: dict[Combination, str] = {

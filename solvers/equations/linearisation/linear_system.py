@@ -9,6 +9,8 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from solvers.equations.assembly import Assembly
+from solvers.equations.consistent_start import consistent
 from solvers.equations.module import (
     GeneratedModule,
     function,
@@ -19,8 +21,6 @@ from solvers.equations.module import inputs as input_names
 from solvers.equations.module import outputs as output_names
 from solvers.equations.number_checks import Values, quantities, real_number
 from solvers.equations.signature_checks import checked
-from solvers.equations.starts.assembly import Assembly
-from solvers.equations.starts.consistent_start import consistent
 from solvers.io.argument_types import check_type
 from solvers.io.suggestion import did_you_mean
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solvers.equations.assembly import Assembly
 from solvers.equations.module import GeneratedModule, function, has_constraints
 from solvers.equations.number_checks import positive
-from solvers.equations.starts.assembly import Assembly
 from solvers.integration.orbits.symmetry import Nature, Reversal, angles, states_near
 from solvers.integration.variations.transition_matrix import Tangents
 from solvers.runge_kutta.stepper import Array

@@ -8,6 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.assembly import Assembly, tangent_start
+from solvers.equations.consistent_start import (
+    consistent,
+    default_coordinates,
+    given_names,
+    guesses,
+)
 from solvers.equations.energy import coupling
 from solvers.equations.forms import Form
 from solvers.equations.module import (
@@ -26,13 +33,6 @@ from solvers.equations.number_checks import (
     without_texts,
 )
 from solvers.equations.signature_checks import check_module
-from solvers.equations.starts.assembly import Assembly, tangent_start
-from solvers.equations.starts.consistent_start import (
-    consistent,
-    default_coordinates,
-    given_names,
-    guesses,
-)
 from solvers.integration.problem.events import Event, Limit, UserEvent
 from solvers.integration.problem.inputs import Held, Schedule, controlled, given
 from solvers.integration.problem.problem import Options, Problem, check_times, shortest_step

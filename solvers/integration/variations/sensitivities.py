@@ -8,12 +8,12 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.assembly import tangent_start
+from solvers.equations.consistent_start import given_names
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, has_constraints
 from solvers.equations.number_checks import Values
 from solvers.equations.signature_checks import checked
-from solvers.equations.starts.assembly import tangent_start
-from solvers.equations.starts.consistent_start import given_names
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.checks.singularity import SingularityWarning, singularity
 from solvers.integration.given_tolerances import many_motions

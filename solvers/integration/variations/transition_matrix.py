@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solvers.equations.assembly import tangent_start
 from solvers.equations.module import GeneratedModule
 from solvers.equations.number_checks import Values
 from solvers.equations.signature_checks import checked
-from solvers.equations.starts.assembly import tangent_start
 from solvers.integration.compiled.kernel import Batch
 from solvers.integration.compiled.memory_layout import STATUSES
 from solvers.integration.loops import compiled_loop, python_loop

@@ -6,9 +6,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.equations.assembly import Assembly
+from solvers.equations.consistent_start import guesses
 from solvers.equations.module import GeneratedModule, has_constraints
-from solvers.equations.starts.assembly import Assembly
-from solvers.equations.starts.consistent_start import guesses
 from solvers.sweeps.barrier import energies, is_below
 from solvers.sweeps.definition.axes import Array
 from solvers.sweeps.definition.sweep import Sweep

@@ -14,9 +14,9 @@ from solvers.io import figures
 from solvers.io.figure_names import symbol
 from solvers.io.quantity import with_unit
 from solvers.sweeps.definition.sweep_checks import ENERGY
-from solvers.sweeps.plots.panels import CURVES, bifurcation, curves, image, line, response, section
-from solvers.sweeps.plots.plot_quantity import Quantity, label_axis, letter
+from solvers.sweeps.plot_quantity import Quantity, label_axis, letter
 from solvers.sweeps.results import GOOD, Results
+from solvers.sweeps.sweep_panels import CURVES, bifurcation, curves, image, line, response, section
 
 #: Titles of panels, and the functions that draw them.
 Panels: TypeAlias = Iterator[tuple[str, Callable[[Axes], None]]]

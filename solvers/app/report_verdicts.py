@@ -25,7 +25,7 @@ from derive.verification.report.programs import PROSE, programs
 from derive.verification.report.programs import ReportScene as ReportScene
 from derive.verification.report.report_judgement import verdicts
 from solvers.app.modules import load
-from solvers.app.verdict.evidence import Evidence
+from solvers.app.report_evidence import Evidence
 from solvers.runge_kutta.order_conditions import order
 from solvers.scenes.scene import Scene
 from solvers.studies.work_precision.measured_curves import REPORT_METHODS

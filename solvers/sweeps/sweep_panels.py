@@ -16,7 +16,7 @@ from solvers.io.quantity import with_unit
 from solvers.sweeps.barrier import barrier, energies
 from solvers.sweeps.definition.axes import Array, Grid
 from solvers.sweeps.execution.initial_states import initial_states
-from solvers.sweeps.plots.plot_quantity import Quantity, add_legend, label_axis, letter, wrapped
+from solvers.sweeps.plot_quantity import Quantity, add_legend, label_axis, letter, wrapped
 from solvers.sweeps.results import PROVED, Results
 
 #: Where nothing happened or nothing is known, and where it is proved that nothing can happen.

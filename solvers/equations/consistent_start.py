@@ -8,10 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.equations.module import GeneratedModule, function, has_constraints, has_function, part
-from solvers.equations.number_checks import Values, quantities, real_number
-from solvers.equations.signature_checks import checked
-from solvers.equations.starts.assembly import (
+from solvers.equations.assembly import (
     CLOSED,
     EXACT,
     ROUNDED,
@@ -19,6 +16,9 @@ from solvers.equations.starts.assembly import (
     Assembly,
     Flags,
 )
+from solvers.equations.module import GeneratedModule, function, has_constraints, has_function, part
+from solvers.equations.number_checks import Values, quantities, real_number
+from solvers.equations.signature_checks import checked
 from solvers.io.quantity import with_unit
 from solvers.io.suggestion import counted
 
@@ -205,7 +205,7 @@ def consistent_start(
 
     Returns
     -------
-    solvers.equations.starts.consistent_start.ConsistentStart
+    solvers.equations.consistent_start.ConsistentStart
         ``y`` is the state; ``others`` are other configurations with the same given coordinates.
 
     Raises

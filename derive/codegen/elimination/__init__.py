@@ -1,1 +1,0 @@
-"""Elimination in matrices of nodes: of general ones, with constraints, along kinematic trees."""

@@ -1,1 +1,0 @@
-"""Verdicts on the report: equations, programs, claims, objectives and recommendations."""

@@ -1,1 +1,0 @@
-"""Initial states that satisfy constraints, in doubles and in decimals."""

@@ -1,1 +1,0 @@
-"""Plots of sweeps: images, lines, points and their labels."""
