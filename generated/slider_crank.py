@@ -95,7 +95,7 @@ if TYPE_CHECKING:
     Matrix = tuple[Vector, ...]
 
 SYSTEM = "slider_crank"
-DIGEST = "53b7e2664c4b3ae3"
+DIGEST = "6258bae700e159a7"
 COORDINATES = ("phi",)
 STATE = ("phi", "phi_dot")
 FORMS = ("lagrangian", "hamiltonian", "rational", "variational", "sensitivity")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Vector = tuple[float, ...]
     Matrix = tuple[Vector, ...]
 
-DIGEST = "53b7e2664c4b3ae3"
+DIGEST = "6258bae700e159a7"
 
 
 def parameter_jacobian(t: float, y: Numbers, params: Numbers) -> Matrix:
@@ -318,7 +318,7 @@ def rhs_variational(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = l*l
     c2 = r*r
     c3 = m2*c1
-    c4 = g*(m2 + m1)
+    c4 = g*(m1 + m2)
     # intermediate terms
     x0 = phi_dot*sin_phi
     x1 = r*phi_dot
@@ -389,7 +389,7 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     c1 = l*l
     c2 = r*r
     c3 = m2*c1
-    c4 = m2 + m1
+    c4 = m1 + m2
     c5 = g*c4
     c6 = r*m2
     c7 = c1*c6
@@ -439,9 +439,9 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     x34 = delta_phi*((cos_phi*x21 - x33*x2)*x1 + c5*sin_phi + x25*x22)
     x35 = cos_phi*x4
     x36 = c1*x35
-    x37 = c1*x4
+    x37 = c1*x7
     x38 = x4*x9
-    x39 = x7*x37 - (x38 + 3.0*x3*x9 - 2.0*c2*x4)*x2
+    x39 = x4*x37 - (x38 + 3.0*x3*x9 - 2.0*c2*x4)*x2
     x40 = (
         0.5*m2*(x14*x36 + x6*x39)/x30 + (1.0/3.0)*c7*cos_phi*(x4 - 2.0*x9*x2)/x32
         - 2.0*M*(x17*x36 - x16*x39)/x30
@@ -449,14 +449,14 @@ def rhs_sensitivity(t: float, y: Numbers, params: Numbers) -> Vector:
     x41 = (1.0/6.0)*c6*cos_phi/x20 + 0.5*m2*x6/x12 + 2.0*x18/x12
     x42 = cos_phi*x41
     x43 = delta_r*(sin_phi*(x21 - r*x40)*x0 - x26*(x24 + c8*x2*x42))
-    x44 = x4*x7 + (2.0*x4 - 3.0*x9)*x2
+    x44 = x7*x4 + (2.0*x4 - 3.0*x9)*x2
     x45 = (
-        0.5*c6*(x14*x35 + x6*x44)/x30 + (1.0/3.0)*m2*cos_phi*(x38 + x37 - 2.0*c1*x9)/x32
+        0.5*c6*(x14*x35 + x6*x44)/x30 + (1.0/3.0)*m2*cos_phi*(x38 + c1*x4 - 2.0*c1*x9)/x32
         - 2.0*c10*(x17*x35 - x16*x44)/x30
     )
     x46 = g*cos_phi
     x47 = x46 - 0.5*sin_phi*(x15 + (1.0/3.0)*c1*x19/x20)*x1
-    x48 = delta_m2*(x47 + 0.25*x25*(x23 + (1.0/3.0)*c1*x7/x4))
+    x48 = delta_m2*(x47 + 0.25*x25*(x23 + (1.0/3.0)*x37/x4))
     x49 = (
         x34 + x43 + c9*sin_phi*(x45*x0 + sin_phi*x25*x42) - delta_m1*((1.0/3.0)*x25 + x46)
         - x48 - c11*cos_phi

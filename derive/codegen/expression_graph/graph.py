@@ -212,6 +212,11 @@ class Graph:
             return self._scale(node, coefficient)
         return self._primitive(nonzero)
 
+    def common_factor(self, entries: Iterable[Node]) -> Node:
+        """The product of powers that divides all entries other than 0."""
+        powers = [entry.exponents() for entry in entries if not entry.is_number(0)]
+        return self.product((f, p) for f, p in _common_powers(powers).items() if p > 0)
+
     def spread(self, node: Node, number: Fraction) -> Node:
         """`number` times `node`, multiplied into every term of a sum."""
         coefficient, rest = node.scaled()
@@ -223,7 +228,7 @@ class Graph:
         ordered = sorted(terms.items(), key=lambda item: item[0].rank)
         one = self.one
         monomials = [{} if n is one else dict(n.factors()) for n, _ in ordered]
-        common = common_powers(monomials)
+        common = _common_powers(monomials)
         if common:
             divided = {
                 self._monomial({n: p - common.get(n, 0) for n, p in monomial.items()}): coefficient
@@ -288,7 +293,7 @@ class Graph:
         return next((_expansion(terms, node) for node in nested), None)
 
 
-def common_powers(monomials: Sequence[Mapping[Node, int]]) -> dict[Node, int]:
+def _common_powers(monomials: Sequence[Mapping[Node, int]]) -> dict[Node, int]:
     """The factors that all of these products have, or that divide all of them."""
     return {
         node: min(m[node] for m in monomials)

@@ -17,7 +17,7 @@ from functools import reduce
 from math import gcd, lcm
 from typing import Protocol, Self
 
-from derive.codegen.expression_graph.graph import Graph, common_powers
+from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import LeafNode, LetNode, Node
 
 Rows = Sequence[Sequence[Node]]
@@ -65,7 +65,7 @@ class Factorisation:
         self._graph, self._content = graph, _content(matrix)
         self._scale = scale = _common_scale(graph, matrix)
         rows = [[matrix[i][j] / (scale[i] * scale[j]) for j in range(n)] for i in range(n)]
-        self._common = common = _common_inputs(graph, [entry for row in rows for entry in row])
+        self._common = common = graph.common_factor(entry for row in rows for entry in row)
         self._rows = rows = [[entry / (common * self._content) for entry in row] for row in rows]
         self.pivots, self._inverses = [zero] * n, [zero] * n  # all pivots are positive
         self._multipliers: dict[tuple[int, int], Node] = {}
@@ -115,12 +115,6 @@ def _content(matrix: Rows) -> Fraction:
         reduce(gcd, (number.numerator for number in numbers)),
         reduce(lcm, (number.denominator for number in numbers)),
     )
-
-
-def _common_inputs(graph: Graph, entries: Sequence[Node]) -> Node:
-    """The product of powers of inputs that divides every entry."""
-    common = common_powers([entry.exponents() for entry in entries if not entry.is_number(0)])
-    return graph.product((f, p) for f, p in common.items() if isinstance(f, LeafNode))
 
 
 def _common_scale(graph: Graph, matrix: Rows) -> list[Node]:

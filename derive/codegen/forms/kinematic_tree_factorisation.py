@@ -8,7 +8,7 @@ inertia μ beyond the point (R. Featherstone, Rigid Body Dynamics Algorithms, 20
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from derive.codegen.expression_graph.graph import Graph, common_powers
+from derive.codegen.expression_graph.graph import Graph
 from derive.codegen.expression_graph.node import Node
 from derive.mechanics.energies.kinematic_tree import Elimination, KinematicTree
 
@@ -161,9 +161,5 @@ def _zeros(graph: Graph, increment: Sequence[object]) -> list[Vector]:
 
 def _common_factors(graph: Graph, n: int, tangents: Tangents) -> list[Node]:
     """The factor that all tangents of each variable have."""
-    factors = []
-    for i in range(n):
-        entries = [x for (_, j), E in tangents.items() if j == i for x in E]
-        common = common_powers([x.exponents() for x in entries if not x.is_number(0)])
-        factors.append(graph.product((f, p) for f, p in common.items() if p > 0))
-    return factors
+    entries = ([x for (_, j), E in tangents.items() if j == i for x in E] for i in range(n))
+    return [*map(graph.common_factor, entries)]

@@ -279,13 +279,7 @@ class LagrangianForm(EquationsOfMotion):
     @cached_property
     def _row_factors(self) -> list[Node]:
         """The common factor of f_i, row i of M and column i of G."""
-        rows = []
-        for i in self._n:
-            entries = [entry for entry in self._row(i) if not entry.is_number(0)]
-            powers = [entry.exponents() for entry in entries]
-            common = {f: min(p.get(f, 0) for p in powers) for f in powers[0]}
-            rows.append(self._graph.product((f, p) for f, p in common.items() if p > 0))
-        return rows
+        return [self._graph.common_factor(self._row(i)) for i in self._n]
 
     @property
     def rhs_variational(self) -> list[Node]:
