@@ -6,9 +6,8 @@ from functools import cache
 
 from derive.codegen.expression_graph.rational import with_fewest_calls
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion, OutputForm
-from derive.codegen.forms.hamiltonian_form import HamiltonianForm
+from derive.codegen.forms.jacobians import HamiltonianJacobian, LagrangianJacobians
 from derive.codegen.forms.kinematic_tree_form import TreeForm
-from derive.codegen.forms.lagrangian_form import LagrangianForm
 from derive.codegen.forms.projection_form import ProjectionForm
 from derive.codegen.forms.quaternion_form import QuaternionForm
 from derive.codegen.function_specs import FORCES, OF_EXPORTS, SPECS, Form, FunctionSpec, is_small
@@ -207,9 +206,9 @@ def _sizes(derivation: Derivation, states: Mapping[Form, tuple[str, ...]]) -> di
 def _lowering(spec: FunctionSpec, derivation: Derivation) -> Lowering:
     # The order of nodes in a graph determines the order of terms. With one graph for each function,
     # the code of a function does not depend on which others are generated.
-    form: type[EquationsOfMotion] = LagrangianForm
+    form: type[EquationsOfMotion] = LagrangianJacobians
     if spec.form == "hamiltonian":
-        form = HamiltonianForm
+        form = HamiltonianJacobian
     elif spec.name.startswith("outputs"):
         form = OutputForm
     elif derivation.has_tree:

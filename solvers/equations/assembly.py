@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule, function, position_constraints
+from solvers.equations.projection import tangent_change
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -287,8 +288,8 @@ def tangent_start(form: Form, t: float, rows: Array, given: Flags) -> Array:
         moving = assembly.in_constraints
         for part, of, free in ((first, assembly.of_positions, True), (last, every, moving)):
             # the residual of a perturbation is that which the change of all components removes
-            removing = form.tangent_change(t, result)[:, part] / assembly.scales
+            removing = tangent_change(form, t, result)[:, part] / assembly.scales
             residuals = -np.einsum("kij,kj->ki", assembly.jacobian(y)[:, of], removing)
             changes[:, part] += assembly.smallest_change(y, residuals, ~given[part] & free, of)
-    changes += form.tangent_change(t, result)
+    changes += tangent_change(form, t, result)
     return result

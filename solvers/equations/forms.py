@@ -29,9 +29,6 @@ from solvers.equations.sliding import Evaluate, Sliding, slide
 
 Array = NDArray[np.float64]
 
-#: Steps of Newton's method onto constraints: the first corrects the positions to the square of
-#: their residuals, the second the velocities there.
-CORRECTIONS = 2
 #: Relative step of differences, near the cube root of the rounding error.
 STEP = 1e-5
 
@@ -90,7 +87,7 @@ class Form:
         if not integrals(self.module):
             return self
         form, state = copy(self), y[: len(self.module.STATE)]
-        values = self._value(function(self.module, "integrals"), t, state, self.constants)
+        values = self.value(function(self.module, "integrals"), t, state, self.constants)
         form.integrals = tuple(values.tolist())
         return form
 
@@ -131,21 +128,22 @@ class Form:
         """The right-hand side; `ArithmeticError` where it has no finite value."""
         if 0.0 in self.signs:
             return self.switching(t, z).derivative
-        return self._value(self.function, t, z, self._params_at(t, z))
+        return self.value(self.function, t, z, self._params_at(t, z))
 
     def jacobian(self, t: float, z: Array) -> Array:
         """Its Jacobian; `ArithmeticError` where it has no finite value."""
         if 0.0 in self.signs:
             return _differences(lambda y: self.rhs(t, y), z)
         params = self._params_at(t, z)
-        matrix = self._value(self._jacobian, t, z, params)
+        matrix = self.value(self._jacobian, t, z, params)
         if self.feedback is None:
             return matrix
-        by_inputs = self._value(function(self.module, "input_jacobian"), t, z, params)
+        by_inputs = self.value(function(self.module, "input_jacobian"), t, z, params)
         return np.asarray(matrix + by_inputs @ self._feedback_jacobian(t, z))
 
     @staticmethod
-    def _value(function: Callable[..., Any], t: float, z: Array, params: Sequence[Any]) -> Array:
+    def value(function: Callable[..., Any], t: float, z: Array, params: Sequence[Any]) -> Array:
+        """The value of a generated function; `ArithmeticError` where it has none."""
         try:
             return np.array(function(t, z, params))
         except ValueError as error:  # of a function of `math`, such as a root of a negative number
@@ -175,7 +173,7 @@ class Form:
     def values(self, t: float, y: Array) -> Array:
         """Switching functions at a state of Lagrange's form."""
         switches = function(self.module, "switches")
-        return np.asarray(self._value(switches, t, y, self._params_at(t, y))[0])
+        return np.asarray(self.value(switches, t, y, self._params_at(t, y))[0])
 
     def switching(self, t: float, z: Array) -> Sliding:
         """The motion with the held signs, and its switching functions.
@@ -191,11 +189,11 @@ class Form:
         plain = params[: len(params) - signs]
         switches, y = function(self.module, named("switches", form)), z
         if form != self.name:
-            y = self._value(function(self.module, "lagrangian_state"), t, z, params)
+            y = self.value(function(self.module, "lagrangian_state"), t, z, params)
 
         def evaluate(signs: Sequence[float]) -> tuple[Array, Array]:
             held = (*plain, *signs)
-            return self._value(self.function, t, z, held), self._value(switches, t, y, held)
+            return self.value(self.function, t, z, held), self.value(switches, t, y, held)
 
         return evaluate
 
@@ -217,42 +215,16 @@ class Form:
         """The state of this form for the ordinary state `y` at time `t`."""
         if self.name == "hamiltonian":
             return np.array(self.module.hamiltonian_state(t, y, self.params))
-        return self._rearranged(y[np.newaxis])[0]
+        return self.rearranged(y[np.newaxis])[0]
 
-    def _rearranged(self, y: Array) -> Array:
+    def rearranged(self, y: Array) -> Array:
+        """States of this form for ordinary states, in rows; not in Hamilton's form."""
         z = np.empty((len(y), len(self.state)))
         for k, i in self.shared_columns:
             z[:, i] = y[:, k]
         for k, i in self.angle_columns:
             z[:, i], z[:, i + 1] = np.sin(y[:, k]), np.cos(y[:, k])
         return z
-
-    def projected(self, t: float, z: Array) -> Array:
-        """The state `z` with sin² + cos² = 1 restored, moved onto the constraints."""
-        z = self._normalised(z)
-        for _ in range(CORRECTIONS * self.has_constraints):
-            change = self._value(self._correction, t, z, (*self.params, *self.integrals)).ravel()
-            for k, i in self.angle_columns:
-                z[i : i + 2] += change[k] * np.array([z[i + 1], -z[i]])
-            for k, i in self.shared_columns:
-                z[i] += change[k]
-            z = self._normalised(z)
-        return z
-
-    def _normalised(self, z: Array) -> Array:
-        z = z.copy()
-        for _, i in self.angle_columns:
-            z[i : i + 2] /= np.hypot(z[i], z[i + 1])
-        return z
-
-    def tangent_change(self, t: float, rows: Array) -> Array:
-        """Changes that make the perturbations of ordinary states, in rows, tangent."""
-        params = [*self.params]
-        if integrals(self.module):
-            states = rows[:, : len(self.module.STATE)]
-            params += [*self._many("integrals_many", t, states, self.constants).T]
-        changes = self._many(f"{self.correction}_many", t, self._rearranged(rows), params)
-        return np.hstack([changes[:, :, 2], changes[:, :, 3]])
 
     @property
     def has_constraints(self) -> bool:
@@ -265,10 +237,6 @@ class Form:
         if has_perturbation(self.name):
             return named("correction", self.name)
         return named("correction", "rational" if self.angle_columns else "lagrangian")
-
-    @cached_property
-    def _correction(self) -> Callable[..., Any]:
-        return function(self.module, self.correction)
 
     def to_ordinary(
         self, t: float | Array, z: Array, before: Array, elapsed: float | Array
@@ -294,8 +262,8 @@ class Form:
     def from_ordinary_many(self, t: ArrayLike, y: Array) -> tuple[Array, Array]:
         """As `from_ordinary`, for states (n, state); and whole turns, shape (n, angles)."""
         if self.name == "hamiltonian":
-            return self._many("hamiltonian_state_many", t, y, self.params), np.empty((len(y), 0))
-        z = self._rearranged(y)
+            return self.many("hamiltonian_state_many", t, y, self.params), np.empty((len(y), 0))
+        z = self.rearranged(y)
         wrapped = [y[:, k] - np.arctan2(z[:, i], z[:, i + 1]) for k, i in self.angle_columns]
         turns = np.reshape(wrapped, (len(self.angle_columns), len(y))).T / (2 * np.pi)
         return z, np.round(turns)
@@ -303,7 +271,7 @@ class Form:
     def to_ordinary_many(self, t: ArrayLike, z: Array, turns: Array) -> Array:
         """The ordinary states (n, state) from the results of `from_ordinary_many`."""
         if self.name == "hamiltonian":
-            return self._many("lagrangian_state_many", t, z, self.params)
+            return self.many("lagrangian_state_many", t, z, self.params)
         y = np.empty((len(z), len(self.ordinary)))
         for k, i in self.shared_columns:
             y[:, k] = z[:, i]
@@ -311,7 +279,7 @@ class Form:
             y[:, k] = np.arctan2(z[:, i], z[:, i + 1]) + 2 * np.pi * whole
         return y
 
-    def _many(self, name: str, t: ArrayLike, states: Array, params: Sequence[Any]) -> Array:
+    def many(self, name: str, t: ArrayLike, states: Array, params: Sequence[Any]) -> Array:
         """A vectorised function of the module at states in rows; NaN and infinity propagate."""
         numbers = [np.asarray(p, float) for p in params]
         with np.errstate(all="ignore"):

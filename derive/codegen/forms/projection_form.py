@@ -8,10 +8,10 @@ import sympy as sp
 from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import rationalised
 from derive.codegen.forms.factorisation import ConstrainedFactorisation
-from derive.codegen.forms.lagrangian_form import LagrangianForm
+from derive.codegen.forms.jacobians import LagrangianJacobians
 
 
-class ProjectionForm(LagrangianForm):
+class ProjectionForm(LagrangianJacobians):
     """Changes of a state that remove residuals of constraints: the smallest by the mass matrix."""
 
     @cached_property

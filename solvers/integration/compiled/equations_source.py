@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from solvers.equations.forms import CORRECTIONS
+from solvers.equations.projection import CORRECTIONS
 from solvers.integration.compiled.memory_layout import MAX_EVENTS, source
 from solvers.runge_kutta.tableau import Tableau
 

@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
+from solvers.equations.projection import projected
 from solvers.integration.loops import scipy_loop
 from solvers.integration.loops.attempts import (
     FAILURES,
@@ -59,7 +61,9 @@ def _attempts(
     form, tolerances = problem.form, (problem.rtol, problem.atol)
     return [
         StepAttempts(
-            Stepper(method, form.rhs, form.jacobian, *tolerances), controller, form.projected
+            Stepper(method, form.rhs, form.jacobian, *tolerances),
+            controller,
+            partial(projected, form),
         )
         for method, controller in zip(members, controllers, strict=True)
     ]

@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from solvers.equations.forms import Form
+from solvers.equations.projection import projected
 from solvers.integration.loops.switching import run_parts
 from solvers.integration.problem.problem import Problem
 from solvers.integration.problem.status import Status, StopFlag
@@ -29,7 +30,7 @@ class DenseOutput:
     def state(self, t: float) -> Array:
         """The state at a time."""
         if t == self._solver.t:
-            return self._form.projected(t, self._solver.y)
+            return projected(self._form, t, self._solver.y)
         return self.states(np.array([t]))[:, 0]
 
     def states(self, times: Array) -> Array:
@@ -37,7 +38,7 @@ class DenseOutput:
         z = self._interpolant(times)
         z[:, times == self._solver.t] = self._solver.y[:, np.newaxis]
         pairs = zip(times.tolist(), z.T, strict=True)
-        return np.stack([self._form.projected(t, y) for t, y in pairs], axis=1)
+        return np.stack([projected(self._form, t, y) for t, y in pairs], axis=1)
 
     def between(self, _begin: float, _y0: Array, _end: float, _y1: Array) -> Curve:
         """States at several times."""

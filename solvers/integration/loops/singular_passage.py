@@ -18,6 +18,7 @@ from solvers.equations.energy import conserves_energy
 from solvers.equations.forms import Form
 from solvers.equations.module import integrals
 from solvers.equations.number_checks import NotFiniteNumberError
+from solvers.equations.projection import projected
 from solvers.equations.singularities import NEAR, distance_from_singularity
 from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.integration.compiled.kernel import Kernel
@@ -259,7 +260,7 @@ def _landed(problem: Problem, end: float, y: Array, error: Array) -> Array | Non
     form, n = problem.form.in_form("lagrangian"), len(problem.form.module.COORDINATES)
     if _distance(problem, end, y) < _distance(problem, problem.span[0], problem.start) / 2:
         return None
-    on_constraints = form.projected(end, y)
+    on_constraints = projected(form, end, y)
     rounding = ROUNDING * max(1.0, float(np.abs(y[:n]).max()))
     misses = np.abs(on_constraints - y)[:n].max() > LARGEST * max(float(error[:n].max()), rounding)
     sizes = problem.atol + problem.rtol * np.abs(y)
