@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from derive.reading.document import Document
-from derive.reading.document_formats import kinds, read_document
+from derive.reading.document_formats import read_document
 from derive.reading.programs.program import Program, ProgramError
 from derive.reading.programs.program_reader import known_languages, read_program
 from derive.verification.documents.judgement import judge_document
@@ -14,11 +14,6 @@ from derive.verification.documents.program_judgement import judge_program
 from derive.verification.report.report_document import judge_report
 from derive.verification.report.report_judgement import OrderOf
 from solvers.io.toml_input import InputError
-
-
-def is_document(name: str) -> bool:
-    """Whether a file is a document, by its name."""
-    return Path(name).suffix.lower() in kinds()
 
 
 def is_program(name: str) -> bool:

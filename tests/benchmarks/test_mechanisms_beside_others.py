@@ -8,10 +8,10 @@ import pytest
 from benchmarks import equal_error, exudyn, squeezer
 from benchmarks.mechanism_models import END, MECHANISMS, Bar
 from benchmarks.textbook_squeezer import textbook
+from rigid_body_motions import top_inclination
 from scipy.integrate import quad
 
 from holonomic import integrate, load
-from solvers.references.elliptic import top_inclination
 
 #: Angles of the squeezer at 0.03 s: F. Mazzia, C. Magherini, Test Set for Initial Value Problem
 #: Solvers, II.10.

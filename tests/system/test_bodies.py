@@ -8,6 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
+from rigid_body_motions import free_body, top_inclination
 from scipy.integrate import solve_ivp
 
 import generated.free_body
@@ -35,7 +36,6 @@ from holonomic import Status, build, ensemble, integrate, prepare
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
 from solvers.integration.checks.singularity import SingularityWarning, singular_coordinates
-from solvers.references.elliptic import free_body, top_inclination
 
 w, x, y, z, a, b, c, g = sp.symbols("w x y z a b c g", real=True)
 phi, theta, psi = sp.symbols("phi theta psi", real=True)
