@@ -24,12 +24,14 @@ Number: TypeAlias = Any
 Matrix: TypeAlias = Sequence[Sequence[Number]]
 Tree = tuple["Tree", ...]  # a root's branches, in descending order of size
 
+#: Largest order that is determined: the largest number of nodes of a tree.
+MOST = 12
 #: Digits that computations with rounded decimals carry.
 WORKING_DIGITS = 110
 
 
-def order(A: Matrix, b: Sequence[Number], most: int = 12) -> int:
-    """The order of the method with stage matrix `A` and weights `b`, at most `most`.
+def order(A: Matrix, b: Sequence[Number]) -> int:
+    """The order of the method with stage matrix `A` and weights `b`, at most `MOST`.
 
     The nodes are taken to be the row sums of A.
 
@@ -40,8 +42,6 @@ def order(A: Matrix, b: Sequence[Number], most: int = 12) -> int:
         `solvers.runge_kutta.surd.Surd`) or of decimals with all their published digits.
     b : sequence
         Weights, stages of them, of the same kind.
-    most : int
-        Largest number of nodes of a tree.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def order(A: Matrix, b: Sequence[Number], most: int = 12) -> int:
     TypeError
         When fractions and decimals stand beside each other.
     """
-    return _order(_Conditions([A], b), trees, most)
+    return _order(_Conditions([A], b), trees)
 
 
 def nystrom_order(
@@ -63,9 +63,8 @@ def nystrom_order(
     b: Sequence[Number],
     A_hat: Matrix,
     b_hat: Sequence[Number],
-    most: int = 12,
 ) -> int:
-    """The order of a partitioned method for q' = v, v' = a(q), at most `most`.
+    """The order of a partitioned method for q' = v, v' = a(q), at most `MOST`.
 
     Parameters
     ----------
@@ -73,8 +72,6 @@ def nystrom_order(
         Stage matrix and weights of the velocities, as those of `order`.
     A_hat, b_hat : sequence
         Stage matrix and weights of the positions.
-    most : int
-        Largest number of nodes of a tree.
 
     Returns
     -------
@@ -82,11 +79,13 @@ def nystrom_order(
         0 if the weights do not even add up to 1.
     """
     kicks, drifts = _Conditions([A_hat, A], b), _Conditions([A, A_hat], b_hat)
-    reached = _order(kicks, partial(alternating_trees, linear=1), most)
+    reached = _order(kicks, partial(alternating_trees, linear=1))
     return _order(drifts, partial(alternating_trees, linear=0), reached)
 
 
-def _order(conditions: "_Conditions", trees_of: Callable[[int], Sequence[Tree]], most: int) -> int:
+def _order(
+    conditions: "_Conditions", trees_of: Callable[[int], Sequence[Tree]], most: int = MOST
+) -> int:
     with localcontext(prec=WORKING_DIGITS):
         for p in range(1, most + 1):
             if not all(map(conditions.hold, trees_of(p))):
