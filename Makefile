@@ -6,7 +6,7 @@ PYTEST := $(BIN)/pytest --numprocesses auto --dist worksteal
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all campaign mutants notebook docs derive bench lint types check clean
+.PHONY: help demo test test-all campaign mutants records notebook docs derive bench lint types check clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -25,6 +25,9 @@ campaign: .venv/ready  ## run the tests over thousands of random cases
 
 mutants: .venv/ready  ## plant 200 mistakes one by one, and list those that no test notices (an hour)
 	$(BIN)/python tests/mutants.py
+
+records: .venv/ready  ## write recorded outputs anew, in tests/records; read their differences
+	$(BIN)/pytest --record -k as_recorded
 
 notebook: .venv/notebook  ## open the notebooks in JupyterLab
 	$(BIN)/jupyter-lab notebooks

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import re
 import shutil
 import signal
 from collections import defaultdict
@@ -18,6 +19,7 @@ import cheap_compiler
 import pytest
 import sympy as sp
 from browser import Player
+from recording import RECORDS, Record
 from sharing import Shared
 
 from derive import Derivation, load
@@ -35,8 +37,9 @@ SEED = "HOLONOMIC_TEST_SEED"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option for the long part of the tests."""
+    """Add the options for the long part of the tests, and for recorded outputs."""
     parser.addoption("--long", action="store_true", help="also run tests that are marked long")
+    parser.addoption("--record", action="store_true", help="write recorded outputs anew")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -106,6 +109,14 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Shared:
 def large_module() -> Callable[[str], ModuleType]:
     """Modules that take long to load, once a worker."""
     return cache(load_module)  # type: ignore[return-value]
+
+
+@pytest.fixture
+def record(request: pytest.FixtureRequest) -> Record:
+    """The recorded output of the test."""
+    name = re.sub(r"^test_|_(is|are)_as_recorded", "", request.node.name)
+    stem = re.sub(r"\W+", "_", name).strip("_")
+    return Record(RECORDS / f"{stem}.txt", request.config.getoption("--record"))
 
 
 @pytest.fixture

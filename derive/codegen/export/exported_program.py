@@ -139,7 +139,7 @@ class ExportedProgram:
         arguments = ((one.arg, one.annotation) for one in node.args.args)
         parameters = {arg: ANNOTATIONS[ast.unparse(kind)] for arg, kind in arguments if kind}
         routine = Routine(node, returns, parameters)
-        for inner in [*routine.calls]:
+        for inner in sorted(routine.calls):
             self._add(inner, constants)
         for statement in _flat(routine.body):
             self._note(statement, routine)
