@@ -47,8 +47,6 @@ def test_changed_paragraphs_are_shown(texts: dict[str, str], shown: str, tmp_pat
 
 
 def test_every_record_is_that_of_a_test() -> None:
-    text = "".join(
-        one.read_text(encoding="utf-8") for one in ROOT.glob("tests/*/test_*_records.py")
-    )
+    text = "".join(one.read_text(encoding="utf-8") for one in ROOT.glob("tests/*/test_*.py"))
     tests = tuple(re.findall(r"def test_(\w+)_(?:is|are)_as_recorded", text))
     assert [path.name for path in RECORDS.iterdir() if not path.stem.startswith(tests)] == []
