@@ -204,8 +204,8 @@ def regions(
         _region(panel, group, frequencies, eigenvalues)
     for panel in axes[len(shared) :]:
         panel.set_axis_off()
-    figure.supxlabel("Re h λ")
-    figure.supylabel("Im h λ")
+    figure.supxlabel("Re hλ")
+    figure.supylabel("Im hλ")
     return figure
 
 

@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 
 
 def described(figure: Figure) -> str:
-    """The contents of a figure, a line each."""
+    """The contents of a figure, a paragraph for each of its axes."""
     figure.draw_without_rendering()  # which decides on ticks
     lines = [f"figure {_numbers(figure.get_size_inches())}"]
     lines += [f"  text {one.get_text()!r}" for one in figure.texts]
     lines += [_legend(one.get_texts()) for one in figure.legends]
     shown = (axes for axes in figure.axes if axes.axison and axes.get_visible())
-    return "\n".join([*lines, *(line for axes in shown for line in _axes(axes))])
+    return "\n\n".join(["\n".join(lines), *("\n".join(_axes(axes)) for axes in shown)])
 
 
 def _axes(axes: Axes) -> Iterator[str]:
@@ -34,8 +34,10 @@ def _axes(axes: Axes) -> Iterator[str]:
         yield f"    {_collection(mesh)}"
     for image in axes.images:
         yield f"    image {_values(image.get_array())} {_numbers(image.get_extent())}"
-    for patch in axes.patches:
-        yield f"    patch {_label(patch)}{to_hex(patch.get_facecolor())}"
+    if axes.patches:
+        boxes = np.array([patch.get_extents().bounds for patch in axes.patches])
+        colours = {to_hex(patch.get_facecolor()) for patch in axes.patches}
+        yield f"    {len(boxes)} patches {' '.join(sorted(colours))} {_numbers(boxes.sum(axis=0))}"
     for text in axes.texts:
         yield f"    text {text.get_text()!r} at {_numbers(text.get_position())}"
     if legend := axes.get_legend():

@@ -21,6 +21,7 @@ MEND = "if this is intended, `make records` writes it anew"
 NUMBER = re.compile(r"-?\b\d+(?:\.\d+(?:e[+-]?\d+)?|e[+-]?\d+)\b")
 #: Hexadecimal digits of a paragraph: one of 65,536 changes is not noticed.
 DIGITS = 4
+INDENT = "    "
 
 
 @dataclass(frozen=True)

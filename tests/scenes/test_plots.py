@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn import described
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PathCollection
 from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
+from recording import Record
 
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
@@ -521,3 +523,21 @@ def test_plots_of_predictions_show_the_selected_model_and_all_residuals() -> Non
             (span,) = panel.patches
             assert (span.get_x(), span.get_x() + span.get_width()) == (run + 1, 2.5)
         assert (rest.get_legend() is None) == (row > 0)
+
+
+def test_plots_of_fits_charts_and_stability_are_as_recorded(record: Record) -> None:
+    curves = [curve("rk4", "rational", "compiled"), curve("rk1", "lagrangian", "compiled"),
+        curve("verner853", "rational", "compiled", "rtol"), curve("dp54", "rational", "scipy"),
+        curve("verner853", "lagrangian", "python", "rtol"), curve("taylor", "lagrangian", "heyoka"),
+    ]  # fmt: skip
+    steps = [critical("rk4", 0.7), critical("rk4_38", 0.7), critical("gauss1", inf)]
+    unit = EnergyUnit("energy above rest", 2.0)
+    charts = {
+        "precision": chart_plots.work_precision("title", curves),
+        "steps": chart_plots.steps("title", curves),
+        "energy": chart_plots.energy("title", curves, 0.1, unit),
+        "regions": regions("title", steps, np.array([1.0, 4.0]), np.array([0.5j, -0.2 + 0.1j])),
+        "boundaries": boundaries({one.method: one.function for one in steps}),
+        "fit": fit_plots.figure(invented_fit(), "title"),
+    }
+    record.check_digests({name: described(chart) for name, chart in charts.items()})

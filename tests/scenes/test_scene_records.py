@@ -41,5 +41,8 @@ def test_plots_of_scenes_are_as_recorded(record: Record) -> None:
     several = [replace(one, pictures=pictures) for one in motions]
     (spring,) = together([run_scene(find("spring", load_module))])
     path = replace(spring, pictures=("path",))
-    texts = [f"default: {default_pictures(motions[0])} {default_pictures(spring)}"]
-    record.check("\n".join([*texts, described(figure(several)), described(figure([path]))]))
+    record.check_digests({
+        "default": "\n\n".join([*default_pictures(motions[0]), *default_pictures(spring)]),
+        "two": described(figure(several)),
+        "spring": described(figure([path])),
+    })  # fmt: skip

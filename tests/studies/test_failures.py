@@ -7,6 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from drawn import described
+from recording import Record
 from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
@@ -487,6 +489,13 @@ def test_rk3_and_rk4_are_studied_on_both_sides_of_their_limits(
         (above3, below3, 2 * pi / sqrt(3)), (above4, below4, 2 * pi / sqrt(8)),
     ):  # fmt: skip
         assert (above, below) == pytest.approx((1.02 * limit, 0.98 * limit)), name
+
+
+def test_plots_and_summaries_of_studies_are_as_recorded(record: Record) -> None:
+    record.check_digests({
+        name: "\n\n".join([*study.summary(results), described(study.plot(results))])
+        for name, (study, results, _) in PLOTS.items()
+    })  # fmt: skip
 
 
 @pytest.mark.parametrize("name", PLOTS)
