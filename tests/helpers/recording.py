@@ -44,15 +44,17 @@ class Record:
         """Compare long texts with digests of their paragraphs, first the list of texts."""
         parts = {name: text.rstrip().split("\n\n") for name, text in texts.items()}
         digests = {name: [*map(_digest, own)] for name, own in parts.items()}
-        rows = [
-            "\n".join([name, *wrap("".join(own), 25 * DIGITS)]) for name, own in digests.items()
-        ]
-        if not self._is_compared("\n\n".join(rows) + "\n"):
+        lines = (
+            line
+            for name, own in digests.items()
+            for line in wrap(f"{name}: {''.join(own)}", 100, subsequent_indent=INDENT)
+        )
+        if not self._is_compared("\n".join(lines) + "\n"):
             return
-        blocks = self.path.read_text(encoding="utf-8").rstrip().split("\n\n")
-        pairs = (one.partition("\n")[::2] for one in blocks)
-        recorded = {name: wrap(rest.replace("\n", ""), DIGITS) for name, rest in pairs}
-        assert [*digests] == [*recorded], MEND
+        rows = self.path.read_text(encoding="utf-8").replace(f"\n{INDENT}", "").splitlines()
+        pairs = (row.rpartition(":")[::2] for row in rows)
+        recorded = {name: wrap(rest.strip(), DIGITS) for name, rest in pairs}
+        assert [*digests] == [*recorded], f"{[*digests]} instead of {[*recorded]}; {MEND}"
         for name, own in digests.items():
             changed = [*_changed(parts[name], own, recorded[name])]
             assert not changed, "\n\n".join([f"{self.path.name}: {name}", *changed, MEND])

@@ -16,7 +16,7 @@ from solvers.sweeps.sweep_summary import summary
 #: Numbers of motions, and durations.
 FEWER = {
     "basins": {"count": 5, "skip": 20},
-    "bifurcations": {"count": 7, "skip": 4},
+    "bifurcations": {"to": 0.5, "count": 7, "skip": 4},  # without chaos
     "response": {"count": 3},
     "lyapunov": {"count": 4, "duration": 5},
     "henon_heiles": {"count": 3, "duration": 40},
