@@ -3,12 +3,19 @@
 from pathlib import Path
 
 import pytest
-from document_campaign import Outcome, outcomes, table
+from document_campaign import Outcome, outcome, outcomes, random_slip, table
 from document_styles import STYLES
+from recording import Record
+from written_documents import written_document
 
 DEVELOPED = [name for name, style in STYLES.items() if not style.is_held_out]
 #: Documents of an energy and its equations, of which often nothing decides which is wrong.
 UNDECIDED = ("mechanics_exam",)
+#: Styles and systems of documents that are judged in less than a second, each with a slip.
+QUICK = {
+    "lecture": 0, "notes": 1, "upright": 4, "downwards": 5, "canonical": 6, "robotics": 20,
+    "french": 21,
+}  # fmt: skip
 
 
 def failures(results: list[Outcome]) -> list[str]:
@@ -39,3 +46,24 @@ def test_most_slips_are_found_at_their_term(is_held_out: bool, tmp_path: Path) -
     assert numbers["at the term"] >= 90
     assert numbers["mended"] >= 95
     assert numbers["judged"] >= 75
+
+
+def test_verdicts_on_documents_with_a_slip_are_as_recorded(record: Record, tmp_path: Path) -> None:
+    lines = []
+    for style, seed in QUICK.items():
+        document = written_document(STYLES[style], seed)
+        assert document
+        slip = random_slip(document, seed)
+        result = outcome(style, document, slip, tmp_path)
+        # what is true needs no record
+        assert failures([result]) == []
+        assert slip
+        assert result.is_found
+        assert result.is_at_its_term
+        assert result.is_mended
+        lines += [f"{style}: {result.system}", f"  {slip.kind}: {slip.wrong}"]
+        lines += [f"  {verdict} {note}".rstrip() for verdict, note in result.verdicts]
+        if one := result.blamed:
+            lines += [f"  wrong: {one.wrong_term}", f"  right: {one.correction}"]
+            lines += [f"  {one.witness}", f"  by {one.basis}"]
+    record.check("\n".join(lines))
