@@ -93,6 +93,8 @@ class _Writer:
         raised = raised if len(raised) == 1 else f"{{{raised}}}"
         match base:
             case ast.Call(func=ast.Name(id=name), args=[argument]) if name in POWERS:
+                if not isinstance(exponent, ast.Constant):  # sin^{-1} is the inverse function
+                    return f"{brackets(self.latex(base))}^{raised}"
                 return rf"{COMMANDS[name]}^{raised}{brackets(self.latex(argument))}"
         return f"{self.operand(base, ATOM)}^{raised}"
 
@@ -109,7 +111,7 @@ class _Writer:
                 return rf"\frac{{d}}{{d t}}{brackets(value)}", PRODUCT
             case "sqrt", [value]:
                 return rf"\sqrt{{{value}}}", ATOM
-            case (("Abs" | "norm"), [value]):
+            case (("Abs" | "abs" | "norm"), [value]):
                 return rf"\left|{value}\right|", ATOM
             case "inverse", [value]:
                 return f"{value}^{{-1}}", POWER

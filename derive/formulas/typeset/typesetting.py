@@ -142,6 +142,8 @@ def _power(base: ast.expr, exponent: ast.expr) -> str:
     raised = grouped(_markup(exponent))
     match base:
         case ast.Call(func=ast.Name(id="sin" | "cos" | "tan" as name), args=[argument]):
+            if not isinstance(exponent, ast.Constant):  # sin⁻¹ is the inverse function
+                return f"<msup>{grouped(brackets(_markup(base)))}{raised}</msup>"
             return f"<msup><mi>{name}</mi>{raised}</msup>{APPLY}{brackets(_markup(argument))}"
         case ast.Name(id=name) if (pair := letter_and_index(name))[1]:
             return f"<msubsup>{''.join(pair)}{raised}</msubsup>"
@@ -159,7 +161,7 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
         case "ddt", [_]:
             fraction = f"<mfrac><mi>d</mi>{grouped('<mi>d</mi><mi>t</mi>')}</mfrac>"
             return fraction + _operand(arguments[0], ATOM), PRODUCT
-        case (("norm" | "Abs"), [value]):
+        case (("norm" | "Abs" | "abs"), [value]):
             return grouped(f"<mo>|</mo>{value}<mo>|</mo>"), ATOM
         case "sqrt", [value]:
             return f"<msqrt>{value}</msqrt>", ATOM
