@@ -8,6 +8,7 @@ from functools import cache
 import pytest
 import strange_programs as programs
 import sympy as sp
+from recording import Record
 
 from derive import Derivation, load
 from derive.formulas.expression import FUNCTIONS, parse
@@ -180,6 +181,15 @@ def test_a_changed_sign_changes_an_equation(name: str) -> None:
     wrong = re.sub(r"(?<![\w.:])((?:Math\.|np\.|math\.|std::)?)sin\(", r"2*\1sin(", text, count=1)
     assert wrong != text
     assert max(residuals(read_program(wrong, language), system, names)) > 1e-3
+
+
+def test_readings_of_programs_are_as_recorded(record: Record) -> None:
+    texts = {}
+    for name, (language, text, *_) in CASES.items():
+        one = read_program(text, language)
+        parts = [*one.functions, *one.constants, *one.findings, *one.unread]
+        texts[name] = "\n\n".join(map(repr, parts))
+    record.check_digests(texts)
 
 
 def test_a_state_can_be_separate_parameters_with_time_before_them() -> None:
