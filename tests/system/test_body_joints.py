@@ -1,5 +1,6 @@
 """Hinges and prismatic joints of bodies in space, by laws of single bodies and closed forms."""
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -8,6 +9,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive import (
+    Constraint,
     Coordinate,
     Derivation,
     Orientation,
@@ -17,6 +19,7 @@ from derive import (
     hinge,
     prismatic,
     reduced,
+    rotation_matrix,
     rotations,
 )
 from derive.mechanics.derivation import RedundancyWarning
@@ -290,3 +293,40 @@ def test_invalid_orientations_and_axes_are_refused() -> None:
             joint("A", origin, origin, body.axes, axis="xy")
         with pytest.raises(SystemDefinitionError, match="a point of 2 components: give 3"):
             joint("A", (0, 0), origin, body.axes)
+
+
+def numeric(matrix: Array) -> Orientation:
+    return rotation_matrix([[sp.Float(x) for x in row] for row in matrix])
+
+
+@pytest.mark.parametrize("is_ground", [False, True])
+@pytest.mark.parametrize("axis", "xyz")
+@pytest.mark.parametrize("joint", [hinge, prismatic])
+def test_constraints_are_components_of_motions_in_the_second_body(
+    joint: Callable[..., list[Constraint]], axis: str, is_ground: bool
+) -> None:
+    rng, k = np.random.default_rng(3), "xyz".index(axis)
+    angle, slide = (0.7, 0.0) if joint is hinge else (0.0, 0.4)
+    second = np.eye(3) if is_ground else turning("xyz", rng.normal(size=(3, 3)))[0]
+    first = second @ turn(axis, np.array([angle, 0.0, 0.0]))[0]
+    q = rng.normal(size=3)
+    p = q + slide * second[:, k]
+
+    def values(shift: Array, rotation: Array) -> dict[str, float]:
+        skew = np.cross(np.eye(3), rotation)
+        found = joint("A", tuple(p + shift), tuple(q), numeric(first + skew @ first),
+            None if is_ground else numeric(second), axis)  # fmt: skip
+        return {one.name: float(one.formula) for one in found}
+
+    zero, h = np.zeros(3), 1e-6
+    # moved and turned along the axes of the second body; a formula that is 0 is left out
+    rates = [values(h * one, zero) for one in second.T]
+    rates += [values(zero, h * one) for one in second.T]
+    forces, torques = ([f"A_{one}" for one in "xyz"], [f"A_torque_{one}" for one in "xyz"])
+    for k, name in enumerate((*forces, *torques)):
+        expected = [float(k == n) for n in range(6)]
+        if joint is hinge and name in forces:  # in space
+            expected[:3] = second[k].tolist()
+        elif name == (f"A_torque_{axis}" if joint is hinge else f"A_{axis}"):
+            expected = [0.0] * 6
+        assert [one.get(name, 0.0) / h for one in rates] == pytest.approx(expected, abs=1e-5), name
