@@ -179,6 +179,12 @@ def test_invalid_points_are_refused(at: Any, outputs: Any, message: str) -> None
         Derivation(cart_pole).state_space(at, outputs)
 
 
+@pytest.mark.parametrize("name", ["spherical_pendulum", "heavy_top", "swinging_atwood"])
+def test_points_with_a_singular_mass_matrix_are_refused(name: str) -> None:
+    with pytest.raises(SystemDefinitionError, match=f"mass matrix of '{name}' is singular at"):
+        Derivation(load(name)).state_space()
+
+
 def test_invalid_numbers_are_refused() -> None:
     with pytest.raises(SystemDefinitionError, match="matrices depend on t: give its value"):
         Derivation(load("driven_pendulum")).state_space().numbers()

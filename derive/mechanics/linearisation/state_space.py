@@ -58,6 +58,18 @@ class NearbyMotions:
         return cls(point, equations, point(equations.mass_matrix), velocities, tangent, independent)
 
     @cached_property
+    def _inertia(self) -> Matrix:
+        """The mass matrix of independent velocities; refused where it is singular."""
+        Z = self.velocities.directions
+        inertia = Matrix(Z.T * self.mass_matrix * Z)
+        if tidied(inertia.det()) == 0:
+            raise SystemDefinitionError(
+                f"the mass matrix of {self.point.system.name!r} is singular at "
+                f"{self.point.values}: give a point with unique accelerations"
+            )
+        return inertia
+
+    @cached_property
     def accelerations(self) -> Matrix:
         """q̈ at the point, a column."""
         d = self.equations
@@ -68,7 +80,7 @@ class NearbyMotions:
         Z, M = self.velocities.directions, self.mass_matrix
         none = Matrix(sp.zeros(Z.cols, forces.cols))
         least = self.velocities.with_components(none, sides)
-        return Z * solved(Z.T * M * Z, Z.T * (forces - M * least)) + least
+        return Z * solved(self._inertia, Z.T * (forces - M * least)) + least
 
     def changes(self, symbols: Sequence[sp.Symbol], directions: Matrix) -> Matrix:
         """Changes of the accelerations with those of symbols, a column a direction."""
