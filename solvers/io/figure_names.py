@@ -48,6 +48,6 @@ def _tex(name: str) -> str:
 
 def axis_label(words: str, unit: str) -> str:
     """A quantity divided by its unit, as axes are labelled; without the unit 1."""
-    if unit == "1":
+    if unit in ("", "1"):
         return words
     return f"{words} / {f'({unit})' if '/' in unit else unit}"

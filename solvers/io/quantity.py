@@ -136,7 +136,12 @@ def formula(text: str, names: Mapping[str, Any]) -> Any:
             f"{text!r} is no formula{hint}; use digits, pi, + - * / **, brackets and {known}"
         ) from error
     except ArithmeticError as error:
-        raise QuantityError(f"{text!r} has no value: {error}") from error
+        raise QuantityError(f"{text!r} has no value: {_reason(error)}") from error
+
+
+def _reason(error: ArithmeticError) -> str:
+    """The text of an error; that of an overflow is one of the system, with its number."""
+    return "it is out of range" if isinstance(error, OverflowError) else str(error)
 
 
 def _parsed(text: str, unit: str) -> float:
@@ -158,7 +163,7 @@ def _parsed(text: str, unit: str) -> float:
             f"of the units {KNOWN}, or their products such as m/s^2 or N s/m"
         ) from error
     except ArithmeticError as error:
-        raise QuantityError(f"{text!r} has no value: {error}") from error
+        raise QuantityError(f"{text!r} has no value: {_reason(error)}") from error
 
 
 def _factor(text: str, given: str, unit: str) -> float:

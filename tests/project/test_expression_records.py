@@ -1,12 +1,11 @@
 """Results and messages of public functions, a line of Python each."""
 
-import re
-import warnings
 from importlib import import_module
 
 import numpy as np
 import sympy
 from cart_pole import cart_pole
+from evaluated import evaluated
 from recording import Record
 
 import holonomic
@@ -84,21 +83,9 @@ Derivation(cart_pole).linearisation()
 export(cart_pole, "cobol", ".")
 Sweep(dp, Grid({"theta1": [0.1]}), {"a": Final(("theta9",))}, 1.0, values={"theta2": 0.0})
 Derivation(cart_pole).equilibria({"F": 0, "T": 0})
-""".strip().splitlines()
+"""
 MODULES = {"dp": "double_pendulum", "sp": "single_pendulum", "henon": "henon_heiles",
     "four_bar": "four_bar", "spherical": "spherical_pendulum"}  # fmt: skip
-NUMBER = re.compile(r"-?\d+\.\d*(?:e[+-]\d+)?|-?\d+e[+-]\d+")
-
-
-def shown(value: object) -> str:
-    """A value as text, with numbers of six digits; those that are rounding errors are zero."""
-    text = re.sub(r"compiled by \S+", "compiled", repr(value))
-
-    def rounded(match: re.Match[str]) -> str:
-        number = float(match[0])
-        return f"{0.0 if abs(number) < 1e-9 else number:.6g}"
-
-    return NUMBER.sub(rounded, re.sub(r"defect=\S+", "defect", text))
 
 
 def test_values_of_expressions_are_as_recorded(record: Record) -> None:
@@ -106,13 +93,4 @@ def test_values_of_expressions_are_as_recorded(record: Record) -> None:
     names = {name: getattr(holonomic, name) for name in holonomic.__all__}
     names |= {name: import_module(f"generated.{module}") for name, module in MODULES.items()}
     names |= {"np": np, "x": x, "y": y, "cart_pole": cart_pole}
-    lines = []
-    for text in EXPRESSIONS:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            try:
-                value = shown(eval(text, names))
-            except (ArithmeticError, LookupError, TypeError, ValueError) as error:
-                value = f"{type(error).__name__}: {error}"
-        lines += [f">>> {text}", value, *(f"warning: {one.message}" for one in caught)]
-    record.check("\n".join(lines))
+    record.check(evaluated(EXPRESSIONS, names))
