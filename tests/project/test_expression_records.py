@@ -64,7 +64,6 @@ Derivation(cart_pole).identifiable(["x"])
 lyapunov_spectrum(sp, (0.1, 0.0), {}, 5.0)
 periodic_orbit(henon, {"x": 0.1, "y": 0.1}, 6.0, {})
 linearise(dp, {}, {"m3": 1.0})
-linearise(sp, {"theta": 0.5}, {})
 [one.eigenvalues.imag.max() for one in equilibria(dp, {})]
 Grid({"theta1": [1.0, 2.0], "theta2": []})
 Sweep(dp, Grid({"theta1": [0.1]}), {}, 1.0, values={"theta2": 0.0})
