@@ -29,6 +29,7 @@ def _axes(axes: Axes) -> Iterator[str]:
         yield f"    {name} {axis.label.get_text()!r} {axis.get_scale()} {limits}: {ticks}"
     for line in axes.lines:
         looks = f"{to_hex(line.get_color())} {line.get_linestyle()} {line.get_marker()}"
+        looks += f" {line.get_linewidth():g} {line.get_markersize():.3g}"
         yield f"    line {_label(line)}{looks} {_points(np.asarray(line.get_xydata(), float))}"
     for mesh in axes.collections:
         yield f"    {_collection(mesh)}"

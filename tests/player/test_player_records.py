@@ -4,13 +4,14 @@ import json
 
 import numpy as np
 from drawn import described
+from linked_block import block
 from recording import Record
 
 import generated.double_pendulum as double
 import generated.driven_pendulum as driven
 import generated.four_bar as four_bar
 import generated.spherical_pendulum as spherical
-from solvers import Solution, consistent_start, integrate
+from solvers import Solution, build, consistent_start, integrate
 from solvers.equations.module import GeneratedModule
 from solvers.player import film
 from solvers.player.sampled_motion import tracks
@@ -30,6 +31,7 @@ def test_tracks_and_films_are_as_recorded(record: Record) -> None:
         "backwards": [moved(double, (1.0, 2.0, 0.0, 0.5), -0.7)],
         "driven": [moved(driven, (1.0, 0.0))],
         "four_bar": [moved(four_bar, start)],
+        "links": [moved(build(block()), (0.3, 0.5))],
         "spherical": [moved(spherical, (1.0, 0.0, 0.0, 2.0))],
     }
     texts = {}
