@@ -35,7 +35,9 @@ LONG = ("--long", "-m", "long and not campaign")
 #: Exit codes of pytest: all tests passed, and there was none.
 PASSED = (0, 5)
 #: Folders of tests that have not the name of the room.
-OTHER_FOLDERS = {"C": "integration", "derive/commands": "app"}
+OTHER_FOLDERS = {"derive/commands": "app"}
+#: Folders of tests of C code: of the loops, and of mock-up units, which are exported.
+C_FOLDERS = {"solvers": "integration", "derive": "app"}
 #: Fields of nodes of Python that hold no code of the program.
 OTHER_FIELDS = ("annotation", "returns", "type_params", "decorator_list")
 #: Systems, which are data, compared with other sources as a whole.
@@ -98,6 +100,13 @@ class Mutant:
     start: int
     end: int
     text: str
+
+    @property
+    def folder(self) -> str:
+        """The folder of the tests of its room."""
+        if self.room == "C":
+            return C_FOLDERS[self.file.partition("/")[0]]
+        return OTHER_FOLDERS.get(self.room, self.room.rpartition("/")[2])
 
     @property
     def room(self) -> str:
@@ -322,7 +331,7 @@ def is_noticed(mutant: Mutant, tests: Sequence[str], project: Path, options: Seq
     selected, reached = project.parent / "selected", project.parent / "reached"
     selected.write_text("\n".join(tests), encoding="utf-8")
     reached.mkdir(exist_ok=True)
-    room = project / "tests" / OTHER_FOLDERS.get(mutant.room, mutant.room.rpartition("/")[2])
+    room = project / "tests" / mutant.folder
     of_line = {"SELECTED": str(selected)}, sorted({test.partition("::")[0] for test in tests})
     for chosen, files in (of_line, ({}, [str(room)] * room.is_dir())):
         if not files:
