@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import sympy
 
 import generated.duffing as duffing
+from holonomic import TIME, Coordinate, PointMass, System, build
 from solvers.integration.checks.predictability import ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
@@ -33,3 +35,19 @@ def test_controlled_steps_of_a_driven_system_are_the_same(
     for k in (0, 2):
         assert lanes.y[:, k] == pytest.approx(python.y[:, -1], abs=1e-8)
         assert (lanes.steps[k], lanes.nfev[k]) == (compiled.steps, compiled.nfev)
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "leapfrog4"])
+@ignore_predictability()
+def test_stages_of_splittings_are_at_the_same_times(method: str) -> None:
+    x = sympy.Symbol("x", real=True)
+    module = build(System("pushed", "", [Coordinate(x, "m", "")], [], [PointMass(1, (x, 0))],
+        potential=x**2 / 2, forces=[sympy.cos(5 * TIME)]))  # fmt: skip
+    options = {"method": method, "h": 0.05}
+    python, compiled = (
+        integrate(module, (0.3, 1.5), (0.8, -0.5), (), backend=backend, **options)
+        for backend in ("python", "compiled")
+    )
+    assert compiled.y == pytest.approx(python.y, abs=1e-13)
+    lanes = ensemble(module, (0.3, 1.5), np.array([[0.8], [-0.5]]), (), **options)
+    assert lanes.y[:, 0] == pytest.approx(python.y[:, -1], abs=1e-13)
