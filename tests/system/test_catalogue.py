@@ -6,10 +6,11 @@ derivative taken numerically of positions and constraints, in 50 digits.
 """
 
 import inspect
+import re
 from collections.abc import Callable, Iterator
 from functools import cache, partial
 from importlib.util import module_from_spec, spec_from_file_location
-from itertools import combinations
+from itertools import combinations, pairwise
 from operator import mul
 from pathlib import Path
 from types import ModuleType
@@ -26,6 +27,7 @@ from scipy.optimize import minimize
 
 import generated
 from derive import TIME, PointMass, RigidBody, System, load, names, reduced, systems, write
+from derive.commands.system_description import description
 from derive.system.files.shipped import large_names
 from derive.system.files.system_catalogue import drawing
 from solvers.app.cli import main
@@ -463,3 +465,12 @@ def test_an_unknown_system_is_refused(
 ) -> None:
     assert main(["systems", name]) == 2
     assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", [*names(), *large_names()])
+def test_rows_of_descriptions_are_full(name: str) -> None:
+    rows = description(name).rpartition("\n\n")[2].splitlines()
+    assert max(map(len, rows)) <= 98
+    for row, after in pairwise(rows):
+        if after.startswith("      "):  # it continues the row, whose width its first word exceeds
+            assert len(row) + 1 + len(re.split(r"(?<=-)|\s", after.strip())[0]) > 98
