@@ -7,9 +7,8 @@ from evaluated import evaluated
 from recording import Record
 
 import generated
-from solvers.equations import energy, forms, module, number_checks, singularities
+from solvers.equations import consistent_start, energy, forms, module, number_checks, singularities
 from solvers.equations.linearisation import intervals, linear_system, normal_modes
-from solvers.equations.starts import consistent_start
 
 EXPRESSIONS = """
 {m.SYSTEM: title(m) for m in some}

@@ -9,7 +9,7 @@ from recording import Record
 from solvers.app.modules import load as load_module
 from solvers.sweeps.definition import sweep_reading
 from solvers.sweeps.execution.sweep_run import sweep
-from solvers.sweeps.plots.figure import figure
+from solvers.sweeps.sweep_figure import figure
 from solvers.sweeps.sweep_summary import summary
 
 #: Numbers of motions, and durations.
