@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from itertools import groupby
 from typing import TypeVar
 
@@ -39,6 +39,15 @@ def divided(
         if len(result) > 1:
             return result
     return [items]
+
+
+def below_each(
+    text: str, items: Iterable[Item], place: Callable[[Item], int]
+) -> Iterator[tuple[Item, ...]]:
+    """Yield the items below each heading that has any, of all levels, in order."""
+    starts = [one.start() for one in HEADING.finditer(text)]
+    for _, group in groupby(items, lambda one: bisect_right(starts, place(one))):
+        yield tuple(group)
 
 
 def _level(heading: re.Match[str]) -> int:

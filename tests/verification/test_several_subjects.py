@@ -136,3 +136,27 @@ def test_numbers_with_units_define_no_letters(tmp_path: Path) -> None:
     assert [one.verdict for one in judged(tmp_path, NUMBERS)][-2:] == ["verified", "verified"]
     slip = judged(tmp_path, NUMBERS.replace(r"m_B - m_A\sin", r"m_B + m_A\sin"))
     assert slip[-2].verdict in ("wrong", "context")
+
+
+EXAMPLES = r"""
+## A disc on a hardening spring
+$$T = \frac12 J\dot\phi^2$$ $$V = \frac14 c\phi^4$$
+$$\frac{\partial L}{\partial\phi} = -c\phi^3$$
+$$\frac{\partial L}{\partial\dot\phi} = J\dot\phi$$
+$$\frac{d}{dt}(J\dot\phi) + c\phi^3 = 0$$
+$$\ddot\phi = -\frac{c}{J}\phi^3$$
+## A ball in a bowl
+$$T = \frac12 m\dot y^2$$ $$V = \frac16 k y^6$$
+$$\frac{\partial L}{\partial y} = -k y^5$$
+$$\frac{\partial L}{\partial\dot y} = m\dot y$$
+$$\frac{d}{dt}(m\dot y) + k y^5 = 0$$
+$$\ddot y = -\frac{k}{m}y^5$$
+"""
+
+
+def test_energies_of_another_coordinate_begin_an_example(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, EXAMPLES)} == {"verified", "definition"}
+    found = judged(tmp_path, EXAMPLES.replace(r"= -k y^5", r"= -5 k y^5"))
+    assert [one.correction for one in found if one.verdict == "wrong"] == [
+        r"\frac{\partial L}{\partial y} = -k y^5"
+    ]

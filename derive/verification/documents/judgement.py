@@ -28,7 +28,7 @@ from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_roles import implied_rates, letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.letters.stated_positions import sections
+from derive.verification.documents.letters.subjects import subjects
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -85,9 +85,9 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
     work = Work()
-    subjects = [*sections(statements.formulas)]
-    while subjects:
-        remaining, count, moving = subjects.pop(0), 0, set[str]()
+    waiting = subjects(document.text, statements)
+    while waiting:
+        remaining, count, moving = waiting.pop(0), 0, set[str]()
         while remaining and count < (1 if hints else MAX_SYSTEMS):
             count += 1
             part = replace(statements, formulas=remaining)
@@ -117,7 +117,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
             )  # fmt: skip
         if remaining and not hints:
             below = divided(document.text, remaining, lambda one: one.occurrence.start)
-            subjects += below if len(below) > 1 else []
+            waiting += below if len(below) > 1 else []
     understood = {place for place, (_, result) in results.items() if result.is_understood}
     left = {one for one in statements.formulas if one.occurrence not in understood}
     follow = *general_verdicts(statements), *Identities(statements.formulas, left).verdicts()

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import takewhile
 
 import sympy as sp
 
@@ -21,39 +20,14 @@ from derive.verification.documents.letters.candidates import (
 )
 from derive.verification.documents.letters.document_system import derivation, drag, valid_name
 from derive.verification.documents.letters.energies import stated_energies
-from derive.verification.documents.letters.letters import KINDS, QUANTITIES, Letters
+from derive.verification.documents.letters.letters import KINDS, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
 from derive.verification.documents.text import order
 
-#: Most cases of a document with positions of their own.
-MAX_CASES = 6
 #: Names of Cartesian components.
 AXES = ("x", "y", "z")
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 COLUMN = re.compile(r"(?:vec)?[rRxXpq](?:_(\w+?))?(?:_column)?\Z")
-
-
-def sections(formulas: Sequence[DocumentFormula]) -> list[tuple[DocumentFormula, ...]]:
-    """The formulas of cases with positions of their own, such as (a), (b) and (c).
-
-    A case begins where a component of a position is defined anew, and states an energy.
-    """
-    cases, known = [list[DocumentFormula]()], dict[str, str]()
-    for formula in formulas:
-        name, text = formula.subject, formula.sides[-1].text
-        if POINT.match(name) and known.get(name, text) != text:
-            before = cases[-1]
-            others = takewhile(lambda one: POINT.match(one.subject), reversed(before))
-            own = [*others][::-1]  # positions just before, which belong to it
-            cases[-1] = before[: len(before) - len(own)]
-            cases.append(own)
-            known = {one.subject: one.sides[-1].text for one in own}
-        if POINT.match(name):
-            known[name] = text
-        cases[-1].append(formula)
-    has_energies = all(any(one.subject in QUANTITIES for one in case) for case in cases)
-    are_cases = has_energies and len(cases) <= MAX_CASES
-    return [tuple(case) for case in cases] if are_cases else [tuple(formulas)]
 
 
 def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[System]:
