@@ -3,6 +3,7 @@
 Kinetic energies are quadratic forms of velocities, whose coefficients may depend on coordinates.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -29,6 +30,8 @@ from derive.verification.documents.statements import DocumentFormula, definition
 Stated = Mapping[str, Sequence[tuple[sp.Expr, int]]]
 #: Most values of an energy that are tried, and rounds in which definitions are sought.
 MOST, ROUNDS = 3, 3
+#: Words about Rayleigh's function.
+RAYLEIGH = re.compile(r"rayleigh|dis{1,2}ipa[ctz]|レイリー|瑞利", re.IGNORECASE)
 #: The value of a mass that is larger than the others.
 LARGE = 10.0
 
@@ -72,8 +75,32 @@ def systems_of_energies(
             continue
         known.add(pair)
         title = "The system of the stated energies"
-        if system := stated_system(STATED, title, letters, moving, matrix, V - rest):
+        damping = stated_dissipation(letters, formulas, symbols)
+        forces = [-damping.diff(velocity(one)) for one in moving]
+        if system := stated_system(STATED, title, letters, moving, matrix, V - rest, forces):
             yield system, numbers
+
+
+def stated_dissipation(
+    letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
+) -> sp.Expr:
+    """Rayleigh's function of a document, 0 if there is none: a quadratic form of velocities.
+
+    Its sentence names it, or an equation contains its derivative by a velocity.
+    """
+    _, values = stated_values(letters, formulas, symbols)
+    rates = [velocity(symbols[q]) for q in letters.coordinates if q in symbols]
+    words = {word for formula in formulas for word in formula.words}
+    for formula in formulas:
+        name, value = formula.subject, values.get(formula.subject)
+        is_derived = any(re.fullmatch(rf"d{name}_d\w+_dot", word) for word in words)
+        is_named = is_derived or RAYLEIGH.search(formula.occurrence.prose)
+        if not name or not is_named or name in letters.quantities or not isinstance(value, sp.Expr):
+            continue
+        forms = (value.diff(a).diff(b) * a * b / 2 for a in rates for b in rates)
+        if value.has(*rates) and sp.expand(value - sp.Add(*forms)) == 0:
+            return value
+    return sp.S.Zero
 
 
 def stated_system(

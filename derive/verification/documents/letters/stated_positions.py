@@ -8,7 +8,7 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
-from derive.system.symbols import TIME
+from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import (
     STATED,
@@ -19,7 +19,11 @@ from derive.verification.documents.letters.candidates import (
     loads,
 )
 from derive.verification.documents.letters.document_system import derivation, drag, valid_name
-from derive.verification.documents.letters.energies import stated_energies
+from derive.verification.documents.letters.energies import (
+    stated_dissipation,
+    stated_energies,
+    stated_values,
+)
 from derive.verification.documents.letters.letters import KINDS, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
 from derive.verification.documents.text import order
@@ -47,10 +51,13 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
     if not q or any(symbols[name] not in q for name in letters.accelerated):
         return  # the positions are those of a part of the system
     coordinates = [Coordinate(one, "m", "a coordinate") for one in q]
+    damping = stated_dissipation(letters, formulas, symbols)
+    friction = [-damping.diff(velocity(one)) for one in q]
     for sign in (1, -1) if gravity is not None else (0,):
         weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[-1] for m in masses))
         for potential in _potentials(weight, gravity, letters, formulas, symbols):
-            used = sp.Tuple(potential, *(m.mass for m in masses)).free_symbols | positions
+            used = sp.Tuple(potential, *friction, *(m.mass for m in masses)).free_symbols
+            used |= positions
             parameters = [
                 Parameter(symbols[name], _unit(name, letters), 1.0, "a parameter")
                 for name in letters.parameters
@@ -60,6 +67,7 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
                 system = System(
                     STATED, "The system that the document states", coordinates, parameters,
                     masses, potential=potential, gravity=(sp.S.Zero,) * len(masses[0].position),
+                    forces=friction if damping else (),
                 )  # fmt: skip
                 derivation(system)
             except SystemDefinitionError:  # such as of coordinates that are not independent
@@ -101,6 +109,8 @@ def _points(
                 value = parse(text, {**namespace, **known})
             except ExpressionError:
                 continue
+            if TIME in value.free_symbols and not value.free_symbols & moving:
+                namespace.setdefault(name, value)  # an angle that is prescribed
             if not value.free_symbols & moving and value != 0:  # a cart has y_0 = 0
                 continue
             if isinstance(value, sp.MatrixBase) and value.cols == 1 and 1 < value.rows < 4:
@@ -158,7 +168,9 @@ def _potentials(
     """The weight, and the stated potential energies that contain it and springs."""
     yield weight
     known = [weight]
-    for _, value, _ in stated_energies(letters, formulas, symbols):
+    stated, _ = stated_values(letters, formulas, symbols)
+    values = [value for _, value, _ in stated_energies(letters, formulas, symbols)]
+    for value in [*values, *(one for one, _ in stated.get("potential_energy", ()))]:
         rest = sp.expand(value - weight)
         is_new = all(sp.expand(value - one) != 0 for one in known)
         if is_new and (gravity is None or gravity not in rest.free_symbols):

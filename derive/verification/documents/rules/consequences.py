@@ -12,6 +12,7 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
+from derive.system.symbols import TIME
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -189,6 +190,7 @@ def weighed(
     independent = sum(FOLLOWS not in one.note for one in wrong)
     is_tie = candidate.is_of_equations and (independent != 1 or holding < 2 or misfits > 0)
     given = _lines(lines[k] for k in candidate.stating)
+    undecided = {id(formula) for formula in _of_friction(results, candidate)}
     # rates of positions of which nothing in a system of energies or equations shows that they hold
     unused = {
         f"{formula.subject}_dot": lines[k]
@@ -216,18 +218,53 @@ def weighed(
             result = plain("context", formula, note)
         elif verdict.verdict == "wrong" and formula.subject in unused:
             result = plain("context", formula, opposed(unused[formula.subject]))
+        elif verdict.verdict == "wrong" and id(formula) in undecided:
+            result = plain("context", formula, f"it contradicts the stated friction: {UNDECIDED}")
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
-        elif (
-            verdict.verdict == "wrong"
-            and (result.kind not in OF_ENERGIES or len(verdict.corrections) != 1)
-            and (is_tie or _adds_letters(formula, result, candidate))
+        elif verdict.verdict == "wrong" and (
+            _is_driven(candidate)
+            if result.kind in OF_ENERGIES and len(verdict.corrections) == 1
+            else is_tie or _adds_letters(formula, result, candidate)
         ):
             result = plain("context", formula, f"it differs from {given or 'others'}: {OTHER_CASE}")
         elif verdict.verdict == "wrong" and given:
             note = joined(verdict.note, f"given {given}")
             result = replace(result, verdict=replace(verdict, note=note))
         yield formula, result
+
+
+def _is_driven(candidate: SystemCandidate) -> bool:
+    """Whether equations of a driven motion state the system, which leave its energies open."""
+    return candidate.is_of_equations and candidate.system.potential_energy.has(TIME)
+
+
+def _of_friction(
+    results: Sequence[WithVerdict], candidate: SystemCandidate
+) -> Iterator[DocumentFormula]:
+    """Yield wrong formulas that differ in friction of Rayleigh's function, which can be wrong, too.
+
+    It is right if it leads to other formulas that contain its letters.
+    """
+    if candidate.basis not in ("positions", "energies"):
+        return
+    names = {symbol.name for symbol in sp.Tuple(*candidate.system.forces).free_symbols}
+    letters = {letter for name, letter in candidate.parameters.items() if name in names}
+    supported = {
+        word
+        for formula, one in results
+        if one.verdict.verdict in ("verified", "equivalent") and formula.subject not in letters
+        for word in formula.words
+    }
+    for formula, result in results:
+        if result.verdict.verdict == "wrong":
+            terms = [
+                text for one in result.verdict.corrections for text in (one.wrong, one.correct)
+            ]
+            words = {w for text in terms for w in WORD.findall(text)} or {*formula.words}
+            own = words & letters
+            if own and not own <= supported:
+                yield formula
 
 
 def _adds_letters(
