@@ -168,7 +168,7 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     r"""The statements, with lengths for plain letters L where the Lagrangian is ``\mathcal L``."""
 
     def is_plain(place: Occurrence, letter: Letter) -> bool:
-        return place.latex[slice(*letter.span)].startswith("L")
+        return place.latex[slice(*letter.span)].lstrip("{ ").startswith("L")
 
     found = {
         is_plain(one, letter)

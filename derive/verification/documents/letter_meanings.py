@@ -265,9 +265,9 @@ def _best(
 
 
 def _fits(judges: Judges, candidate: SystemCandidate) -> bool:
-    """Whether a formula is verified by a system, and none is wrong."""
-    kinds = {one.verdict.verdict for _, one in judges.verdicts(candidate)}
-    return "verified" in kinds and "wrong" not in kinds
+    """Whether a formula is verified by a system and none is wrong, or two beside a wrong one."""
+    kinds = Counter(one.verdict.verdict for _, one in judges.verdicts(candidate))
+    return kinds["wrong"] <= 1 and kinds["verified"] > kinds["wrong"]
 
 
 def _with_direction(best: Match, matches: Sequence[Match], judges: Judges) -> Match:

@@ -141,9 +141,12 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
     for number in numbers:
         written = [indexed(side, index, number) if index else side for side in sides]
         texts = [translator.text(side) for side in written]
-        if len(texts) > 2 and texts[-1].text in CONSTANT:
-            texts = texts[:-1]
-        yield DocumentFormula(occurrence, tuple(texts), relations[: len(texts) - 1], number)
+        pairs = [*zip(("=", *relations), texts, strict=True)]
+        if len(texts) > 2:
+            pairs = [one for one in pairs if one[1].text not in CONSTANT]
+        yield DocumentFormula(
+            occurrence, tuple(text for _, text in pairs), tuple(one for one, _ in pairs[1:]), number
+        )
 
 
 def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:

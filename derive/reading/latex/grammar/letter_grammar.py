@@ -140,7 +140,9 @@ class LetterTokens(Arguments):
             last += 1
         run = "".join(token.text for token in tokens[at:stop])
         if run == "const":
-            return Letter(run, (tokens[at].span[0], tokens[stop - 1].span[1])), stop
+            span = tokens[at].span[0], tokens[stop - 1].span[1]
+            is_short = any(token.text == "." for token in tokens[stop : stop + 1])
+            return Letter(run, span), stop + is_short
         if stop in (at, last) or SPELLED.search(run):
             return None
         name, index = run, "".join(token.text for token in tokens[stop:last])

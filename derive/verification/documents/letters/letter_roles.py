@@ -85,12 +85,14 @@ def letters_of(
         and (one in subjects or one in operands or one in combined)
         and not (kind == "kinetic_energy" and _is_constant(one, formulas))
         and not (kind == "kinetic_energy" and one in {*transformed, *weights})
+        and not (kind == "potential_energy" and _is_effective(one, formulas))
         and one not in forces
         and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }
     written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
     quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
-    quantities |= _matrices(formulas)
+    matrices = _matrices(formulas)
+    quantities |= matrices
     defined = _defined(formulas, orders)
     varied = {stem(v) for _, variables in derivatives.values() for v in variables}
     resting = _resting(formulas)
@@ -104,7 +106,7 @@ def letters_of(
         and not one.endswith("_column")
     ]
     quantities |= _partners(formulas, quantities, moving)
-    generic = _generic(formulas, derivatives)
+    generic = _generic(formulas, derivatives) | _columns(formulas, moving, matrices)
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
     for one in stems:
@@ -198,6 +200,17 @@ def _generic(
     return result[True] - result[False]
 
 
+def _columns(
+    formulas: Iterable[DocumentFormula], moving: Sequence[str], matrices: Mapping[str, str]
+) -> set[str]:
+    """Names such as x that stand for a column of x_1, x_2 ... beside a matrix alone: M*x_ddot."""
+    columns = {name for name in moving if f"{name}_1" in moving}
+    for formula in formulas:
+        if matrices.keys().isdisjoint(formula.words):
+            columns -= {stem(word) for word in formula.words}
+    return columns
+
+
 def _abbreviations(
     names: Iterable[str], coordinates: Sequence[str]
 ) -> dict[str, tuple[str, tuple[str, ...]]]:
@@ -248,6 +261,19 @@ def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
             order(word) or word in excluded or _quantity(word) or word[0] in "pv" for word in words
         )
     )
+
+
+def _is_effective(name: str, formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether a potential energy contains a constant of the motion, as c of r**2*phi_dot = c."""
+    own = {word for one in formulas if one.subject == name for word in one.words} - {name}
+    for formula in formulas:
+        first, last = formula.sides[0].text, formula.sides[-1].text
+        for one, other in ((first, last), (last, first)):
+            is_constant = one in own and not order(one) and not other.isidentifier()
+            orders = {order(word) for word in {*_words(other)} - {one}}
+            if is_constant and formula.relations == ("=",) and max(orders, default=0) == 1:
+                return True
+    return False
 
 
 def _is_momentum(name: str, formulas: Sequence[DocumentFormula]) -> bool:

@@ -52,8 +52,9 @@ class Abbreviations:
         names, symbol = self._namespace.all_names, sp.Dummy(real=True)
         scope: Mapping[str, object] = {**names, name: symbol}
         momenta = self._namespace.model.momenta
-        moving = {*self._namespace.derivation.system.q, *self._namespace.derivation.system.qdot}
-        allowed = names[name].free_symbols | {*self._namespace.derivation.system.params}
+        system = self._namespace.derivation.system
+        moving = {*system.q, *system.qdot, *system.qddot}
+        allowed = names[name].free_symbols | {*system.params}
         for formula in formulas:
             subject = formula.subject
             known = subject in names and subject not in self._namespace.defining

@@ -10,6 +10,7 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.proofs.zero import vanishes
 from derive.formulas.syntax import ExpressionError
+from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.abbreviations import Abbreviations
@@ -38,7 +39,7 @@ from derive.verification.documents.statements import (
 )
 from derive.verification.documents.text import FormulaText
 from derive.verification.judging.engine import joined
-from derive.verification.judging.reference_system import depends_on
+from derive.verification.judging.reference_system import depends_on, time_derivative
 from derive.verification.judging.verdict import Correction
 
 #: A number with a decimal point.
@@ -101,7 +102,10 @@ class Judge:
         if formula.occurrence in self._given:
             return plain("definition", formula, STATES)
         if constant := self._constant_of_motion(formula):
-            return plain("definition", formula, f"{constant} is its value along the motion")
+            name, value = constant
+            if self._is_conserved(value):
+                return plain("verified", formula, f"{name} is a constant of the motion")
+            return plain("definition", formula, f"{name} is its value along the motion")
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
@@ -158,7 +162,16 @@ class Judge:
             if not depends_on(sp.Tuple(left, right), system.qddot):
                 return False
             result = self._comparison.compared(known, *known.sides, left, right)
-            return result.verdict.verdict == "verified"
+            if result.verdict.verdict == "verified":
+                return True
+            # unknown letters can stand for the forces of other formulas, as f sin(θ) for F_x
+            own = {self._namespace.names.get(word) for word in formula.words}
+            loads = sp.Tuple(*system.forces).free_symbols & {*system.params} - own
+            if loads:
+                absent = dict.fromkeys(loads, sp.S.Zero)
+                forces = [force.xreplace(absent) for force in system.forces]
+                free = replace(self._model, derivation=Derivation(replace(system, forces=forces)))
+                return free.agreement(left - right) is not None
         return False
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
@@ -187,8 +200,12 @@ class Judge:
         return None
 
     def _is_special(self, formula: DocumentFormula) -> bool:
-        """Whether a formula states the value of a coordinate, of its rate or of a parameter."""
+        """Whether a formula states the value of a coordinate, of its rate or of a parameter.
+
+        That of a name which the document defines by these is one at a place: θ = 0 beside ωt.
+        """
         names, last = self._namespace.all_names, formula.sides[-1].text
+        moving = {TIME, *(system := self._namespace.derivation.system).q, *system.qdot}
         try:
             value = self._namespace.value(last)
         except ExpressionError:
@@ -197,7 +214,11 @@ class Judge:
         return (
             not isinstance(value, sp.MatrixBase)
             and value.is_number
-            and all(one in names and isinstance(names[one], sp.Symbol) for one in others)
+            and all(
+                isinstance(names.get(one), sp.Symbol)
+                or (one in self._namespace.defining and depends_on(names[one], moving))
+                for one in others
+            )
         )
 
     def _has_numbers(self, side: FormulaText) -> bool:
@@ -229,22 +250,31 @@ class Judge:
                 return values
         return []
 
-    def _constant_of_motion(self, formula: DocumentFormula) -> str:
+    def _constant_of_motion(self, formula: DocumentFormula) -> tuple[str, sp.Expr] | None:
         """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.
 
         No term can be wrong there: such a letter stands for the value of the other side.
         """
         system, names = self._namespace.derivation.system, self._namespace.all_names
         if len(formula.sides) != 2 or formula.relations != ("=",):
-            return ""
+            return None
         for one, other in (formula.sides, formula.sides[::-1]):
             if names.get(one.text) in system.params and one.text not in other.text:
                 with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-                    value = self._namespace.value(other.text)
-                    moving = value.xreplace(dict(self._model.momenta)).free_symbols
+                    value = self._namespace.value(other.text).xreplace(dict(self._model.momenta))
+                    moving = value.free_symbols
                     if not moving.isdisjoint(system.qdot) and moving.isdisjoint(system.qddot):
-                        return one.text
-        return ""
+                        return one.text, value
+        return None
+
+    def _is_conserved(self, value: sp.Expr) -> bool:
+        """Whether a function is constant along motions with the constants that formulas state."""
+        pairs = filter(None, map(self._constant_of_motion, self._namespace.formulas))
+        stated = {self._namespace.names[name]: one for name, one in pairs if one != value}
+        rate = time_derivative(self._namespace.derivation.system, value).xreplace(stated)
+        with suppress(ExpressionError, NotImplementedError):
+            return self._model.agreement(rate) is not None
+        return False
 
     def _unknown(self, sides: Sequence[FormulaText]) -> list[str]:
         """The names in some sides of a formula that have no meaning."""
@@ -268,6 +298,10 @@ class Judge:
                 return result or plain("definition", formula, "")
         last = self._namespace.defining.get(side.text)
         if last and last[0] is formula:
+            value = self._namespace.names[side.text]
+            is_moving = depends_on(value, self._namespace.derivation.system.qdot)
+            if is_moving and not first.text.isidentifier() and self._is_conserved(value):
+                return plain("verified", formula, f"{side.text} is a constant of the motion")
             return plain("definition", formula, "")
         is_approximate = formula.relations[k - 1] == "~"
         first = formula.sides[k - 1] if is_approximate else first

@@ -1,0 +1,115 @@
+"""Habits of lecture notes: Rayleigh's function, constants of motions, other letters of forces."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.document_formats import read_document
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+
+CORRECT = {"verified", "equivalent", "definition"}
+
+
+def judged(folder: Path, text: str) -> list[FormulaVerdict]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return [*judge_document(read_document(folder / "a.md")).formulas]
+
+
+def wrong(found: list[FormulaVerdict]) -> list[str]:
+    return [one.correction for one in found if one.verdict == "wrong"]
+
+
+DAMPED = r"""
+$$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2$$
+$$V = \frac12 k_1 x_1^2 + \frac12 k_2 (x_2 - x_1)^2$$
+Rayleigh's function is
+$$\mathcal{R} = \frac12 b_1\dot x_1^2 + \frac12 b_2(\dot x_2 - \dot x_1)^2$$
+$$m_1\ddot x_1 + (b_1 + b_2)\dot x_1 - b_2\dot x_2 + (k_1 + k_2) x_1 - k_2 x_2 = 0$$
+$$m_2\ddot x_2 - b_2\dot x_1 + b_2\dot x_2 - k_2 x_1 + k_2 x_2 = 0$$
+"""
+
+
+def test_forces_follow_from_rayleighs_function(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, DAMPED)} == {"verified", "definition"}
+    found = judged(tmp_path, DAMPED.replace(r"- b_2\dot x_1 +", r"+ b_2\dot x_1 +"))
+    assert wrong(found) == [r"m_2\ddot x_2 - b_2 \dot x_1 + b_2\dot x_2 - k_2 x_1 + k_2 x_2 = 0"]
+
+
+def test_a_slip_in_rayleighs_function_accuses_no_equation(tmp_path: Path) -> None:
+    assert not wrong(judged(tmp_path, DAMPED.replace(r"= \frac12 b_1", r"= b_1")))
+
+
+def test_a_column_beside_a_matrix_is_no_further_coordinate(tmp_path: Path) -> None:
+    matrix = r"""With $$M = \begin{pmatrix} m_1 & 0 \\ 0 & m_2 \end{pmatrix}$$ this is
+$$M\ddot x + B\dot x + K x = 0$$"""
+    found = judged(tmp_path, DAMPED + matrix)
+    assert [one.verdict for one in found][3:6] == ["verified"] * 3
+
+
+CRANE = r"""
+$$T = \frac12 (M + m)\dot x^2 + \frac12 m a^2\dot\phi^2 + m a\dot x\dot\phi\cos\phi$$
+$$V = -m g a\cos\phi$$
+$$\frac{d}{dt}\frac{\partial L}{\partial\dot x} - \frac{\partial L}{\partial x} = F_x$$
+$$a\ddot\phi + \ddot x\cos\phi + g\sin\phi = 0$$
+$$(M + m)\ddot x + m a\ddot\phi\cos\phi - m a\dot\phi^2\sin\phi = (p_1 + p_2)\cos\beta$$
+"""
+
+
+def test_forces_can_have_other_letters_in_an_equation(tmp_path: Path) -> None:
+    assert judged(tmp_path, CRANE)[4].note.endswith("p_1, p_2, beta as applied forces")
+    slip = CRANE.replace(r"- m a\dot\phi^2", r"+ m a\dot\phi^2")
+    assert judged(tmp_path, slip)[4].verdict == "context"
+
+
+def test_braces_around_the_lagrangian_make_no_length_of_others(tmp_path: Path) -> None:
+    text = r"$$L = \frac12 m\dot x^2 - c x^4$$ $$\frac{\partial{L}}{\partial{x}} = -4 c x^3$$"
+    assert [one.verdict for one in judged(tmp_path, text)] == ["definition", "verified"]
+
+
+BOWL = r"""
+$$L = m a^2\left[\frac12(\dot\theta^2 + \sin^2\theta\,\dot\phi^2) + \frac{g}{a}\cos\theta\right]$$
+$$\ddot\theta = \sin\theta\cos\theta\,\dot\phi^2 - \frac{g}{a}\sin\theta$$
+$$\sin^2\theta\,\dot\phi = const. = j$$
+$$\frac12\dot\theta^2 + U(\theta) = \epsilon$$
+$$U(\theta) = \frac{j^2}{2\sin^2\theta} - \frac{g}{a}\cos\theta$$
+"""
+
+
+def test_constants_of_the_motion_are_verified(tmp_path: Path) -> None:
+    found = judged(tmp_path, BOWL)
+    assert {one.verdict for one in found} == {"verified", "definition"}
+    assert [one.note for one in found[2:4]] == [
+        "j is a constant of the motion", "epsilon is a constant of the motion"
+    ]  # fmt: skip
+    changed = judged(tmp_path, BOWL.replace(r"\frac{j^2}{2", r"\frac{j^2}{4"))
+    assert changed[3].verdict == "definition"
+
+
+def test_constants_of_the_motion_show_which_equation_is_wrong(tmp_path: Path) -> None:
+    found = judged(tmp_path, BOWL.replace(r"\,\dot\phi^2 - \frac{g}{a}\sin\theta", r"\,\dot\phi^2"))
+    assert [one.verdict for one in found].count("wrong") == 1
+    assert found[1].correction.endswith(r"- \frac{g \sin\left(\theta\right)}{a}")
+
+
+DRIVEN = r"""
+The arm turns at $$\theta(t) = \Omega t$$ so that $\theta = 0$ is where it points downwards.
+$$x = r\sin\theta$$ $$y = -r\cos\theta$$
+$$V = \frac12 k (r - a)^2 - m g r\cos(\Omega t)$$
+$$m\ddot r = m r\Omega^2 - k(r - a) + m g\cos(\Omega t)$$
+The state is $$x_1 = r$$ $$x_2 = \dot r$$ with
+$$\dot x_2 = x_1\Omega^2 - \frac{k}{m}(x_1 - a) + g\cos(\Omega t)$$
+$$\frac{dx_2}{dt} = x_1\Omega^2 - \frac{k}{m}(x_1 - a) + g\cos(\Omega t)$$
+"""
+
+
+@pytest.mark.parametrize("formula", [r"\theta = 0", "x_1 = r"])
+def test_a_place_and_a_state_are_not_wrong(formula: str, tmp_path: Path) -> None:
+    found = {one.latex: one.verdict for one in judged(tmp_path, DRIVEN)}
+    assert found[formula] in ("context", "definition")
+    assert "wrong" not in found.values()
+
+
+def test_equations_of_a_driven_motion_leave_its_energies_open(tmp_path: Path) -> None:
+    text = DRIVEN.replace(r"$$x = r\sin\theta$$ $$y = -r\cos\theta$$", "")
+    assert not wrong(judged(tmp_path, text))
