@@ -113,3 +113,11 @@ def test_a_place_and_a_state_are_not_wrong(formula: str, tmp_path: Path) -> None
 def test_equations_of_a_driven_motion_leave_its_energies_open(tmp_path: Path) -> None:
     text = DRIVEN.replace(r"$$x = r\sin\theta$$ $$y = -r\cos\theta$$", "")
     assert not wrong(judged(tmp_path, text))
+
+
+def test_a_length_called_d_is_no_friction_as_well(tmp_path: Path) -> None:
+    text = r"""$$E = d M\cos(\alpha x) + \frac12 c x^2
+ + \frac12 M\dot x^2 (d^2\alpha^2\sin^2(\alpha x) + 1)$$
+$$M\ddot x (d^2\alpha^2\sin^2(\alpha x) + 1)
+ = d\alpha g M\sin(\alpha x) - c x - d^2\alpha^3 M\dot x^2\sin(\alpha x)\cos(\alpha x)$$"""
+    assert len(judged(tmp_path, text)) == 2

@@ -89,6 +89,8 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[SystemCandid
         for friction in frictions(letters, n):
             if not has_masses and any(damped == "masses" for _, damped in friction):
                 continue
+            if {name for name, _ in (*forces, *friction)} & {*parameters.values()}:
+                continue  # a letter of the system
             one = SystemCandidate(system, own, signs, (0,) * n, parameters, forces, friction)
             yield from constrained(one, letters)
 
