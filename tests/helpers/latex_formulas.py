@@ -171,6 +171,8 @@ BRACKETS = r"""
 |a||b|  ⟶  |a| |b|
 |a + |b||  ⟶  |(a + |b|)|
 \|\vec r\|^3  ⟶  |bold r|^3
+\vec r \times m\vec v  ⟶  cross(<bold r, m bold v>)
+3\hat x \times (2\hat y)  ⟶  3 cross(<xhat, 2 yhat>)
 \lvert x\rvert  ⟶  |x|
 \left.x\right|_{t=0}  ⟶  at(x)
 m \left.\frac{\partial V}{\partial x}\right|_{x_0} u  ⟶  m at(∂(V; x)) u
@@ -422,7 +424,8 @@ a/b(c+d)  ⟶  unreadable: what stands below the slash is ambiguous without brac
 \sum_i  ⟶  unreadable: a sum has no terms
 a \pm b  ⟶  unreadable: two signs at once
 a - -b  ⟶  unreadable: '-' cannot stand here
-\vec r \times \vec p  ⟶  unreadable: a vector product
+\vec a \times \vec b \times \vec c  ⟶  unreadable: a vector product
+\vec r \times 2  ⟶  unreadable: a vector product
 \frac{d}{dt}  ⟶  unreadable: a derivative has no operand
 \frac{\partial L}{x}  ⟶  unreadable: ∂ outside of a derivative
 \frac{\partial^2 L}{\partial x}  ⟶  unreadable: the orders above and below a derivative differ

@@ -102,3 +102,29 @@ $$ V = m g y_p = -m g l\cos\theta $$
 $$ \ddot x\cos\theta + l\ddot\theta + g\sin\theta = 0 $$"""
     assert verdicts(tmp_path, text)[2:] == ["verified", "verified"]
     assert verdicts(tmp_path, text.replace("= m g y_p", "= 2 m g y_p"))[2] == "wrong"
+
+
+AREA = r"""$$\hat r = \cos\phi\,\hat x + \sin\phi\,\hat y$$
+$$\hat\phi = -\sin\phi\,\hat x + \cos\phi\,\hat y$$
+$$\frac{d\hat r}{dt} = (-\sin\phi\,\hat x + \cos\phi\,\hat y)\dot\phi = \dot\phi\,\hat\phi$$
+$$\vec r = r\hat r$$
+$$\vec v = \dot r\hat r + r\dot\phi\,\hat\phi$$ $$v_\phi = r\dot\phi$$
+$$\vec J = \vec r\times m\vec v = m r^2\dot\phi\,\hat z$$
+$$\vec a = (\ddot r - r\dot\phi^2)\hat r + (r\ddot\phi + 2\dot r\dot\phi)\hat\phi$$
+$$\vec a = \ddot r\,\hat r - r\dot\phi^2\,\hat r
+ + r\ddot\phi\,\hat\phi + 2\dot r\dot\phi\,\hat\phi$$"""
+
+
+@pytest.mark.parametrize(("old", "new", "number"), [
+    ("", "", 0),
+    (r"= \dot\phi\,\hat\phi", r"= -\dot\phi\,\hat\phi", 2),
+    (r"m r^2", "m r", 6),
+    (r"+ 2\dot r\dot\phi)", r"+ \dot r\dot\phi)", 7),
+    (r"- r\dot\phi^2\,\hat r", r"- r\dot\phi^2\,\hat\phi", 8),
+])  # fmt: skip
+def test_unit_vectors_along_fixed_axes_and_vector_products(
+    old: str, new: str, number: int, tmp_path: Path
+) -> None:
+    found = verdicts(tmp_path, AREA.replace(old, new))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [number] * bool(old)
+    assert old or {*found} == {"definition", "verified"}

@@ -15,7 +15,16 @@ from derive.reading.latex.grammar.written_nodes import (
 )
 from derive.reading.latex.layout.latex_symbols import GREEK, VARIATIONS
 from derive.reading.latex.layout.tokens import UnreadError
-from derive.reading.latex.tree import Application, Call, Letter, Node, Number, Power, Quotient
+from derive.reading.latex.tree import (
+    Application,
+    Call,
+    Letter,
+    Node,
+    Number,
+    Power,
+    Quotient,
+    Tuple,
+)
 
 NUMERIC = ("NUMBER", "TIMES", "SLASH")
 AMBIGUOUS = "what stands below the slash is ambiguous without brackets"
@@ -45,8 +54,15 @@ def divided(children: list[Part]) -> list[Part]:
             at = stop
             continue
         if is_symbol(child, "TIMES"):
-            if child.value == "times" and any(map(_is_bold, children[at - 1 : at + 2 : 2])):
-                raise UnreadError("a vector product")
+            if child.value == "times" and any(map(_is_marked, children[at - 1 : at + 2 : 2])):
+                stop = next(
+                    (k + 1 for k in range(at + 1, len(children)) if _is_vector(children[k])), 0
+                )
+                if not (stop and result and result[-1] is children[at - 1]):
+                    raise UnreadError("a vector product")
+                result[-1:] = [_cross(result[-1], children[at + 1 : stop])]
+                at = stop
+                continue
         else:
             before = children[at - 1] if at else None
             if is_symbol(child, "NUMBER") and is_symbol(before, "NUMBER"):
@@ -70,9 +86,21 @@ def _is_variation(part: Part) -> bool:
     return isinstance(part, Symbol) and getattr(part.value, "identifier", "") in VARIATIONS
 
 
-def _is_bold(part: Part) -> bool:
+def _is_marked(part: Part) -> bool:
+    """Whether a part is a letter in bold, or with a hat."""
     letter = part.value if isinstance(part, Symbol) else part
-    return isinstance(letter, Letter) and letter.is_bold
+    return isinstance(letter, Letter) and (letter.is_bold or letter.name.endswith("hat"))
+
+
+def _is_vector(part: Part) -> bool:
+    return _is_marked(part) or (isinstance(part, WrittenNode) and part.form == "brackets")
+
+
+def _cross(one: Part, others: list[Part]) -> Node:
+    """The vector product of a vector and another one, which can have factors before it."""
+    left, right = node(one), product([node(part) for part in others])
+    both = Tuple((left, right), around([left, right]))
+    return Call("cross", both, both.span)
 
 
 def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:

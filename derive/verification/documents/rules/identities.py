@@ -20,6 +20,12 @@ from derive.verification.documents.text import RATES, order, stem
 #: Unit vectors of polar coordinates, along r and along an angle.
 UNIT = re.compile(r"(?:(?:e|ehat|u|uhat)_([a-zA-Z]+)|([a-zA-Z]+)hat)(?:_column)?\Z")
 RADII, ANGLES = ("r", "R", "rho", "s"), ("theta", "phi", "varphi", "alpha", "vartheta")
+#: Those along Cartesian axes, by their number.
+AXES = {"i": 0, "imath": 0, "x": 0, "j": 1, "jmath": 1, "y": 1, "k": 2, "z": 2}
+#: A component of a vector, such as v_theta.
+COMPONENT = re.compile(r"(\w+)_([a-zA-Z]+)\Z")
+#: Vectors that are rates of others.
+RATE_OF = {"v_column": "r_column", "a_column": "v_column"}
 #: What cannot be computed.
 ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, IndexError)
 
@@ -35,13 +41,22 @@ class Identities:
         self._moving = {stem(word) for word in words if order(word)}
         matches = {name: match for name in map(stem, words) if (match := UNIT.match(name))}
         units = {name: match[1] or match[2] for name, match in matches.items()}
+        axes = {name: AXES[letter] for name, letter in units.items() if letter in AXES}
+        turned = {one.subject for one in formulas if {*axes} & {*one.words}}  # by their definitions
         angles = {one for one in units.values() if one in ANGLES}
-        self._values: dict[str, Value] = {}
+        #: Unit vectors, and those that belong to components such as v_r.
+        self._values: dict[str, Value] = {
+            name: sp.ImmutableDenseMatrix([int(i == axis) for i in range(3)])
+            for name, axis in axes.items()
+        }
+        self._axes = {*axes}
+        self._units = {letter: name for name, letter in units.items()}
         if len(angles) == 1:
             angle = self._symbol(*angles)
-            radial = sp.ImmutableDenseMatrix([sp.cos(angle), sp.sin(angle)])
+            rest = [0] * (bool(axes) or "cross" in words)
+            radial = sp.ImmutableDenseMatrix([sp.cos(angle), sp.sin(angle), *rest])
             for name, letter in units.items():
-                if letter in (*RADII, *angles):
+                if letter in (*RADII, *angles) and name not in turned:
                     self._values[name] = radial if letter in RADII else radial.diff(angle)
         #: Names with the texts that define them, at each formula those before it.
         self._texts: dict[str, str] = {}
@@ -59,7 +74,7 @@ class Identities:
             results = [*self._compared(formula)] if formula in self._left else []
             used = {name for _, names in results for name in names}
             if results and all(holds for holds, _ in results):
-                confirmed |= used
+                confirmed |= {*used, formula.subject}
                 verified.append(formula)
             elif any(holds is False for holds, _ in results):
                 failed.append((formula, used))
@@ -69,7 +84,10 @@ class Identities:
                     own = defining.setdefault(name, [])
                     if formula not in own and (formula not in verified or not own):
                         own.append(formula)
+        wrong = [formula for formula, _ in failed]
+        defining = {name: [f for f in own if f not in wrong] for name, own in defining.items()}
         single = {name: own[0] for name, own in defining.items() if len(own) == 1}
+        confirmed |= {*self._axes}
         for name in sorted(confirmed & {*single}):
             yield single[name], plain("definition", single[name], "others follow from it")
         for formula in verified:
@@ -89,22 +107,27 @@ class Identities:
         for one, other in zip(formula.sides, formula.sides[1:], strict=False):
             words = {stem(w) for side in (one, other) for w in WORD.findall(side.text)}
             used = words & {*self._values, *self._texts}
+            used |= {known for word in words if (known := self._column(word) or self._place(word))}
             texts = one.text, other.text
             is_definition = any(text.isidentifier() and not order(text) for text in texts)
             holds: bool | None = None
             try:
                 left, right = map(self._value, texts)
-                rest = left - right
+                is_zero = isinstance(left, sp.MatrixBase) and right == 0
+                rest = left if is_zero else left - right
                 holds = all(map(is_small, rest if isinstance(rest, sp.MatrixBase) else [rest]))
-                if not holds and (left.free_symbols != right.free_symbols or not used):
+                letters = (_reduced(one).free_symbols for one in (left, right))
+                if not holds and (not used or len({*map(frozenset, letters)}) > 1):
                     holds = None
             except ERRORS:
                 pass
-            if not is_definition or (holds and texts[0] != texts[1] and (used or "ddt" in words)):
+            is_known = holds is False and texts[0] in RATE_OF  # the rate of a vector, or another
+            is_shown = holds and texts[0] != texts[1] and (used or "ddt" in words)
+            if not is_definition or is_known or is_shown:
                 yield holds, used
 
     def _value(self, text: str, depth: int = 0) -> Value:
-        functions = {**FUNCTIONS, "ddt": self._rate}
+        functions = {**FUNCTIONS, "ddt": self._rate, "cross": lambda one, other: one.cross(other)}
         words = {*WORD.findall(text)} - {*functions}
         return parse(text, {**functions, **{word: self._name(word, depth) for word in words}})
 
@@ -116,11 +139,27 @@ class Identities:
         value = self._values.get(name)
         if value is None and name in self._texts and self._texts[name] != "0":
             value = self._value(self._texts[name], depth + 1)
+        if value is None and (place := self._place(name)):
+            value = self._rate(self._name(place, depth + 1))
+        if value is None and (column := self._column(name)):
+            unit = self._units[name.removeprefix(column.removesuffix("column"))]
+            value = self._name(column, depth + 1).dot(self._name(unit, depth + 1))
         if value is None:
             return TIME if word == "t" else self._symbol(word)
         for _ in range(order(word)):
             value = self._rate(value)
         return value
+
+    def _column(self, name: str) -> str:
+        """The known vector of which a name is the component along a unit vector, or ""."""
+        match = COMPONENT.match(name)
+        column = f"{match[1]}_column" if match and match[2] in self._units else ""
+        return column if column in self._texts and name not in self._texts else ""
+
+    def _place(self, name: str) -> str:
+        """The known vector of which a name without a definition is the rate, or ""."""
+        place = RATE_OF.get(name, "")
+        return place if place in self._texts and name not in self._texts else ""
 
     def _symbol(self, word: str) -> sp.Symbol:
         is_moving = stem(word) in self._moving
@@ -133,3 +172,8 @@ class Identities:
             if name in self._moving:
                 result += value.diff(one) * self._symbol(name + RATES[order(one.name) + 1])
         return result
+
+
+def _reduced(value: Value) -> Value:
+    """A column whose entries have no letters that drop out, as of a vector product."""
+    return value.applyfunc(sp.trigsimp) if isinstance(value, sp.MatrixBase) else value
