@@ -121,3 +121,18 @@ def test_a_length_called_d_is_no_friction_as_well(tmp_path: Path) -> None:
 $$M\ddot x (d^2\alpha^2\sin^2(\alpha x) + 1)
  = d\alpha g M\sin(\alpha x) - c x - d^2\alpha^3 M\dot x^2\sin(\alpha x)\cos(\alpha x)$$"""
     assert len(judged(tmp_path, text)) == 2
+
+
+STATES = r"""
+$$m\ddot y = -f\sin\beta$$ $$J\ddot\beta = \tau$$
+$$\ddot y = -\frac{f}{m}\sin\beta$$
+$$s_1 = y$$ $$s_2 = \beta$$ $$s_3 = \dot y$$ $$s_4 = \dot\beta$$
+$$\dot s_1 = s_3$$ $$\dot s_2 = s_4$$ $$\dot s_3 = -\frac{f}{m}\sin s_2$$
+$$\dot s_4 = \frac{\tau}{J}$$
+"""
+
+
+def test_the_rate_of_a_state_is_corrected_by_the_equations(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, STATES)} == {"definition", "verified"}
+    found = judged(tmp_path, STATES.replace(r"\sin s_2", r"\cos s_2"))
+    assert wrong(found) == [r"\dot s_3 = -\frac{f}{m} \sin\left(s_2\right)"]

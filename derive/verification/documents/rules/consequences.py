@@ -192,10 +192,15 @@ def weighed(
     given = _lines(lines[k] for k in candidate.stating)
     undecided = {id(formula) for formula in _of_friction(results, candidate)}
     # rates of positions of which nothing in a system of energies or equations shows that they hold
+    shown = {w for formula, one in results if one.verdict.verdict == "verified"
+             for w in formula.words}  # fmt: skip
     unused = {
         f"{formula.subject}_dot": lines[k]
         for k, (formula, one) in enumerate(results)
-        if candidate.stating and one.verdict.verdict == "definition" and k not in candidate.stating
+        if candidate.stating
+        and one.verdict.verdict == "definition"
+        and k not in candidate.stating
+        and formula.subject not in shown
     }
     for number, (formula, result) in enumerate(results):
         verdict = result.verdict
@@ -276,7 +281,9 @@ def _adds_letters(
     """
     added = {w for one in result.verdict.corrections for w in WORD.findall(one.correct)}
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
-    return bool((added - {*formula.words}) & (added if candidate.is_of_equations else loads))
+    return bool(
+        (added - {*formula.words, *FUNCTIONS}) & (added if candidate.is_of_equations else loads)
+    )
 
 
 def _unnamed(candidate: SystemCandidate) -> Iterator[str]:

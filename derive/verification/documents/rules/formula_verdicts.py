@@ -157,7 +157,7 @@ class Judge:
         known = without_unknown_terms(formula, unknown)
         if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
             return False
-        with suppress(ExpressionError, NotImplementedError, ValueError):
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
             left, right = (self._namespace.value(one.text) for one in known.sides)
             if not depends_on(sp.Tuple(left, right), system.qddot):
                 return False

@@ -67,6 +67,11 @@ class Roles:
         inside = self._inside_rate(first, side)
         if inside is not None:
             return inside
+        # the rate of a velocity by another name, as omega_dot
+        if left in system.qddot and not depends_on(right, system.qddot) and self._model.has_inverse:
+            small = self._linear.acceleration(left, right)
+            derived = self._namespace.derivation.accelerations[system.qddot.index(left)]
+            return self.value(side, subject, derived if small is None else small)
         if system.conditions and self._is_relation(first):
             return self.equation(first, side)
         if (canonical := self._canonical(subject, left, right)) is not None:
