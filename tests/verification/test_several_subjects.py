@@ -160,3 +160,22 @@ def test_energies_of_another_coordinate_begin_an_example(tmp_path: Path) -> None
     assert [one.correction for one in found if one.verdict == "wrong"] == [
         r"\frac{\partial L}{\partial y} = -k y^5"
     ]
+
+
+EQUAL = r"""
+$$T = \frac12 m_1\dot y_1^2 + \frac12 m_2\dot y_2^2$$
+$$V = \frac14 c_1 y_1^4 + \frac14 c_2 (y_2 - y_1)^4$$
+$$L = T - V = \frac12 m_1\dot y_1^2 + \frac12 m_2\dot y_2^2
+ - \frac14 c_1 y_1^4 - \frac14 c_2 (y_2 - y_1)^4$$
+$$m_2\ddot y_2 = -c_2 (y_2 - y_1)^3$$
+With $m_1 = m_2 = m$ and $c_1 = c_2 = c$ this is
+$$m\ddot y_2 = -c (y_2 - y_1)^3$$
+"""
+
+
+def test_a_slip_of_an_index_is_found_before_a_case_of_equal_parameters(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, EQUAL)} == {"definition", "verified"}
+    found = judged(tmp_path, EQUAL.replace(r"-c_2 (y_2", r"-c_1 (y_2"))
+    assert [one.latex for one in found if one.verdict == "wrong"] == [
+        r"m_2\ddot y_2 = -c_1 (y_2 - y_1)^3"
+    ]

@@ -38,6 +38,8 @@ from derive.verification.documents.statements import (
 )
 from derive.verification.documents.text import FormulaText, order, stem
 
+#: A letter with a number.
+INDEXED = re.compile(r"[A-Za-z]+_\d+")
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
 #: Letters of potential energies beside those of kinetic ones; alone they can be momenta.
@@ -114,6 +116,8 @@ def letters_of(
         if one not in quantities and coordinate is not None:
             momenta[one] = coordinate
     quantities |= _routhians(formulas, momenta)
+    # c of c_1 = c_2 = c is no further parameter
+    defined |= {name for one in formulas for name in equal_letters(one) if "_" not in name}
     defined -= {*quantities}
     coordinates = [one for one in moving if one not in momenta]
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
@@ -142,6 +146,14 @@ def letters_of(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
         ordered, tuple(others), multipliers=multipliers, constraints=constraints,
     )  # fmt: skip
+
+
+def equal_letters(formula: DocumentFormula) -> set[str]:
+    """The names of a special case, such as m_1 = m_2 = m: a letter with numbers, and alone."""
+    names = {side.text for side in formula.sides}
+    indexed = {name for name in names if INDEXED.fullmatch(name)}
+    is_case = len(indexed) > 1 and len({name.partition("_")[0] for name in names}) == 1
+    return names if is_case and {*formula.relations} == {"="} else set()
 
 
 def implied_rates(statements: Translated) -> Translated:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
 from derive.reading.headings import below_each
-from derive.verification.documents.letters.letter_roles import letters_of
+from derive.verification.documents.letters.letter_roles import equal_letters, letters_of
 from derive.verification.documents.letters.letters import QUANTITIES
 from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.statements import WORD, DocumentFormula, Translated
@@ -17,8 +17,27 @@ Formulas = tuple[DocumentFormula, ...]
 
 
 def subjects(text: str, statements: Translated) -> list[Formulas]:
-    """The formulas of each subject of a document, in order."""
-    return [case for part in _examples(text, statements) for case in _cases(part)]
+    """The formulas of each subject of a document, in order.
+
+    Those before a special case, such as m_1 = m_2 = m, are a subject of their own as well.
+    """
+    parts = [case for part in _examples(text, statements) for case in _cases(part)]
+    return [one for part in parts for one in (*_before_equalities(part), part)]
+
+
+def _before_equalities(formulas: Formulas) -> Iterator[Formulas]:
+    """The formulas before parameters are set equal, without those with their common letter.
+
+    A slip of an index can only be found by these.
+    """
+    for number, formula in enumerate(formulas):
+        equal = equal_letters(formula)
+        if equal:
+            common = {name for name in equal if "_" not in name}
+            before = tuple(one for one in formulas[:number] if common.isdisjoint(one.words))
+            if any(one.subject in QUANTITIES for one in before):
+                yield before
+            return
 
 
 def _examples(text: str, statements: Translated) -> Iterator[Formulas]:
