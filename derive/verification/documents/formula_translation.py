@@ -166,7 +166,8 @@ class FormulaTranslator:
         return is_time and isinstance(base, Letter) and self.name(base) in self.notation.times
 
     def _power(self, base: Node, exponent: Node) -> FormulaText:
-        if isinstance(base, Application) and not self._is_function(base):
+        is_enclosed = isinstance(base, Application) and base.span[0] < base.head.span[0]
+        if isinstance(base, Application) and not (is_enclosed or self._is_function(base)):
             power = Power(_in_brackets(base), exponent, (base.head.span[1], base.span[1]))
             return self._product([base.head, power])
         inverse = isinstance(exponent, Sum) and len(exponent.terms) == 1 and exponent.terms[0]
@@ -274,9 +275,12 @@ def _is_of_time(argument: Node) -> bool:
 
 def _in_brackets(node: Application) -> Node:
     """The contents of the brackets behind a letter: an expression, or a column of several."""
+    span = (node.head.span[1], node.span[1])
     if len(node.arguments) == 1:
-        return node.arguments[0]
-    return Tuple(node.arguments, (node.head.span[1], node.span[1]))
+        (one,) = node.arguments
+        # a power of m(l(x)) is not one of x alone
+        return replace(one, span=span) if isinstance(one, Application) else one
+    return Tuple(node.arguments, span)
 
 
 def _whole(node: Node | None, default: int) -> int:

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from derive.reading.latex.tree import (
     Application,
+    Derivative,
     Letter,
     Matrix,
     Node,
@@ -161,11 +162,18 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     twice = {letter.name for letter in everything if letter.primes == 2}
     both = (dotted & twice) - marked
     indices = [int(one.index) for one in everything if one.index.isdecimal() and one.name in dotted]
+    # letters that move, or by which a function is differentiated, are its arguments
+    varied: dict[str, set[str]] = {}
+    for node in (one for tree in trees for one in nodes(tree)):
+        if isinstance(node, Derivative) and isinstance(node.operand, Letter):
+            names = {one.name for one in node.variables if isinstance(one, Letter)}
+            varied.setdefault(plain.name(node.operand), {*dotted}).update(names)
     functions = {
-        plain.name(node.head)
+        name
         for tree in trees
         for node in nodes(tree)
-        if isinstance(node, Application) and _are_arguments(node.arguments, dotted)
+        if isinstance(node, Application)
+        and _are_arguments(node.arguments, varied.get(name := plain.name(node.head), dotted))
     }
     of_letters = {
         plain.name(node.head)

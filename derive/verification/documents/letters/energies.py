@@ -222,6 +222,10 @@ def stated_values(
         return sp.Add(*(value.diff(one) * v for one, v in pairs), value.diff(TIME))
 
     namespace: dict[str, Any] = {**FUNCTIONS, **symbols, "t": TIME, "ddt": rate}
+    namespace["transpose"] = lambda matrix: matrix.T
+    if letters.column and {*letters.ordered} <= {*symbols}:
+        rates = [velocity(symbols[q]) for q in letters.ordered]
+        namespace[f"{letters.column}_dot"] = sp.ImmutableDenseMatrix(rates)
     for q in {*letters.coordinates} & {*symbols}:
         one = symbols[q]
         namespace |= {f"{q}_dot": velocity(one), f"{q}_ddot": acceleration(one)}
@@ -240,6 +244,8 @@ def stated_values(
                     value = parse(text, namespace)
                 except (ExpressionError, NotImplementedError, TypeError, ValueError):
                     continue
+                if isinstance(value, sp.MatrixBase) and kind and value.shape == (1, 1):
+                    value = value[0]
                 namespace.setdefault(name, value)
                 with suppress(ValueError, AttributeError):
                     namespace.setdefault(f"{name}_dot", rate(value))

@@ -108,7 +108,8 @@ def letters_of(
         and not one.endswith("_column")
     ]
     quantities |= _partners(formulas, quantities, moving)
-    generic = _generic(formulas, derivatives) | _columns(formulas, moving, matrices)
+    columns = _columns(formulas, moving, matrices)
+    generic = _generic(formulas, derivatives) | columns
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
     for one in stems:
@@ -132,7 +133,7 @@ def letters_of(
     parameters = [
         one
         for one in stems
-        if one not in known and not GENERIC.match(one) and not one.endswith("_column")
+        if one not in {*known, *columns} and not GENERIC.match(one) and not one.endswith("_column")
     ]
     abbreviations = _abbreviations(stems, coordinates)
     used = {*abbreviations, *matrices_by_entries(stems)}
@@ -218,7 +219,7 @@ def _columns(
     """Names such as x that stand for a column of x_1, x_2 ... beside a matrix alone: M*x_ddot."""
     columns = {name for name in moving if f"{name}_1" in moving}
     for formula in formulas:
-        if matrices.keys().isdisjoint(formula.words):
+        if matrices.keys().isdisjoint(formula.words) and "[[" not in formula.text:
             columns -= {stem(word) for word in formula.words}
     return columns
 
@@ -278,10 +279,11 @@ def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
 def _is_effective(name: str, formulas: Sequence[DocumentFormula]) -> bool:
     """Whether a potential energy contains a constant of the motion, as c of r**2*phi_dot = c."""
     own = {word for one in formulas if one.subject == name for word in one.words} - {name}
+    own -= {stem(word) for one in formulas for word in one.words if order(word)}
     for formula in formulas:
         first, last = formula.sides[0].text, formula.sides[-1].text
         for one, other in ((first, last), (last, first)):
-            is_constant = one in own and not order(one) and not other.isidentifier()
+            is_constant = one in own and not other.isidentifier()
             orders = {order(word) for word in {*_words(other)} - {one}}
             if is_constant and formula.relations == ("=",) and max(orders, default=0) == 1:
                 return True

@@ -91,6 +91,14 @@ class Letters:
     multipliers: tuple[str, ...] = ()  # parameters that can be multipliers of constraints
     constraints: tuple[StatedConstraint, ...] = ()
 
+    @property
+    def column(self) -> str:
+        """The name q of the column of coordinates q_1, q_2 ..., or "" of others."""
+        names = {name.partition("_")[0] for name in self.ordered}
+        name = names.pop() if len(names) == 1 else ""
+        numbered = [f"{name}_{k + 1}" for k in range(len(self.ordered))]
+        return name if [*self.ordered] == numbered and name not in self.parameters else ""
+
     def hinted(self, kinds: Mapping[str, str]) -> Self:
         """The letters with given kinds of parameters."""
         return replace(self, kinds=kinds)

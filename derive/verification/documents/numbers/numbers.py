@@ -48,6 +48,10 @@ class Numbers:
         for q, place in self._motions.places.items():
             speed, acceleration = self._motions.speeds[q], self._motions.accelerations[q]
             self.set_rates(q, Jet.of(place, speed, acceleration))
+        if letters.column and {*letters.ordered} <= {*self._motions.places}:
+            for ending in RATES[:3]:
+                rows = [[self.values[q + ending]] for q in letters.ordered]
+                self.values[letters.column + ending] = np.array(rows, dtype=object)
         self.parameters = tuple(self._motions.parameters)
         self.reactions = tuple(self._motions.reactions)
         for name, force in {**self._motions.reactions, **self._motions.multipliers}.items():

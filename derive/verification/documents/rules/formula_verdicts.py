@@ -125,8 +125,12 @@ class Judge:
                 if (definition := self._positions.opposite(formula.subject)) is not None:
                     return plain("context", formula, opposed(definition.occurrence.line))
                 return self._first_side(formula) or result
-        if unknown:
+        inner = {*self._unknown([formula.sides[0], formula.sides[-1]])}
+        if unknown and ({*unknown} & inner or len(known) < 1 or "~" in formula.relations):
             return self._not_understood(formula, unknown)
+        if unknown:  # of a step between
+            note = f"the side with {', '.join(unknown)} is not judged"
+            results.append(plain("verified", formula, note))
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
@@ -210,15 +214,12 @@ class Judge:
             value = self._namespace.value(last)
         except ExpressionError:
             return False
-        others = [side.text for side in formula.sides[:-1]]
-        return (
-            not isinstance(value, sp.MatrixBase)
-            and value.is_number
-            and all(
-                isinstance(names.get(one), sp.Symbol)
-                or (one in self._namespace.defining and depends_on(names[one], moving))
-                for one in others
-            )
+        sides = formula.sides[:-1]
+        entries = [one.text for side in sides for one in side.entries or (side,)]
+        return not value.free_symbols and all(
+            isinstance(names.get(one), sp.Symbol)
+            or (one in self._namespace.defining and depends_on(names[one], moving))
+            for one in entries
         )
 
     def _has_numbers(self, side: FormulaText) -> bool:

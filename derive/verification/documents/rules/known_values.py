@@ -152,6 +152,9 @@ class DocumentNamespace:
         for name, value in composed(words, self.all_names, len(order)):
             self.composed.add(name)
             self._add(name, value)
+        column = self.letters.column
+        if column and column not in self.all_names and len(order) == len(self.letters.ordered):
+            self._add(column, sp.ImmutableDenseMatrix(order))
         for name in words:
             one = stem(name)
             if one.endswith("_column") and name == f"{one}_ddot" and one not in self.names:
