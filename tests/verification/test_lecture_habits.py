@@ -136,3 +136,22 @@ def test_the_rate_of_a_state_is_corrected_by_the_equations(tmp_path: Path) -> No
     assert {one.verdict for one in judged(tmp_path, STATES)} == {"definition", "verified"}
     found = judged(tmp_path, STATES.replace(r"\sin s_2", r"\cos s_2"))
     assert wrong(found) == [r"\dot s_3 = -\frac{f}{m} \sin\left(s_2\right)"]
+
+
+CART = r"""
+$$x_m = s + b\sin\phi$$ $$y_m = -b\cos\phi$$
+$$T = \frac12 (M + m) v^2 + m b v\dot\phi\cos\phi + \frac12 m b^2\dot\phi^2$$
+$$V = -m g b\cos\phi$$
+$$(M + m) a + m b\alpha\cos\phi = F + m b\dot\phi^2\sin\phi \qquad (I)$$
+$$a\cos\phi + b\alpha = -g\sin\phi \qquad (II)$$
+$$\alpha = -\frac{F\cos\phi + m b\dot\phi^2\sin\phi\cos\phi + (M + m) g\sin\phi}
+{b(M + m\sin^2\phi)}$$
+"""
+
+
+def test_rates_can_be_called_v_a_and_alpha_alone(tmp_path: Path) -> None:
+    found = judged(tmp_path, CART)
+    assert len(found) == 7
+    assert {one.verdict for one in found} == {"verified", "definition"}
+    slip = judged(tmp_path, CART.replace(r"+ b\alpha", r"- b\alpha"))
+    assert wrong(slip) == [r"a\cos\phi + b \alpha = -g\sin\phi"]

@@ -26,7 +26,8 @@ from derive.verification.documents.letter_meanings import (
 )
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
-from derive.verification.documents.letters.letter_roles import implied_rates, letters_of
+from derive.verification.documents.letters.implied_rates import implied_rates
+from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.subjects import subjects
 from derive.verification.documents.pages.verdicts_in_place import (
@@ -63,6 +64,8 @@ GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
 
 #: Characters before and after a formula in which its sentence is sought.
 BEFORE, AFTER = 300, 100
+#: The number of an equation beside it.
+LABEL = re.compile(r"\([IVXivx]+\)")
 #: Ends of sentences and of paragraphs.
 END = re.compile(r"[.!?](?=\s)|\n\s*\n\s*\n|\\(?:section|begin\{document\})")
 #: Formulas, in which there are no words.
@@ -155,7 +158,7 @@ def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
             if isinstance(one, Unreadable):
                 if not display.is_inline:
                     unreadable.append(_plain(place, "unreadable", one.reason))
-            elif one.relations or not display.is_inline:
+            elif one.relations or not (display.is_inline or LABEL.fullmatch(place.source)):
                 occurrences.append(place)
     return _with_differences(_with_lengths(occurrences)), unreadable
 

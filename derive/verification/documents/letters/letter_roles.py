@@ -3,14 +3,12 @@
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import islice, permutations
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
-from derive.reading.latex.tree import Statement
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -30,11 +28,8 @@ from derive.verification.documents.letters.stated_constraints import (
     stated_constraints,
 )
 from derive.verification.documents.statements import (
-    IMPLIED,
     SQUARE,
     DocumentFormula,
-    Occurrence,
-    Translated,
 )
 from derive.verification.documents.text import FormulaText, order, stem
 
@@ -49,7 +44,6 @@ MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: A number, perhaps with a unit.
 NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d+\*[msN]\b.*")
 #: Letters of accelerations of documents without any rate, and of velocities.
-ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
 #: The letter of gravity.
 GRAVITY = "g"
 #: Orders of the rows of a matrix that are tried.
@@ -155,33 +149,6 @@ def equal_letters(formula: DocumentFormula) -> set[str]:
     indexed = {name for name in names if INDEXED.fullmatch(name)}
     is_case = len(indexed) > 1 and len({name.partition("_")[0] for name in names}) == 1
     return names if is_case and {*formula.relations} == {"="} else set()
-
-
-def implied_rates(statements: Translated) -> Translated:
-    """The statements after such that make a letter the rate of a place, as a is in F = m*a.
-
-    These are accelerations of a document without rates, and velocities without places: those of
-    Euler's equations.
-    """
-    letters = letters_of(statements.formulas, statements.derivatives)
-    if letters.quantities or letters.momenta or statements.derivatives:
-        return statements
-    words = Counter(word for one in statements.formulas for word in one.words)
-    if not letters.coordinates:
-        has_mass = bool(letters.of_kind("mass"))
-        names = [name for name in words if ACCELERATION.match(name) and words[name] > 1] * has_mass
-        ending = "_ddot"
-    else:
-        second = {stem(name) for name in words if order(name) > 1}
-        is_first = not any(name for name in second if not name.startswith("omega"))
-        names = [name for name in letters.coordinates if VELOCITY.match(name) and is_first]
-        ending = "_dot"
-    place = Occurrence(IMPLIED, 0, 0, 0, 0, "", Statement((), (), (0, 0)))
-    rates = [
-        DocumentFormula(place, (FormulaText(f"place_{one}{ending}"), FormulaText(one)), ("=",))
-        for one in names
-    ]
-    return replace(statements, formulas=(*rates, *statements.formulas))
 
 
 def _orders(
