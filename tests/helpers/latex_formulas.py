@@ -171,6 +171,8 @@ BRACKETS = r"""
 |a||b|  ⟶  |a| |b|
 |a + |b||  ⟶  |(a + |b|)|
 \|\vec r\|^3  ⟶  |bold r|^3
+x = 2 a \cdots (3b)  ⟶  x = 2 a
+\bar r \times \bar v  ⟶  cross(<rbar, vbar>)
 \vec r \times m\vec v  ⟶  cross(<bold r, m bold v>)
 3\hat x \times (2\hat y)  ⟶  3 cross(<xhat, 2 yhat>)
 \lvert x\rvert  ⟶  |x|

@@ -155,3 +155,36 @@ def test_rates_can_be_called_v_a_and_alpha_alone(tmp_path: Path) -> None:
     assert {one.verdict for one in found} == {"verified", "definition"}
     slip = judged(tmp_path, CART.replace(r"+ b\alpha", r"- b\alpha"))
     assert wrong(slip) == [r"a\cos\phi + b \alpha = -g\sin\phi"]
+
+
+GLIDER = r"""
+$$\ddot y = -\frac{f}{m}\sin\beta$$ $$\ddot\beta = \frac{\tau}{J}$$
+$$w := \dot\beta$$ $$u := \dot y$$ $$\dot y = u$$ $$\dot\beta = w$$
+$$\dot u = -\frac{f}{m}\sin\beta$$ $$\dot w = \frac{\tau}{J}$$
+"""
+
+
+def test_a_rate_by_its_letter_can_lack_a_dot(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, GLIDER)} <= CORRECT
+    assert wrong(judged(tmp_path, GLIDER.replace(r"$$\dot\beta = w$$", r"$$\beta = w$$"))) == [
+        r"\dot\beta = w"
+    ]
+
+
+ROTOR = r"""
+$$T = \frac12 A\dot\alpha^2 + \frac12 B(\dot\alpha + \dot\gamma)^2$$ $$V = c\cos\alpha$$
+The forces are $$Q_\gamma = N - d\dot\gamma$$ $$Q_\alpha = -e\dot\alpha$$
+$$B(\ddot\alpha + \ddot\gamma) = N - d\dot\gamma$$
+$$A\ddot\alpha + B(\ddot\alpha + \ddot\gamma) - c\sin\alpha = -e\dot\alpha$$
+$$A\ddot\alpha = c\sin\alpha - N + d\dot\gamma - e\dot\alpha$$
+"""
+
+
+def test_generalized_forces_can_be_defined(tmp_path: Path) -> None:
+    found = judged(tmp_path, ROTOR)
+    assert [(one.verdict, one.note.startswith("with")) for one in found[4:]] == [
+        ("verified", False)
+    ] * 3
+    slip = judged(tmp_path, ROTOR.replace(r"- N + d\dot\gamma - e", r"- N - d\dot\gamma - e"))
+    assert wrong(slip) == [r"A\ddot\alpha = c\sin\alpha - N + d \dot\gamma - e\dot\alpha"]
+    assert not wrong(judged(tmp_path, ROTOR.replace(r"Q_\gamma = N - d", r"Q_\gamma = N + d")))

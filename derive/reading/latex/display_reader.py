@@ -21,6 +21,7 @@ Implicit products, and functions without brackets, are read by these rules:
 The span of an expression in brackets includes the brackets.
 """
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
@@ -30,6 +31,7 @@ from typing import Any
 from derive.reading.latex.grammar.build import Build
 from derive.reading.latex.grammar.terminals import Terminals
 from derive.reading.latex.grammar.written_nodes import Symbol
+from derive.reading.latex.layout.latex_symbols import ELLIPSES
 from derive.reading.latex.layout.layout_removal import Layout
 from derive.reading.latex.layout.macro_expansion import expanded
 from derive.reading.latex.layout.macros import Macro, macros_of
@@ -45,6 +47,8 @@ __all__ = ["Macro", "formulas", "macros_of"]
 MAX_LENGTH = 100_000
 #: Nodes within nodes.
 MAX_TREE_DEPTH = 200
+#: The number of an equation.
+NUMBER = re.compile(r"\(\d+[a-z]?\(")  # a bracket that closes has the text of the other
 
 
 def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | Unreadable]:
@@ -88,7 +92,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
 
 def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
     """A statement without its unreadable sides, and these."""
-    tokens = _without_label(tokens)
+    tokens = _without_number(_without_label(tokens))
     sides, relations = _sides(tokens)
     whole = _span(tokens, (0, len(latex)))
     nodes: list[Node] = []
@@ -119,6 +123,15 @@ def _without_label(tokens: list[Token]) -> list[Token]:
     colons = [at for at in whole if tokens[at].kind == "relation" and tokens[at].text == ":"]
     behind = [tokens[at].text for at in whole if colons and at > colons[0]]
     return tokens[colons[0] + 1 :] if len(colons) == 1 and "=" in behind else tokens
+
+
+def _without_number(tokens: list[Token]) -> list[Token]:
+    r"""The tokens before dots that lead to the number of an equation: ``\cdots (2a)``."""
+    dots = [at for at, token in enumerate(tokens) if token.text in ELLIPSES]
+    if not dots:
+        return tokens
+    behind = "".join(token.text for token in tokens[dots[-1] + 1 :])
+    return tokens[: dots[-1]] if NUMBER.fullmatch(behind.replace(" ", "")) else tokens
 
 
 def _sides(tokens: list[Token]) -> tuple[list[list[Token]], list[str]]:

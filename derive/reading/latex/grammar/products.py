@@ -87,9 +87,9 @@ def _is_variation(part: Part) -> bool:
 
 
 def _is_marked(part: Part) -> bool:
-    """Whether a part is a letter in bold, or with a hat."""
+    """Whether a part is a letter in bold, or with a hat or a bar."""
     letter = part.value if isinstance(part, Symbol) else part
-    return isinstance(letter, Letter) and (letter.is_bold or letter.name.endswith("hat"))
+    return isinstance(letter, Letter) and (letter.is_bold or letter.name.endswith(("hat", "bar")))
 
 
 def _is_vector(part: Part) -> bool:

@@ -60,6 +60,7 @@ def systems_of_energies(
     symbols = letter_symbols(letters)
     q = [symbols[name] for name in letters.coordinates]
     known: set[tuple[sp.Expr, sp.Expr]] = set()
+    _, values = stated_values(letters, formulas, symbols)
     for T, V, numbers in stated_energies(letters, formulas, symbols):
         moving = [one for one in q if T.has(velocity(one))]
         form = _quadratic_form(T, moving)
@@ -76,9 +77,25 @@ def systems_of_energies(
         known.add(pair)
         title = "The system of the stated energies"
         damping = stated_dissipation(letters, formulas, symbols)
-        forces = [-damping.diff(velocity(one)) for one in moving]
-        if system := stated_system(STATED, title, letters, moving, matrix, V - rest, forces):
-            yield system, numbers
+        friction = [-damping.diff(velocity(one)) for one in moving]
+        applied = stated_forces(formulas, values, moving)
+        for loads in [applied, [sp.S.Zero] * len(moving)] if any(applied) else [applied]:
+            forces = [sp.Add(*pair) for pair in zip(friction, loads, strict=True)]
+            if system := stated_system(STATED, title, letters, moving, matrix, V - rest, forces):
+                yield system, numbers
+
+
+def stated_forces(
+    formulas: Sequence[DocumentFormula], values: Mapping[str, Value], q: Sequence[sp.Symbol]
+) -> list[sp.Expr]:
+    """The generalized forces that a document defines, such as Q_theta = M - d*theta_dot."""
+    subjects = {one.subject for one in formulas}
+    names = [f"Q_{one.name}" for one in q]
+    own = [values.get(name, sp.S.Zero) if name in subjects else sp.S.Zero for name in names]
+    known = {*q, *map(velocity, q), *(one for one in values.values() if isinstance(one, sp.Symbol))}
+    return [
+        one if isinstance(one, sp.Expr) and one.free_symbols <= known else sp.S.Zero for one in own
+    ]
 
 
 def stated_dissipation(

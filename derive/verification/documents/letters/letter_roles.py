@@ -332,6 +332,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
     """Names that a formula in others defines, but for solutions such as theta = a*cos(omega*t)."""
     defined = set()
     mechanical = _mechanical(formulas, orders)
+    equal = [{side.text for side in one.sides} for one in formulas]
     for formula in formulas:
         name = formula.subject
         others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
@@ -340,6 +341,8 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         is_solution = orders.get(name) and not moves
         # x = p_x/m has lost a dot: no coordinate is defined by its own momentum
         lost_dot = orders.get(name) and any(_coordinate(one, [name]) for one in others)
+        # so has phi = w beside phi_dot = w
+        lost_dot = lost_dot or any({f"{name}_dot", one} in equal for one in others)
         last = formula.sides[-1]
         if NUMBER.fullmatch(last.text):  # a value, such as m = l = 1
             continue

@@ -279,7 +279,8 @@ def _adds_letters(
 
     Of a system that equations state, these are all letters.
     """
-    added = {w for one in result.verdict.corrections for w in WORD.findall(one.correct)}
+    terms = [one for one in result.verdict.corrections if one.correct != f"{one.wrong}_dot"]
+    added = {w for one in terms for w in WORD.findall(one.correct)}  # but for a lost dot
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
     return bool(
         (added - {*formula.words, *FUNCTIONS}) & (added if candidate.is_of_equations else loads)

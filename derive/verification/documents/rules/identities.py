@@ -25,7 +25,7 @@ AXES = {"i": 0, "imath": 0, "x": 0, "j": 1, "jmath": 1, "y": 1, "k": 2, "z": 2}
 #: A component of a vector, such as v_theta.
 COMPONENT = re.compile(r"(\w+)_([a-zA-Z]+)\Z")
 #: Vectors that are rates of others.
-RATE_OF = {"v_column": "r_column", "a_column": "v_column"}
+RATE_OF = {"v_column": "r_column", "a_column": "v_column", "vbar": "rbar", "abar": "vbar"}
 #: What cannot be computed.
 ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, IndexError)
 
