@@ -188,3 +188,17 @@ def test_generalized_forces_can_be_defined(tmp_path: Path) -> None:
     slip = judged(tmp_path, ROTOR.replace(r"- N + d\dot\gamma - e", r"- N - d\dot\gamma - e"))
     assert wrong(slip) == [r"A\ddot\alpha = c\sin\alpha - N + d \dot\gamma - e\dot\alpha"]
     assert not wrong(judged(tmp_path, ROTOR.replace(r"Q_\gamma = N - d", r"Q_\gamma = N + d")))
+
+
+HOOP = r"""
+$$T = \frac12 m a^2\dot\theta^2 + \frac12 m a^2 w^2\sin^2\theta$$ $$V = -m g a\cos\theta$$
+$$L = \frac12 m a^2\dot\theta^2 + \frac12 m a^2 w^2\sin^2\theta + m g a\cos\theta$$
+$$\ddot\theta = \sin\theta\,(w^2\cos\theta - \frac{g}{a})$$
+It rests where $\sin\theta = 0$ or $\cos\theta = g/(a w^2)$.
+"""
+
+
+def test_an_equilibrium_is_a_place(tmp_path: Path) -> None:
+    found = judged(tmp_path, HOOP)
+    assert not wrong(found)
+    assert [one.verdict for one in found[-2:]] == ["context"] * 2

@@ -179,3 +179,15 @@ def test_a_slip_of_an_index_is_found_before_a_case_of_equal_parameters(tmp_path:
     assert [one.latex for one in found if one.verdict == "wrong"] == [
         r"m_2\ddot y_2 = -c_1 (y_2 - y_1)^3"
     ]
+
+
+def test_equal_parameters_need_no_mass_in_the_equations(tmp_path: Path) -> None:
+    text = r"""$$x_1 = a_1\sin\phi_1$$ $$y_1 = -a_1\cos\phi_1$$
+$$x_2 = a_1\sin\phi_1 + a_2\sin\phi_2$$ $$y_2 = -a_1\cos\phi_1 - a_2\cos\phi_2$$
+$$V = -(m_1 + m_2) g a_1\cos\phi_1 - m_2 g a_2\cos\phi_2$$
+$$(m_1 + m_2) a_1\ddot\phi_1 + m_2 a_2\ddot\phi_2\cos(\phi_1 - \phi_2)
+ + m_2 a_2\dot\phi_2^2\sin(\phi_1 - \phi_2) + (m_1 + m_2) g\sin\phi_1 = 0$$
+With $m_1 = m_2 = m$ and $a_1 = a_2 = a$ this is
+$$2 a\ddot\phi_1 + a\ddot\phi_2\cos(\phi_1 - \phi_2) + a\dot\phi_2^2\sin(\phi_1 - \phi_2)
+ + 2 g\sin\phi_1 = 0$$"""
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]

@@ -350,6 +350,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
             continue
         # m_2 = h*f(t, w) is about another quantity with the name of a mass
         is_foreign = name in mechanical and not moves and not others <= mechanical
+        is_foreign &= not equal_letters(formula)
         if (
             name
             and not order(name)

@@ -37,7 +37,7 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
 )
-from derive.verification.documents.text import FormulaText
+from derive.verification.documents.text import FormulaText, order
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
 from derive.verification.judging.verdict import Correction
@@ -124,6 +124,8 @@ class Judge:
             if result.verdict.verdict not in CORRECT:
                 if (definition := self._positions.opposite(formula.subject)) is not None:
                     return plain("context", formula, opposed(definition.occurrence.line))
+                if self._is_place(formula):
+                    return plain("context", formula, "it states a value")
                 return self._first_side(formula) or result
         inner = {*self._unknown([formula.sides[0], formula.sides[-1]])}
         if unknown and ({*unknown} & inner or len(known) < 1 or "~" in formula.relations):
@@ -221,6 +223,18 @@ class Judge:
             or (one in self._namespace.defining and depends_on(names[one], moving))
             for one in entries
         )
+
+    def _is_place(self, formula: DocumentFormula) -> bool:
+        """Whether a formula can state a place, as cos θ = g/(ω² a): it has no other quantities."""
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        known = {*system.q, *system.params}
+        values = [
+            (value in known or (value in system.qdot and not order(word)), value)
+            for word in formula.words  # a constant rate can have a letter
+            if isinstance(value := names.get(word), sp.Expr)
+        ]
+        is_relation = not all(side.text.isidentifier() for side in formula.sides)
+        return is_relation and all(k for k, _ in values) and any(v in system.q for _, v in values)
 
     def _has_numbers(self, side: FormulaText) -> bool:
         """Whether a side has the numbers of an example, perhaps with units, in place of letters."""
