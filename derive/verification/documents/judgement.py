@@ -26,10 +26,9 @@ from derive.verification.documents.letter_meanings import (
 )
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
-from derive.verification.documents.letters.implied_rates import implied_rates
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.letters.subjects import subjects
+from derive.verification.documents.letters.subjects import implied_rates, subjects
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,

@@ -1,17 +1,34 @@
-"""The subjects of a document: its examples with energies of their own, and cases of positions."""
+"""The subjects of a document, and rates by letters alone: what precedes the meaning of letters.
 
-from collections.abc import Iterator, Sequence
+Subjects are examples with energies of their own, and cases of positions. Rates without dots are v
+and a of a place, and those of Euler's equations.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from itertools import takewhile
 
 from derive.reading.headings import below_each
+from derive.reading.latex.tree import Statement
 from derive.verification.documents.letters.letter_roles import equal_letters, letters_of
-from derive.verification.documents.letters.letters import QUANTITIES
+from derive.verification.documents.letters.letters import ANGLES, QUANTITIES, Letters
 from derive.verification.documents.letters.stated_positions import POINT
-from derive.verification.documents.statements import WORD, DocumentFormula, Translated
-from derive.verification.documents.text import stem
+from derive.verification.documents.statements import (
+    IMPLIED,
+    WORD,
+    DocumentFormula,
+    Occurrence,
+    Translated,
+)
+from derive.verification.documents.text import FormulaText, order, stem
 
 #: Most cases of a document with positions of their own.
 MAX_CASES = 6
+#: Letters of accelerations and of velocities, of velocities along a line, and of places.
+ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
+SPEEDS, PLACES = ("v", "u"), ("s", "x", "y", "z", "X", "Y")
 
 Formulas = tuple[DocumentFormula, ...]
 
@@ -87,3 +104,56 @@ def _cases(formulas: Sequence[DocumentFormula]) -> list[Formulas]:
     has_energies = all(any(one.subject in QUANTITIES for one in case) for case in cases)
     are_cases = has_energies and len(cases) <= MAX_CASES
     return [tuple(case) for case in cases] if are_cases else [tuple(formulas)]
+
+
+def implied_rates(statements: Translated) -> Translated:
+    """The statements after such that make a letter the rate of a place, as a is in F = m*a.
+
+    These are accelerations of a document without rates, and velocities without places: those of
+    Euler's equations. Beside energies, they are v, a and alpha alone.
+    """
+    letters = letters_of(statements.formulas, statements.derivatives)
+    if "kinetic_energy" in letters.quantities.values():
+        return _with_rates(statements, _unnamed(letters, statements.formulas))
+    if letters.quantities or letters.momenta or statements.derivatives:
+        return statements
+    words = Counter(word for one in statements.formulas for word in one.words)
+    if not letters.coordinates:
+        has_mass = bool(letters.of_kind("mass"))
+        names = [name for name in words if ACCELERATION.match(name) and words[name] > 1] * has_mass
+        ending = "_ddot"
+    else:
+        second = {stem(name) for name in words if order(name) > 1}
+        is_first = not any(name for name in second if not name.startswith("omega"))
+        names = [name for name in letters.coordinates if VELOCITY.match(name) and is_first]
+        ending = "_dot"
+    return _with_rates(statements, ((f"place_{one}{ending}", one) for one in names))
+
+
+def _with_rates(statements: Translated, pairs: Iterable[tuple[str, str]]) -> Translated:
+    place = Occurrence(IMPLIED, 0, 0, 0, 0, "", Statement((), (), (0, 0)))
+    rates = [
+        DocumentFormula(place, (FormulaText(rate), FormulaText(letter)), ("=",))
+        for rate, letter in pairs
+    ]
+    return replace(statements, formulas=(*rates, *statements.formulas))
+
+
+def _unnamed(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[tuple[str, str]]:
+    """Yield the rates v and a of a place in positions that has no dots, and alpha of an angle."""
+    counts = Counter(word for one in formulas for word in one.words)
+    kinetic, positions = set[str](), set[str]()
+    for one in formulas:
+        if letters.quantities.get(one.subject) == "kinetic_energy":
+            kinetic |= {*one.words}
+        if POINT.match(one.subject):
+            positions |= {*one.words}
+    places = [name for name in PLACES if name in positions and name in letters.parameters]
+    speeds = [name for name in SPEEDS if name in kinetic and name in letters.parameters]
+    angles = [q for q in letters.coordinates if q.partition("_")[0] in ANGLES[:-1]]
+    if len(places) == 1 == len(speeds):
+        yield f"{places[0]}_dot", speeds[0]
+        if counts["a"] > 1:
+            yield f"{places[0]}_ddot", "a"
+        if len(angles) == 1 and counts["alpha"] > 1 and not counts[f"{angles[0]}_ddot"]:
+            yield f"{angles[0]}_ddot", "alpha"
