@@ -116,7 +116,7 @@ def test_no_file_imports_itself() -> None:
 def test_rooms_for_documents_have_few_arrows() -> None:
     row = Folder.of(ROOT / "derive" / "verification" / "documents")
     assert (row.floors, row.files) == (7, 7)
-    assert row.arrows <= 31
+    assert row.arrows <= 35
 
 
 def test_a_circle_through_three_files_is_detected(tmp_path: Path) -> None:

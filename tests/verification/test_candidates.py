@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from derive.system.files.system_catalogue import load
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.numbers.matching import Match
-from derive.verification.documents.text import order, stem
 
 USUAL = SystemCandidate(
     load("single_pendulum"), ("phi",), ((1,),), (0,), {"m": "m", "l": "l", "g": "g"}

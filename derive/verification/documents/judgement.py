@@ -16,7 +16,7 @@ from derive.reading.latex.walking import (
     with_differences,
     with_letters,
 )
-from derive.verification.documents.formula_translation import FormulaTranslator
+from derive.verification.documents.formula_translation import RATES, FormulaTranslator, stem
 from derive.verification.documents.letter_meanings import (
     Work,
     alternatives,
@@ -46,7 +46,6 @@ from derive.verification.documents.statements import (
     Occurrence,
     translated,
 )
-from derive.verification.documents.text import RATES, stem
 from solvers.io.suggestion import did_you_mean
 
 #: Most systems of a section of a document.

@@ -6,15 +6,16 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 
+from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.judges import Judges, Results
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
 from derive.verification.documents.letters.dimensions import inhomogeneous_formula
-from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
 from derive.verification.documents.letters.further_systems import templates
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_roles import letters_of
-from derive.verification.documents.letters.letters import OPERATORS, Letters
+from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_equations import StatedEquations
 from derive.verification.documents.letters.stated_positions import (
     POINT,
@@ -22,20 +23,14 @@ from derive.verification.documents.letters.stated_positions import (
     stated_systems,
 )
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
-from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.consequences import (
     FOLLOWS,
     Contradictions,
-    WithVerdict,
 )
 from derive.verification.documents.rules.corrected_formulas import corrected
-from derive.verification.documents.rules.formula_verdicts import Judge
-from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
-from derive.verification.documents.text import FormulaText, order, stem
-from derive.verification.judging.verdict import Verdict
 
 #: The least part of the comparisons that must hold for a system to be that of a document, unless
 #: so many hold.
@@ -62,13 +57,6 @@ MAX_VERIFIED = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
-#: Verdicts on formulas that are no definitions and hold.
-HOLDING = ("verified", "equivalent")
-#: The note on a formula that holds in other units than the rest of a document.
-OWN_UNITS = "it holds in units in which the other parameters are 1, which nothing states"
-
-Results = Sequence[WithVerdict]
-
 
 @dataclass
 class Work:
@@ -86,71 +74,6 @@ class Work:
         size = sum(len(formula.text) for formula in formulas)
         self.left -= len(tried) * size * len(letters.coordinates)
         return self.left >= 0
-
-
-class Judges:
-    """Judges of a document's formulas by systems that can be meant, and their verdicts."""
-
-    def __init__(self, statements: Translated, letters: Letters) -> None:
-        self.statements, self.letters = statements, letters
-        # by identity, for as long as the candidate exists
-        self._judges: dict[int, tuple[SystemCandidate, Judge]] = {}
-        self._verdicts: dict[int, Results] = {}
-
-    def judge(self, candidate: SystemCandidate) -> Judge:
-        """The judge with the meanings of a candidate."""
-        if id(candidate) not in self._judges:
-            self._judges[id(candidate)] = candidate, self._judge(candidate)
-        return self._judges[id(candidate)][1]
-
-    def _judge(self, candidate: SystemCandidate) -> Judge:
-        statements, formulas = self.statements, self.statements.formulas
-        letters = _with_order(statements, self.letters, candidate)
-        meanings = resolved(candidate, letters, formulas, statements.derivatives)
-        given, stating = (
-            [formulas[number].occurrence for number in numbers]
-            for numbers in (candidate.given, candidate.stating)
-        )
-        namespace = DocumentNamespace(
-            system_letters(candidate), letters, formulas, statements.derivatives, meanings
-        )
-        return Judge(namespace, given, stating)
-
-    def verdicts(self, candidate: SystemCandidate) -> Results:
-        """The verdicts on all formulas."""
-        if id(candidate) not in self._verdicts:
-            verdicts = self.judge(candidate).verdicts(self.statements.formulas)
-            self._verdicts[id(candidate)] = [*self._in_own_units(candidate, verdicts)]
-        return self._verdicts[id(candidate)]
-
-    def _in_own_units(self, candidate: SystemCandidate, verdicts: Results) -> Iterator[WithVerdict]:
-        """Yield the verdicts; no equation is wrong that holds with 1 for what it does not contain.
-
-        It has no parameter that other formulas contain, as one without dimensions has not.
-        """
-        used = Counter(w for one in self.statements.formulas for w in one.words)
-        for formula, result in verdicts:
-            own = {*formula.words} & {*self.letters.parameters}
-            moving = {*self.letters.coordinates, *self.letters.quantities, *OPERATORS}
-            is_alone = all(used[w] == 1 or stem(w) in moving for w in formula.words)
-            has_acceleration = any(order(word) == 2 for word in formula.words)
-            if result.verdict.verdict == "wrong" and is_alone and has_acceleration:
-                names = {p: one for p, one in candidate.parameters.items() if one in own}
-                others = [p.symbol.name for p in candidate.system.parameters]
-                ones = {name: "1" for name in others if name not in names}
-                units = replace(candidate, parameters=names, numbers=ones)
-                if self._judge(units).verdict(formula).verdict.verdict in HOLDING:
-                    result = plain("context", formula, OWN_UNITS)
-            yield formula, result
-
-    def incorrect(self, candidate: SystemCandidate) -> list[Verdict]:
-        """The verdicts on formulas that are not correct."""
-        verdicts = (one.verdict for _, one in self.verdicts(candidate))
-        return [one for one in verdicts if one.verdict not in CORRECT]
-
-    def count_wrong(self, candidate: SystemCandidate) -> int:
-        """The number of formulas that are wrong."""
-        return [one.verdict for one in self.incorrect(candidate)].count("wrong")
 
 
 @dataclass(frozen=True)
@@ -459,20 +382,6 @@ def general_verdicts(statements: Translated) -> Iterator[tuple[DocumentFormula, 
     for number, formula in enumerate(general):
         if all((number, side.text) in trivial for side in formula.sides[1:]):
             yield formula, plain("verified", formula, "it holds for any motion")
-
-
-def _with_order(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Letters:
-    """The letters in the order of the rows of M with which most formulas hold."""
-    if "mass_matrix" not in letters.quantities.values():
-        return letters
-    formulas, derivatives = statements.formulas, statements.derivatives
-
-    def holding(one: Letters) -> float:
-        matches = best_matches([candidate], one, formulas, derivatives, frozenset())
-        return matches[0].holding if matches else 0
-
-    orders = (letters.ordered, *letters.other_orders)
-    return max((replace(letters, ordered=one) for one in orders), key=holding)
 
 
 #: Most meanings that are judged beside the one that is taken.

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Finding, Program, ProgramEquation
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letter_meanings import (
     alternatives,
     interpretation,
@@ -22,7 +23,6 @@ from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrected_formulas import inserted, source_span
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
-from derive.verification.documents.text import FormulaText
 from derive.verification.judging.verdict import VerdictName
 
 #: Names, numbers and signs of an equation.

@@ -20,11 +20,12 @@ from derive.reading.latex.tree import (
 )
 from derive.reading.latex.walking import has_index, indexed, letters, nodes
 from derive.verification.documents.formula_translation import (
+    FormulaText,
     FormulaTranslator,
     LetterNotation,
     UntranslatableError,
+    stem,
 )
-from derive.verification.documents.text import FormulaText, stem
 
 WORD = re.compile(r"[A-Za-z_]\w*")
 #: The square of a name.

@@ -12,9 +12,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.letters import ANGLES, MATRICES, Letters
 from derive.verification.documents.statements import DocumentFormula
-from derive.verification.documents.text import order, stem
 
 #: The exponent of each letter in a dimension; those of units are names that no letter has.
 Dimension = Mapping[str, Fraction]

@@ -13,11 +13,11 @@ from derive.system.naming import check_name
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
+from derive.verification.documents.formula_translation import RATES
 from derive.verification.documents.letters.candidates import Damped, SystemCandidate
 from derive.verification.documents.letters.letters import KINDS
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.statements import WORD
-from derive.verification.documents.text import RATES
 
 #: Endings of parameters that a document does not name, and of letters that are no valid names.
 UNNAMED, INVALID = "_unnamed", "_letter"

@@ -9,6 +9,7 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
+from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
@@ -31,7 +32,6 @@ from derive.verification.documents.statements import (
     SQUARE,
     DocumentFormula,
 )
-from derive.verification.documents.text import FormulaText, order, stem
 
 #: A letter with a number.
 INDEXED = re.compile(r"[A-Za-z]+_\d+")

@@ -9,8 +9,8 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import RATES
 from derive.verification.documents.statements import WORD, DocumentFormula
-from derive.verification.documents.text import RATES
 
 #: Letters of multipliers, and one that stands for a second of them.
 MULTIPLIER, SECOND = re.compile(r"lambda(?:_\w+)?\Z"), "mu"

@@ -10,6 +10,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
+from derive.verification.documents.formula_translation import order
 from derive.verification.documents.letters.candidates import (
     STATED,
     UNITS,
@@ -26,7 +27,6 @@ from derive.verification.documents.letters.energies import (
 )
 from derive.verification.documents.letters.letters import KINDS, Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
-from derive.verification.documents.text import order
 
 #: Names of Cartesian components.
 AXES = ("x", "y", "z")

@@ -12,6 +12,7 @@ from itertools import takewhile
 
 from derive.reading.headings import below_each
 from derive.reading.latex.tree import Statement
+from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.letter_roles import equal_letters, letters_of
 from derive.verification.documents.letters.letters import ANGLES, QUANTITIES, Letters
 from derive.verification.documents.letters.stated_positions import POINT
@@ -22,7 +23,6 @@ from derive.verification.documents.statements import (
     Occurrence,
     Translated,
 )
-from derive.verification.documents.text import FormulaText, order, stem
 
 #: Most cases of a document with positions of their own.
 MAX_CASES = 6

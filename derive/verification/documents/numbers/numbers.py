@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.verification.documents.formula_translation import RATES, order, stem
 from derive.verification.documents.jets import Array, Jet, UnknownNameError, Value, evaluated
 from derive.verification.documents.letters.letters import MATRICES, Letters
 from derive.verification.documents.numbers.candidate_motions import (
@@ -13,7 +14,6 @@ from derive.verification.documents.numbers.candidate_motions import (
 )
 from derive.verification.documents.numbers.single_mistakes import is_near
 from derive.verification.documents.statements import EQUALITIES, WORD, DocumentFormula, definitions
-from derive.verification.documents.text import RATES, order, stem
 
 #: The largest difference of values of order 1 that counts as none, and digits that show one.
 CLOSE, DIGITS = 1e-7, 6

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
+from derive.verification.documents.formula_translation import RATES
 from derive.verification.documents.jets import UnknownNameError, evaluated
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import OPERATORS, Letters
 from derive.verification.documents.numbers.candidate_motions import CandidateMotions
 from derive.verification.documents.numbers.numbers import Numbers
 from derive.verification.documents.statements import WORD, DocumentFormula
-from derive.verification.documents.text import RATES
 from derive.verification.judging.system_names import FACTORS
 
 #: Unknown letters of a formula that are sought at once, and comparisons that must hold.

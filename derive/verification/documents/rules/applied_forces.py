@@ -5,8 +5,8 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.statements import WORD, DocumentFormula
-from derive.verification.documents.text import FormulaText
 
 
 def without_unknown_terms(

@@ -13,12 +13,12 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import WORD, DocumentFormula
-from derive.verification.documents.text import order, stem
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import time_derivative
 

@@ -12,6 +12,7 @@ from derive.formulas.proofs.zero import vanishes
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import FormulaText, order
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.applied_forces import without_unknown_terms
@@ -37,7 +38,6 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
 )
-from derive.verification.documents.text import FormulaText, order
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
 from derive.verification.judging.verdict import Correction

@@ -13,9 +13,9 @@ from derive.formulas.evaluation.generic_values import is_small
 from derive.formulas.expression import FUNCTIONS, Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import RATES, order, stem
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
-from derive.verification.documents.text import RATES, order, stem
 
 #: Unit vectors of polar coordinates, along r and along an angle.
 UNIT = re.compile(r"(?:(?:e|ehat|u|uhat)_([a-zA-Z]+)|([a-zA-Z]+)hat)(?:_column)?\Z")

@@ -8,11 +8,11 @@ import sympy as sp
 
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError, is_sum, place, summands, syntax_tree
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
-from derive.verification.documents.text import FormulaText
 from derive.verification.judging.verdict import Correction, Verdict
 
 #: The name that stands for a part, and operations of the largest formula that is solved for one.

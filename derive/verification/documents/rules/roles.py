@@ -10,11 +10,11 @@ import sympy as sp
 from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError, place, summands, syntax_tree
 from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import WORD
-from derive.verification.documents.text import FormulaText, order, stem
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import (
     LARGEST_INVERSE,

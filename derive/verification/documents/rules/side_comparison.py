@@ -10,6 +10,7 @@ import sympy as sp
 from derive.formulas.expression import Value
 from derive.formulas.syntax import syntax_tree
 from derive.verification.corrections.source_names import SourceNames
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.rules.derived_matrices import has_scaled_rows
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.matrix_terms import MatrixTerms
@@ -17,7 +18,6 @@ from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
 from derive.verification.documents.statements import WORD, DocumentFormula
-from derive.verification.documents.text import FormulaText
 from derive.verification.judging.engine import UNDECIDED
 from derive.verification.judging.reference_system import depends_on
 from derive.verification.judging.verdict import Correction

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.statements import DocumentFormula
-from derive.verification.documents.text import FormulaText
 from derive.verification.judging.verdict import Verdict
 
 #: Verdicts on formulas that are correct.
