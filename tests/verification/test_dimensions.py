@@ -5,9 +5,24 @@ from pathlib import Path
 import pytest
 
 from derive.reading.document_formats import read_document
+from derive.reading.latex.display_reader import formulas as statements_of
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.dimensions import inhomogeneous_formula
+from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 from derive.verification.documents.rules.consequences import INHOMOGENEOUS
+from derive.verification.documents.statements import Occurrence, translated
+
+
+def inhomogeneous(*formulas: str) -> int | None:
+    places = [
+        Occurrence(number, number, 1, 0, 0, latex, tree)
+        for number, latex in enumerate(formulas)
+        for tree in statements_of(latex)
+    ]
+    read = translated(places)
+    letters = letters_of(read.formulas, read.derivatives)
+    return inhomogeneous_formula(letters, read.formulas, read.derivatives)
 
 
 def judged(folder: Path, *formulas: str) -> list[FormulaVerdict]:
@@ -149,3 +164,46 @@ def test_formulas_without_dimensions_do_not_disturb_those_of_others(
     results = judged(tmp_path, energy, EQUATION, other)
     assert results[0].verdict == "wrong"
     assert "wrong" not in {one.verdict for one in results[1:]}
+
+
+T, V = r"T = \frac{1}{2} m l^2 \dot\theta^2", r"V = - m g l \cos\theta"
+
+
+@pytest.mark.parametrize("formulas", [
+    (T, V, EQUATION),
+    (T, V, r"\ddot\theta = - \sin\theta"),  # in other units
+    (T, V, r"\kappa = \frac{c}{m g l}", r"\ddot\theta = - \sin\theta - \kappa \theta"),
+    (T, V, r"l = 1", r"m = 2", r"\theta = \pi"),
+    (T.replace("m l^2", "K"), V, r"K = m l^2", r"T = \frac{1}{2} K \dot\theta^2"),
+    (r"m l^2 \ddot\theta = - m g l \sin\theta", r"T = 2 \pi \sqrt{\frac{l}{g}}"),  # a period
+    (r"T = \frac{1}{2} m \dot r^2", r"V = - \frac{G M m}{r}", r"m \ddot r = - \frac{G M m}{r^2}"),
+    # either can be the one: c is a letter of both alone
+    (r"m \ddot x = - c x^3", r"E = \frac{1}{2} m \dot x^2 + \frac{1}{2} c x^2"),
+    (r"m \ddot x = - k x", r"p = m \dot x", r"\frac{d p}{d t} = - k x", r"x^2 + y^2 = a^2"),
+    (r"\tanh(a x) = \sqrt{b} y", r"\frac{\partial T}{\partial \dot\theta} = m l^2 \dot\theta", T),
+])  # fmt: skip
+def test_formulas_with_the_same_dimensions_have_no_odd_one(formulas: tuple[str, ...]) -> None:
+    assert inhomogeneous(*formulas) is None
+
+
+@pytest.mark.parametrize(("number", "formulas"), [
+    (0, (T.replace("l^2", "l"), V, EQUATION)),
+    (1, (T, V.replace("m g l", "m l"), EQUATION)),
+    (2, (T, V, EQUATION.replace(r"\ddot", r"\dot"))),
+    (2, (T, V, r"\frac{\partial T}{\partial \dot\theta} = m l \dot\theta")),
+    (2, (T, V, r"\frac{d}{dt}(m l \dot\theta) = - m g l \sin\theta")),
+    (0, (r"x = l \sin(m \theta)", T, V)),
+    (2, (T, V, r"\omega_0 = \sqrt{\frac{l}{g}}")),
+    # by ω alone, by an angle alone, and by a length alone
+    (0, (r"V = - \frac{1}{2} m l^2 \Omega^3 \sin^2\theta", T,
+         r"m l^2 \ddot\theta = m l^2 \Omega^2 \sin\theta \cos\theta")),
+    (0, (r"E = \frac{1}{2} m (\dot r^2 + r^2 \dot\phi^3)", r"m \ddot r = m r \dot\phi^2")),
+    (1, (r"m \ddot x = - m b x", r"\dot x^2 + b x = b")),
+    # of more than one equation the one that the others contradict
+    (0, (r"E = \frac{1}{2} m \dot x^2 + \frac{1}{2} c x^3 + \frac{1}{2} c s^2",
+         r"m \ddot x = - c x", r"m \ddot s = - c s")),
+])  # fmt: skip
+def test_the_odd_one_is_that_whose_dimensions_contradict_all_others(
+    number: int, formulas: tuple[str, ...]
+) -> None:
+    assert inhomogeneous(*formulas) == number

@@ -84,7 +84,7 @@ class _Equations:
                 self._known[name] = {LENGTH: Fraction(1)}
             elif is_coordinate and letter in ANGLES and letter != "q":
                 self._known[name] = ONE
-        for name in letters.of_kind("frequency"):
+        for name in {stem(word) for formula in formulas for word in formula.words}:
             if name.lower().startswith("omega"):
                 self._known[name] = {TIME: Fraction(-1)}
         for name in _energies(letters, formulas):
