@@ -173,10 +173,10 @@ T, V = r"T = \frac{1}{2} m l^2 \dot\theta^2", r"V = - m g l \cos\theta"
     (T, V, EQUATION),
     (T, V, r"\ddot\theta = - \sin\theta"),  # in other units
     (T, V, r"\kappa = \frac{c}{m g l}", r"\ddot\theta = - \sin\theta - \kappa \theta"),
-    (T, V, r"l = 1", r"m = 2", r"\theta = \pi"),
+    (T, V, r"l = 1", EQUATION),
     (T.replace("m l^2", "K"), V, r"K = m l^2", r"T = \frac{1}{2} K \dot\theta^2"),
     (r"m l^2 \ddot\theta = - m g l \sin\theta", r"T = 2 \pi \sqrt{\frac{l}{g}}"),  # a period
-    (r"T = \frac{1}{2} m \dot r^2", r"V = - \frac{G M m}{r}", r"m \ddot r = - \frac{G M m}{r^2}"),
+    (r"T = \frac{1}{2} m \dot r^2", r"V = - \frac{G M m}{r}", r"p = m \dot r"),
     # either can be the one: c is a letter of both alone
     (r"m \ddot x = - c x^3", r"E = \frac{1}{2} m \dot x^2 + \frac{1}{2} c x^2"),
     (r"m \ddot x = - k x", r"p = m \dot x", r"\frac{d p}{d t} = - k x", r"x^2 + y^2 = a^2"),

@@ -7,7 +7,6 @@ letters; others follow from the document.
 """
 
 import ast
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
@@ -172,15 +171,14 @@ class _Equations:
 
 
 def _energies(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[str]:
-    """The names of energies: T can be a period as well, and of two names one an abbreviation."""
-    kinds = Counter(letters.quantities.values())
+    """The names of energies: T can be a period as well, and K an abbreviation."""
     moving = {
         one.subject
         for one in formulas
         if any(word in letters.momenta or order(word) for word in one.words)
     }
     for name, kind in letters.quantities.items():
-        is_energy = kind not in MATRICES.values() and kinds[kind] == 1
+        is_energy = kind not in MATRICES.values()
         if is_energy and (kind == "potential_energy" or name in moving):
             yield name
 
