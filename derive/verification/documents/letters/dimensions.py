@@ -7,7 +7,7 @@ letters; others follow from the document.
 """
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
@@ -86,8 +86,9 @@ class _Equations:
         for name in {stem(word) for formula in formulas for word in formula.words}:
             if name.lower().startswith("omega"):
                 self._known[name] = {TIME: Fraction(-1)}
-        for name in _energies(letters, formulas):
-            self._known[name] = ENERGY
+        for name, kind in letters.quantities.items():
+            if kind not in MATRICES.values():
+                self._known[name] = ENERGY
         self._formulas, self._derivatives = formulas, derivatives
         self._equal: list[Dimension] = []
 
@@ -168,19 +169,6 @@ class _Equations:
             raise _NoDimensionError
         own = self._known.get(stem(name), {stem(name): Fraction(1)})
         return _product(own, {TIME: Fraction(-order(name))})
-
-
-def _energies(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[str]:
-    """The names of energies: T can be a period as well, and K an abbreviation."""
-    moving = {
-        one.subject
-        for one in formulas
-        if any(word in letters.momenta or order(word) for word in one.words)
-    }
-    for name, kind in letters.quantities.items():
-        is_energy = kind not in MATRICES.values()
-        if is_energy and (kind == "potential_energy" or name in moving):
-            yield name
 
 
 def _product(one: Dimension, other: Dimension, exponent: int | Fraction = 1) -> Dimension:
