@@ -138,7 +138,8 @@ def evaluated(text: str, values: Mapping[str, Value]) -> Value:
     with np.errstate(all="ignore"):
         try:
             return _value(_tree(text), values)
-        except (ValueError, TypeError, AttributeError) as error:  # shapes of matrices, or text
+        except (ValueError, TypeError, AttributeError, RecursionError) as error:
+            # shapes of matrices, text, or too many factors
             raise UnknownNameError(str(error)) from error
 
 

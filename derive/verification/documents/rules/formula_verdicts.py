@@ -225,7 +225,10 @@ class Judge:
         )
 
     def _is_place(self, formula: DocumentFormula) -> bool:
-        """Whether a formula can state a place, as cos θ = g/(ω² a): it has no other quantities."""
+        """Whether a formula can state a place, as cos θ = g/(ω² a): it has no other quantities.
+
+        Coordinates with constraints have such relations everywhere.
+        """
         system, names = self._namespace.derivation.system, self._namespace.all_names
         known = {*system.q, *system.params}
         values = [
@@ -234,7 +237,8 @@ class Judge:
             if isinstance(value := names.get(word), sp.Expr)
         ]
         is_relation = not all(side.text.isidentifier() for side in formula.sides)
-        return is_relation and all(k for k, _ in values) and any(v in system.q for _, v in values)
+        has_place = all(k for k, _ in values) and any(v in system.q for _, v in values)
+        return is_relation and has_place and not system.conditions
 
     def _has_numbers(self, side: FormulaText) -> bool:
         """Whether a side has the numbers of an example, perhaps with units, in place of letters."""
