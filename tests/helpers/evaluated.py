@@ -10,7 +10,7 @@ NUMBER = re.compile(r"-?\d+\.\d*(?:e[+-]\d+)?|-?\d+e[+-]\d+")
 
 def shown(value: object) -> str:
     """A value as text, with numbers of six digits; those that are rounding errors are zero."""
-    text = re.sub(r"compiled by \S+", "compiled", repr(value))
+    text = re.sub(r"compiled by (/.*/)?\S+", "compiled", repr(value))  # a path may have spaces
 
     def rounded(match: re.Match[str]) -> str:
         number = float(match[0])
