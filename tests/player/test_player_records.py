@@ -3,7 +3,7 @@
 import json
 
 import numpy as np
-from drawn import described
+from figure_descriptions import described
 from linked_block import block
 from recording import Record
 

@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 
-from drawn import described
+from figure_descriptions import described
 from recording import Record
 
 from solvers.app.modules import load as load_module

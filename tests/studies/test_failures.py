@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from drawn import described
+from figure_descriptions import described
 from recording import Record
 from scipy.integrate import solve_ivp
 

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from drawn import described
+from figure_descriptions import described
 from recording import Record
 
 from solvers.app.modules import load as load_module

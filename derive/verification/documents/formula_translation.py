@@ -92,6 +92,8 @@ RECIPROCALS = {"sec": "cos", "csc": "sin"}
 
 #: Most terms of a sum that is written out.
 MAX_TERMS = 20
+#: Most terms and factors that are read: each is evaluated within the next.
+MAX_SUM, MAX_PRODUCT = 400, 200
 
 
 class UntranslatableError(ValueError):
@@ -182,6 +184,8 @@ class FormulaTranslator:
         assert_never(node)
 
     def _sum(self, terms: Sequence[tuple[int, Node]]) -> FormulaText:
+        if len(terms) > MAX_SUM:
+            raise UntranslatableError(f"a sum of more than {MAX_SUM} terms")
         pieces: list[FormulaText | str] = []
         for sign, term in terms:
             between = "-" if sign < 0 else "+"
@@ -190,6 +194,8 @@ class FormulaTranslator:
         return joined_text(SUM, *pieces)
 
     def _product(self, factors: Sequence[Node]) -> FormulaText:
+        if len(factors) > MAX_PRODUCT:
+            raise UntranslatableError(f"a product of more than {MAX_PRODUCT} factors")
         pieces: list[FormulaText | str] = []
         for factor in self._factors(factors):
             # a quotient behind a factor is one factor: a*(b/c) keeps its parts

@@ -138,8 +138,7 @@ def evaluated(text: str, values: Mapping[str, Value]) -> Value:
     with np.errstate(all="ignore"):
         try:
             return _value(_tree(text), values)
-        except (ValueError, TypeError, AttributeError, RecursionError) as error:
-            # shapes of matrices, text, or too many factors
+        except (ValueError, TypeError, AttributeError) as error:  # shapes of matrices, or text
             raise UnknownNameError(str(error)) from error
 
 

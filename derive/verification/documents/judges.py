@@ -10,9 +10,7 @@ from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import OPERATORS, Letters
 from derive.verification.documents.numbers.matching import best_matches
 from derive.verification.documents.numbers.resolution import resolved
-from derive.verification.documents.rules.consequences import (
-    WithVerdict,
-)
+from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, plain
@@ -68,16 +66,15 @@ class Judges:
         It has no parameter that other formulas contain, as one without dimensions has not.
         """
         used = Counter(w for one in self.statements.formulas for w in one.words)
+        common = {*self.letters.coordinates, *self.letters.quantities, *OPERATORS}
         for formula, result in verdicts:
-            own = {*formula.words} & {*self.letters.parameters}
-            moving = {*self.letters.coordinates, *self.letters.quantities, *OPERATORS}
-            is_alone = all(used[w] == 1 or stem(w) in moving for w in formula.words)
+            is_alone = all(used[w] == 1 or stem(w) in common for w in formula.words)
             has_acceleration = any(order(word) == 2 for word in formula.words)
             if result.verdict.verdict == "wrong" and is_alone and has_acceleration:
-                names = {p: one for p, one in candidate.parameters.items() if one in own}
-                others = [p.symbol.name for p in candidate.system.parameters]
-                ones = {name: "1" for name in others if name not in names}
-                units = replace(candidate, parameters=names, numbers=ones)
+                own = {p: one for p, one in candidate.parameters.items() if one in formula.words}
+                names = (one.symbol.name for one in candidate.system.parameters)
+                ones = {name: "1" for name in names if name not in own}
+                units = replace(candidate, parameters=own, numbers=ones)
                 if self._judge(units).verdict(formula).verdict.verdict in HOLDING:
                     result = plain("context", formula, OWN_UNITS)
             yield formula, result

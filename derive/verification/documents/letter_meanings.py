@@ -24,10 +24,7 @@ from derive.verification.documents.letters.stated_positions import (
 )
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
-from derive.verification.documents.rules.consequences import (
-    FOLLOWS,
-    Contradictions,
-)
+from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated

@@ -103,7 +103,7 @@ class _Equations:
                 trees = [syntax_tree(side.text) for side in formula.sides]
                 if not any(isinstance(one, ast.Constant) and one.value for one in trees):
                     self._sum(trees)
-            except (_NoDimensionError, ExpressionError, RecursionError):
+            except (_NoDimensionError, ExpressionError):
                 continue
             if self._equal:
                 result[number] = self._equal

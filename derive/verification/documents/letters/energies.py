@@ -60,8 +60,9 @@ def systems_of_energies(
     symbols = letter_symbols(letters)
     q = [symbols[name] for name in letters.coordinates]
     known: set[tuple[sp.Expr, sp.Expr]] = set()
-    _, values = stated_values(letters, formulas, symbols)
-    for T, V, numbers in stated_energies(letters, formulas, symbols):
+    stated, values = stated_values(letters, formulas, symbols)
+    damping = stated_dissipation(letters, formulas, values)
+    for T, V, numbers in stated_energies(letters, formulas, stated, values):
         moving = [one for one in q if T.has(velocity(one))]
         form = _quadratic_form(T, moving)
         accelerated = {symbols[name] for name in letters.accelerated}
@@ -76,7 +77,6 @@ def systems_of_energies(
             continue
         known.add(pair)
         title = "The system of the stated energies"
-        damping = stated_dissipation(letters, formulas, symbols)
         friction = [-damping.diff(velocity(one)) for one in moving]
         applied = stated_forces(formulas, values, moving)
         for loads in [applied, [sp.S.Zero] * len(moving)] if any(applied) else [applied]:
@@ -99,14 +99,13 @@ def stated_forces(
 
 
 def stated_dissipation(
-    letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
+    letters: Letters, formulas: Sequence[DocumentFormula], values: Mapping[str, Value]
 ) -> sp.Expr:
     """Rayleigh's function of a document, 0 if there is none: a quadratic form of velocities.
 
     Its sentence names it, or an equation contains its derivative by a velocity.
     """
-    _, values = stated_values(letters, formulas, symbols)
-    rates = [velocity(symbols[q]) for q in letters.coordinates if q in symbols]
+    rates = [velocity(values[q]) for q in letters.coordinates if q in values]
     words = {word for formula in formulas for word in formula.words}
     for formula in formulas:
         name, value = formula.subject, values.get(formula.subject)
@@ -176,7 +175,8 @@ def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentF
     """
     own = {one.name: one for one in (*system.q, *system.params)}
     symbols = {name: own.get(one.name, one) for name, one in letter_symbols(letters).items()}
-    energies = next(stated_energies(letters, formulas, symbols), None)
+    known = stated_values(letters, formulas, symbols)
+    energies = next(stated_energies(letters, formulas, *known), None)
     if energies is None:
         return False
     masses = {symbols[name] for name in letters.of_kind("mass")}
@@ -205,19 +205,24 @@ def letter_symbols(letters: Letters) -> dict[str, sp.Symbol]:
 
 
 def stated_energies(
-    letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    stated: Stated,
+    values: Mapping[str, Value],
 ) -> Iterator[Energies]:
-    """Yield kinetic and potential energies that the document states, or that follow from others."""
-    stated, names = stated_values(letters, formulas, symbols)
+    """Yield kinetic and potential energies that the document states, or that follow from others.
+
+    `stated` and `values` are those of `stated_values`.
+    """
     kinetic, potential = (stated.get(f"{kind}_energy", ()) for kind in ("kinetic", "potential"))
     for (T, first), (V, second) in product(kinetic, potential):
         yield T, V, frozenset({first, second})
-    at_rest = {velocity(symbols[q]): sp.S.Zero for q in letters.coordinates}
+    at_rest = {velocity(values[q]): sp.S.Zero for q in letters.coordinates}
     for kind, sign in (("lagrangian", -1), ("energy", 1), ("hamiltonian", 1)):
         for value, number in stated.get(kind, ()):
             V = sign * value.xreplace(at_rest)
             yield sp.expand(value - sign * V), V, frozenset({number})
-    yield from energies_of_hamiltonians(letters, formulas, names)
+    yield from energies_of_hamiltonians(letters, formulas, values)
     if not potential:
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
 

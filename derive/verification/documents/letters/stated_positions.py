@@ -51,11 +51,14 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
     if not q or any(symbols[name] not in q for name in letters.accelerated):
         return  # the positions are those of a part of the system
     coordinates = [Coordinate(one, "m", "a coordinate") for one in q]
-    damping = stated_dissipation(letters, formulas, symbols)
+    stated, values = stated_values(letters, formulas, symbols)
+    energies = [V for _, V, _ in stated_energies(letters, formulas, stated, values)]
+    energies += [value for value, _ in stated.get("potential_energy", ())]
+    damping = stated_dissipation(letters, formulas, values)
     friction = [-damping.diff(velocity(one)) for one in q]
     for sign in (1, -1) if gravity is not None else (0,):
         weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[-1] for m in masses))
-        for potential in _potentials(weight, gravity, letters, formulas, symbols):
+        for potential in _potentials(weight, gravity, energies):
             used = sp.Tuple(potential, *friction, *(m.mass for m in masses)).free_symbols
             used |= positions
             parameters = [
@@ -161,18 +164,12 @@ def _masses(
 
 
 def _potentials(
-    weight: sp.Expr,
-    gravity: sp.Symbol | None,
-    letters: Letters,
-    formulas: Sequence[DocumentFormula],
-    symbols: Mapping[str, sp.Symbol],
+    weight: sp.Expr, gravity: sp.Symbol | None, stated: Sequence[sp.Expr]
 ) -> Iterator[sp.Expr]:
     """The weight, and the stated potential energies that contain it and springs."""
     yield weight
     known = [weight]
-    stated, _ = stated_values(letters, formulas, symbols)
-    values = [value for _, value, _ in stated_energies(letters, formulas, symbols)]
-    for value in [*values, *(one for one, _ in stated.get("potential_energy", ()))]:
+    for value in stated:
         rest = sp.expand(value - weight)
         is_new = all(sp.expand(value - one) != 0 for one in known)
         if is_new and (gravity is None or gravity not in rest.free_symbols):

@@ -190,7 +190,7 @@ def weighed(
     independent = sum(FOLLOWS not in one.note for one in wrong)
     is_tie = candidate.is_of_equations and (independent != 1 or holding < 2 or misfits > 0)
     given = _lines(lines[k] for k in candidate.stating)
-    undecided = {id(formula) for formula in _of_friction(results, candidate)}
+    undecided = {*_of_friction(results, candidate)}
     # rates of positions of which nothing in a system of energies or equations shows that they hold
     shown = {w for formula, one in results if one.verdict.verdict == "verified"
              for w in formula.words}  # fmt: skip
@@ -223,7 +223,7 @@ def weighed(
             result = plain("context", formula, note)
         elif verdict.verdict == "wrong" and formula.subject in unused:
             result = plain("context", formula, opposed(unused[formula.subject]))
-        elif verdict.verdict == "wrong" and id(formula) in undecided:
+        elif verdict.verdict == "wrong" and number in undecided:
             result = plain("context", formula, f"it contradicts the stated friction: {UNDECIDED}")
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
@@ -244,12 +244,10 @@ def _is_driven(candidate: SystemCandidate) -> bool:
     return candidate.is_of_equations and candidate.system.potential_energy.has(TIME)
 
 
-def _of_friction(
-    results: Sequence[WithVerdict], candidate: SystemCandidate
-) -> Iterator[DocumentFormula]:
-    """Yield wrong formulas that differ in friction of Rayleigh's function, which can be wrong, too.
+def _of_friction(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[int]:
+    """Yield the numbers of wrong formulas that differ in friction of Rayleigh's function.
 
-    It is right if it leads to other formulas that contain its letters.
+    This can be wrong, too: it is right if it leads to other formulas that contain its letters.
     """
     if candidate.basis not in ("positions", "energies"):
         return
@@ -261,7 +259,7 @@ def _of_friction(
         if one.verdict.verdict in ("verified", "equivalent") and formula.subject not in letters
         for word in formula.words
     }
-    for formula, result in results:
+    for number, (formula, result) in enumerate(results):
         if result.verdict.verdict == "wrong":
             terms = [
                 text for one in result.verdict.corrections for text in (one.wrong, one.correct)
@@ -269,7 +267,7 @@ def _of_friction(
             words = {w for text in terms for w in WORD.findall(text)} or {*formula.words}
             own = words & letters
             if own and not own <= supported:
-                yield formula
+                yield number
 
 
 def _adds_letters(

@@ -211,7 +211,8 @@ class Judge:
         That of a name which the document defines by these is one at a place: θ = 0 beside ωt.
         """
         names, last = self._namespace.all_names, formula.sides[-1].text
-        moving = {TIME, *(system := self._namespace.derivation.system).q, *system.qdot}
+        system = self._namespace.derivation.system
+        moving = {TIME, *system.q, *system.qdot}
         try:
             value = self._namespace.value(last)
         except ExpressionError:
