@@ -1,19 +1,18 @@
 """Formulas that hold but for one term: which of the meanings of letters are still supported."""
 
 import ast
-import re
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, place, summands, syntax_tree
 from derive.verification.documents.jets import Array, Jet, Value
 
 #: The largest relative variation of a ratio that counts as none.
 CONSTANT = 1e-6
 #: Terms of a side that are multiplied out.
 MAX_TERMS = 60
-SWAPPED = {"sin(": "cos(", "cos(": "sin("}
+SWAPPED = {"sin": "cos", "cos": "sin"}
 
 
 def is_near(
@@ -80,10 +79,12 @@ def _variants(
 ) -> Iterator[Array]:
     """The term, and terms that a slip of the pen makes of it."""
     yield own
-    for match in re.finditer(r"\b(sin|cos)\(", text):
-        changed = text[: match.start()] + SWAPPED[match[0]] + text[match.end() :]
-        if isinstance(other := value(changed), Jet):
-            yield other.value
+    for node in ast.walk(syntax_tree(text)):
+        match node:
+            case ast.Call(func=ast.Name(id=name) as function) if name in SWAPPED:
+                start, end = place(text, function)
+                if isinstance(other := value(text[:start] + SWAPPED[name] + text[end:]), Jet):
+                    yield other.value
     for speed in velocities:
         yield own * speed
         yield own / speed

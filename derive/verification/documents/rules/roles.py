@@ -1,5 +1,6 @@
 """Verdicts on a side of a formula by what its first side is: an energy, a momentum, an equation."""
 
+import ast
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -200,9 +201,7 @@ class Roles:
 
 def _rates(text: str) -> Iterator[tuple[int, int]]:
     """The places of operands of d/dt."""
-    for match in re.finditer(r"\bddt\(", text):
-        depth, end = 1, match.end()
-        while depth:
-            depth += {"(": 1, ")": -1}.get(text[end], 0)
-            end += 1
-        yield match.end(), end - 1
+    for node in ast.walk(syntax_tree(text)):
+        match node:
+            case ast.Call(func=ast.Name(id="ddt"), args=[operand]):
+                yield place(text, operand)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.formulas.expression import Value
-from derive.formulas.syntax import syntax_tree
+from derive.formulas.syntax import place, syntax_tree
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.rules.derived_matrices import has_scaled_rows
@@ -100,12 +100,14 @@ class SideComparison:
             return result
         if self._linear.holds(left - right, self._model):
             return plain("verified", formula, small)
-        if isinstance(syntax_tree(side.text), ast.Call) and side.text.startswith("sqrt("):
-            inside = self._roles.value(side.part(5, len(side.text) - 1), "square", left**2)
-            if inside.verdict.verdict in CORRECT:
-                return plain("verified", formula, "it holds for one sign of the root")
-            is_relation = result.kind == "euler_lagrange"
-            result = inside if inside.verdict.corrections and not is_relation else result
+        match syntax_tree(side.text):
+            case ast.Call(func=ast.Name(id="sqrt"), args=[operand]):
+                radicand = side.part(*place(side.text, operand))
+                inside = self._roles.value(radicand, "square", left**2)
+                if inside.verdict.verdict in CORRECT:
+                    return plain("verified", formula, "it holds for one sign of the root")
+                is_relation = result.kind == "euler_lagrange"
+                result = inside if inside.verdict.corrections and not is_relation else result
         if values := self._special_values(formula, first, left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
