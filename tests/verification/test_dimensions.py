@@ -41,6 +41,9 @@ EQUATION = r"m l^2 \ddot\theta = - m g l \sin\theta - c \theta"
     (ENERGY.replace("m g l", "m g"), EQUATION, r"- m g \cos\theta", 0),
     (ENERGY, EQUATION.replace("m l^2", "m l"), r"m l \ddot\theta", 1),
     (ENERGY, EQUATION.replace("m g l", "m m l"), r"- m m l \sin\theta", 1),
+    # a system of which I is the moment of inertia about the pivot has neither formula
+    (r"E = \frac{1}{2} \dot\theta^2 (I + I^2 M) - M g d \cos\theta",
+     r"\ddot\theta (I + d^2 M) = - M g d \sin\theta", "I^2 M", 0),
 ])  # fmt: skip
 def test_of_an_energy_and_its_equation_the_inhomogeneous_one_is_wrong(
     energy: str, equation: str, term: str, number: int, tmp_path: Path
@@ -54,6 +57,16 @@ def test_of_an_energy_and_its_equation_the_inhomogeneous_one_is_wrong(
     pair = [energy, equation]
     pair[number] = results[number].correction
     assert not {one.verdict for one in judged(tmp_path, *pair)} & {"wrong", "context"}
+
+
+def test_a_potential_with_a_square_of_a_sine_is_corrected_in_one_term(tmp_path: Path) -> None:
+    # that of the equation contains cos(2 theta), and differs by a constant
+    kinetic = r"T = \frac{1}{2} m R^2 \dot\theta^2"
+    potential = r"V = - \frac{1}{2} m \Omega^2 R^2 \sin^2\theta - m R \cos\theta"
+    force = r"m \Omega^2 R^2 \sin\theta \cos\theta - m g R \sin\theta"
+    results = judged(tmp_path, kinetic, potential, rf"m R^2 \ddot\theta = {force}")
+    assert [one.verdict for one in results] == ["verified", "wrong", "definition"]
+    assert results[1].wrong_term == r"- m R \cos\theta"
 
 
 @pytest.mark.parametrize("equation", [

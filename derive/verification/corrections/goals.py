@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import sympy as sp
+from sympy.simplify.fu import TR5, TR6
 
 from derive.formulas.budget import is_expandable
 from derive.system.symbols import TIME
@@ -39,10 +40,10 @@ def goals(model: ReferenceSystem, kind: str, name: str, value: sp.Expr) -> Itera
     if not is_expandable(value):
         return
     if kind in UP_TO_A_CONSTANT:
-        own = _constant(value, model)
-        shift = own - _constant(derived, model)
+        pairs = zip(_constants(value, model), _constants(derived, model), strict=True)
         # of a Lagrangian, a constant is rather a wrong term than one that is meant
-        if shift and not (kind == "lagrangian" and own):
+        shifts = [own - other for own, other in pairs if not (kind == "lagrangian" and own)]
+        for shift in dict.fromkeys(filter(None, shifts)):
             yield Goal(derived + shift, False, foreign)
     if kind == "lagrangian":
         factor = sp.cancel(value.diff(system.qdot[0], 2) / model.derivation.mass_matrix[0, 0])
@@ -51,8 +52,13 @@ def goals(model: ReferenceSystem, kind: str, name: str, value: sp.Expr) -> Itera
             yield Goal(factor * derived, False, foreign)
 
 
-def _constant(value: sp.Expr, model: ReferenceSystem) -> sp.Expr:
-    """The terms of a sum that depend on parameters alone."""
+def _constants(value: sp.Expr, model: ReferenceSystem) -> Iterator[sp.Expr]:
+    """The sums of the terms that depend on parameters alone.
+
+    They are those of the value as it stands, and with squares of cosines alone or of sines alone.
+    """
     state = variables(model.derivation.system)
-    terms = sp.Add.make_args(sp.expand(value))
-    return sp.Add(*(term for term in terms if not depends_on(term, state)))
+    simple = value.expand(trig=True)  # without cos(2*q)
+    for form in (value, TR5(simple), TR6(simple)):
+        terms = sp.Add.make_args(sp.expand(form))
+        yield sp.Add(*(term for term in terms if not depends_on(term, state)))

@@ -117,9 +117,12 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
     judges = result.judges
     letters, statements = judges.letters, judges.statements
     known = replace(result.contradictions, inhomogeneous=number)
-    if result.match and _refutes(judges, result.match.candidate, number):
-        disputed = {k: own - {number} for k, own in known.disputed.items() if own - {number}}
-        return replace(result, contradictions=replace(known, disputed=disputed))
+    own = result.match.candidate if result.match else None
+    if own and _refutes(judges, own, number):
+        disputed = {k: them - {number} for k, them in known.disputed.items() if them - {number}}
+        known = replace(known, disputed=disputed)
+        if judges.count_wrong(own) == 1:
+            return replace(result, contradictions=known)
     nothing = replace(statements.formulas[number], sides=(FormulaText("0"),), relations=())
     others = (*statements.formulas[:number], nothing, *statements.formulas[number + 1 :])
     tried = chain.from_iterable(_stated(letters, replace(statements, formulas=others)))
@@ -128,8 +131,8 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
             trivial = frozenset[tuple[int, str]]()
             formulas, derivatives = statements.formulas, statements.derivatives
             match = best_matches([candidate], letters, formulas, derivatives, trivial)
-            own = Contradictions(inhomogeneous=number)
-            return Interpretation(judges, next(iter(match), None), contradictions=own)
+            alone = Contradictions(inhomogeneous=number)
+            return Interpretation(judges, next(iter(match), None), contradictions=alone)
     return replace(result, contradictions=known)
 
 
