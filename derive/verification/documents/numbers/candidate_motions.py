@@ -5,14 +5,14 @@ coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from derive.verification.documents.jets import Array, Jet, Value, evaluated
-from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.candidates import Damped, SystemCandidate
 from derive.verification.documents.letters.document_system import (
     derivation,
     drag,
@@ -262,29 +262,29 @@ class CandidateMotions:
 
     @cached_property
     def _loads(self) -> Array:
+        """Forces and friction that candidates add to their system."""
         loads = np.zeros((*self.shape, len(self._system.q)))
+        alike: dict[tuple[object, ...], list[int]] = {}
         for b, one in enumerate(self._tried):
             if one.forces or one.friction:
-                loads[b] = self._load(b, one)
+                alike.setdefault((one.forces, one.friction), []).append(b)
+        speeds = self._by_order(self.speeds).transpose(0, 2, 1)
+        for rows in alike.values():
+            one = self._tried[rows[0]]
+            for name, i in one.forces:
+                loads[rows, :, i] += self.parameters[name]
+            for name, damped in one.friction:
+                loads[rows] -= self.parameters[name] * self._damped(damped, rows, speeds[rows])
         return loads
 
-    def _load(self, number: int, candidate: SystemCandidate) -> Array:
-        loads = np.zeros((STATES, len(candidate.coordinates)))
-        for name, i in candidate.forces:
-            loads[:, i] += self.parameters[name]
-        if not candidate.friction:
-            return loads
-        speeds = np.stack([_row(self.speeds[q], number) for q in candidate.coordinates], axis=-1)
-        for name, damped in candidate.friction:
-            if isinstance(damped, int):
-                rates = speeds * (np.arange(speeds.shape[-1]) == damped)
-            elif damped == "coordinates":
-                rates = speeds
-            else:
-                matrix = self._mass_matrix if damped == "motion" else self._drag
-                rates = np.einsum("kij,kj->ki", matrix[number], speeds)
-            loads -= self.parameters[name] * rates
-        return loads
+    def _damped(self, damped: Damped, rows: Sequence[int], speeds: Array) -> Array:
+        """What friction is in proportion to, for some of the candidates."""
+        if isinstance(damped, int):
+            return np.asarray(speeds * (np.arange(speeds.shape[-1]) == damped))
+        if damped == "coordinates":
+            return speeds
+        matrix = self._mass_matrix if damped == "motion" else self._drag
+        return np.einsum("bkij,bkj->bki", matrix[rows], speeds)
 
     def _by_order(self, table: Mapping[str, Array]) -> Array:
         """The values of the coordinates of each candidate in its order."""
@@ -302,7 +302,7 @@ class CandidateMotions:
         return result
 
     def _numbers(self, expression: sp.Expr) -> Array:
-        value = evaluated(sp.sstr(expression), self._names).value
+        value = evaluated(_text(expression), self._names).value
         return np.asarray(np.broadcast_to(value, self.shape))
 
     def _parameter(self, candidate: SystemCandidate, name: str, default: float) -> float:
@@ -328,9 +328,10 @@ class CandidateMotions:
         return names
 
 
-def _row(table: Array, candidate: int) -> Array:
-    """The values of a candidate in a table that can be the same for all."""
-    return np.asarray(table[candidate if len(table) > 1 else 0])
+@cache
+def _text(expression: sp.Expr) -> str:
+    """The text of an expression; those of known systems are the same for all documents."""
+    return str(sp.sstr(expression))
 
 
 def _shortest(gradients: Array, residuals: Array) -> Array:
