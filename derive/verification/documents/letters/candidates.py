@@ -190,6 +190,9 @@ def constrained(candidate: SystemCandidate, letters: Letters) -> Iterator[System
     A system with constraints has no others. There is none if a constraint of the document contains
     other coordinates as well.
     """
+    if not (candidate.system.conditions or letters.constraints):
+        yield candidate
+        return
     own = set() if candidate.system.conditions else {*candidate.coordinates}
     stated = tuple(one for one in letters.constraints if one.coordinates & own)
     if not all(one.coordinates <= own for one in stated):
