@@ -1,7 +1,8 @@
 """Documents of any kind as text with displays; nothing that they contain is executed."""
 
 import os
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from importlib import import_module
 from itertools import accumulate
@@ -10,7 +11,6 @@ from pkgutil import iter_modules
 from types import ModuleType
 
 from derive.reading import formats
-from derive.reading.continued_displays import joined
 from derive.reading.document import CodeCell, Display, Document, Kind, Place
 from derive.reading.formats import notebook, tex
 from derive.reading.scanning import Excerpt, UnreadDisplay
@@ -145,4 +145,44 @@ def _display(document: Document, start: int, latex: str, offset: int, excerpt: E
         delimiter=excerpt.delimiter,
         is_inline=excerpt.is_inline,
         cell=cell,
+    )
+
+
+#: Delimiters of displays without an environment of their own.
+DELIMITERS = ("$$", r"\[", r"\\[")
+#: Relations and signs at the end or at the start of a display, which a side must follow or precede.
+RELATION = r"=|\\approx|\\equiv|\\simeq"
+ENDS = re.compile(rf"(?:{RELATION}|(?<![_^])[+-]|\\cdot|\\times)\s*\Z")
+STARTS = re.compile(rf"\s*(?:{RELATION}|\+)")
+#: Text between two displays that are one formula: spaces and tags of a paragraph.
+BETWEEN = re.compile(r"(?:\s|<br\s*/?>|</?p>)*\Z", re.IGNORECASE)
+
+
+def joined(displays: Iterable[Display], text: str) -> Iterator[Display]:
+    """The displays of a text, with those that continue the one before as parts of it."""
+    before: Display | None = None
+    for one in displays:
+        if before and _continues(before, one, text):
+            latex = before.latex
+            if STARTS.match(one.latex):  # the sign is repeated
+                latex = ENDS.sub("", latex)
+            latex = latex.ljust(one.start - before.start) + one.latex
+            before = replace(before, latex=latex, extent=(before.extent[0], one.extent[1]))
+            continue
+        if before:
+            yield before
+        before = one
+    if before:
+        yield before
+
+
+def _continues(before: Display, one: Display, text: str) -> bool:
+    return (
+        before.delimiter in DELIMITERS
+        and before.delimiter == one.delimiter
+        and before.cell == one.cell
+        and not before.is_inline
+        and not one.is_inline
+        and BETWEEN.match(text, before.extent[1], one.extent[0]) is not None
+        and bool(ENDS.search(before.latex) or STARTS.match(one.latex))
     )

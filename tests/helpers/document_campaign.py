@@ -12,8 +12,7 @@ from document_styles import STYLES
 from written_documents import WrittenDocument, written_document
 
 from derive.reading.latex.display_reader import formulas
-from derive.reading.latex.tree import Derivative, Letter, Statement, Sum
-from derive.reading.latex.walking import nodes
+from derive.reading.latex.tree import Derivative, Letter, Statement, Sum, nodes
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 from derive.verification.source_files import judge_file
 from solvers.runge_kutta.order_conditions import order

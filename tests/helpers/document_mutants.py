@@ -15,8 +15,8 @@ from derive.reading.latex.tree import (
     Product,
     Statement,
     Sum,
+    nodes,
 )
-from derive.reading.latex.walking import nodes
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from derive.reading.document import divided
 from derive.reading.document_formats import read_document
-from derive.reading.headings import divided
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 

@@ -33,8 +33,7 @@ from derive.reading.latex.grammar.terminals import Terminals
 from derive.reading.latex.grammar.written_nodes import Symbol
 from derive.reading.latex.layout.latex_symbols import ELLIPSES
 from derive.reading.latex.layout.layout_removal import Layout
-from derive.reading.latex.layout.macro_expansion import expanded
-from derive.reading.latex.layout.macros import Macro, macros_of
+from derive.reading.latex.layout.macros import Macro, expanded, macros_of
 from derive.reading.latex.layout.pairs import inside, pairs
 from derive.reading.latex.layout.rows import flattened, statements
 from derive.reading.latex.layout.spellings import with_new_fonts, with_unicode_scripts

@@ -28,8 +28,10 @@ from derive.reading.latex.tree import (
     Summation,
     Transpose,
     Tuple,
+    indexed,
+    letters,
+    nodes,
 )
-from derive.reading.latex.walking import indexed, letters, nodes
 
 #: Binding strengths: a part that binds less than its place requires is put into brackets.
 SUM, PRODUCT, POWER, ATOM = range(4)

@@ -5,12 +5,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
-from derive.reading.document import Display, Document
-from derive.reading.headings import divided
+from derive.reading.document import Display, Document, divided
 from derive.reading.latex.display_reader import formulas, macros_of
-from derive.reading.latex.tree import Derivative, Letter, Node, Statement, Unreadable
-from derive.reading.latex.walking import (
+from derive.reading.latex.tree import (
     DIFFERENCE,
+    Derivative,
+    Letter,
+    Node,
+    Statement,
+    Unreadable,
     letters,
     nodes,
     with_differences,

@@ -17,8 +17,11 @@ from derive.reading.latex.tree import (
     Statement,
     Tuple,
     Unreadable,
+    has_index,
+    indexed,
+    letters,
+    nodes,
 )
-from derive.reading.latex.walking import has_index, indexed, letters, nodes
 from derive.verification.documents.formula_translation import (
     FormulaText,
     FormulaTranslator,

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from derive.reading.latex.grammar.function_commands import SPELLED, function_at
-from derive.reading.latex.layout.command_arguments import Arguments
 from derive.reading.latex.layout.latex_symbols import (
     ACCENTS,
     BOLD,
@@ -14,6 +13,7 @@ from derive.reading.latex.layout.latex_symbols import (
     LETTERS,
     MARKS,
 )
+from derive.reading.latex.layout.pairs import Arguments
 from derive.reading.latex.layout.tokens import Token, UnreadError
 from derive.reading.latex.tree import Letter
 

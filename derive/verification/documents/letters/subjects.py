@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import takewhile
 
-from derive.reading.headings import below_each
+from derive.reading.document import below_each
 from derive.reading.latex.tree import Statement
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.letter_roles import equal_letters, letters_of
