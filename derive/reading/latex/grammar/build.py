@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from derive.reading.latex.grammar.derivatives import applied, fraction
-from derive.reading.latex.grammar.function_commands import AMBIGUOUS
+from derive.reading.latex.grammar.letter_grammar import AMBIGUOUS
 from derive.reading.latex.grammar.products import divided
 from derive.reading.latex.grammar.written_nodes import (
     Operator,

@@ -3,12 +3,12 @@
 from abc import abstractmethod
 from dataclasses import replace
 
-from derive.reading.latex.grammar.function_commands import (
+from derive.reading.latex.grammar.letter_grammar import (
     AMBIGUOUS,
     LETTER_TYPES,
+    LetterTokens,
     ends_bare_argument,
 )
-from derive.reading.latex.grammar.letter_grammar import LetterTokens
 from derive.reading.latex.grammar.written_nodes import Symbol
 from derive.reading.latex.layout.pairs import inside, is_operator
 from derive.reading.latex.layout.tokens import Token, UnreadError

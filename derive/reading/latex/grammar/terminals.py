@@ -5,14 +5,10 @@ including the first Greek letter, and a ``t`` behind it: the terminals tell thes
 """
 
 import re
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from derive.reading.latex.grammar.enclosures import REASONS, Enclosures
-from derive.reading.latex.grammar.function_commands import (
-    AMBIGUOUS,
-    ends_bare_argument,
-    function_at,
-)
+from derive.reading.latex.grammar.letter_grammar import AMBIGUOUS, ends_bare_argument, function_at
 from derive.reading.latex.grammar.written_nodes import Symbol
 from derive.reading.latex.layout.latex_symbols import (
     ACCENTS,
@@ -28,6 +24,9 @@ from derive.reading.latex.layout.latex_symbols import (
 )
 from derive.reading.latex.layout.tokens import UnreadError
 from derive.reading.latex.tree import Letter, Number
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 STARS = {"*": "star", "star": "star", "ast": "star", "dagger": "dagger", "circ": "circ"}
 

@@ -1,4 +1,4 @@
-r"""Macros that a document defines.
+r"""Macros that a document defines, and their expansion.
 
 Read are ``\newcommand``, ``\renewcommand``, ``\providecommand``, ``\DeclareMathOperator`` and
 ``\def`` with parameters one after the other.

@@ -1,4 +1,4 @@
-"""Brackets, braces, bars and environments with their partners."""
+"""Brackets, braces, bars and environments with their partners, and arguments of commands."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
