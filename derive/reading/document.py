@@ -1,4 +1,4 @@
-"""Documents with formulas: displays, inline formulas, and the places where they stand."""
+"""Documents with formulas: displays, inline formulas, their places, and headings above them."""
 
 import re
 from bisect import bisect_right

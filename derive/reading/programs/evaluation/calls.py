@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from derive.reading.programs.evaluation.array_functions import of_arrays, of_entries
+from derive.reading.programs.evaluation.arrays import of_arrays, of_entries
 from derive.reading.programs.evaluation.context import APPENDING, ProgramContext, assigned
-from derive.reading.programs.evaluation.elementwise import mapped
+from derive.reading.programs.evaluation.counted_loops import mapped
 from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.values import Values, root

@@ -7,8 +7,7 @@ from typing import Self
 from derive.reading.programs.evaluation.arrays import entries, flat
 from derive.reading.programs.evaluation.calls import CONDITION, Calls, VariableValue
 from derive.reading.programs.evaluation.context import ProgramContext, assigned, static_path
-from derive.reading.programs.evaluation.counted_loops import BODIES
-from derive.reading.programs.evaluation.elementwise import elementwise
+from derive.reading.programs.evaluation.counted_loops import BODIES, elementwise
 from derive.reading.programs.evaluation.numeric_values import constant, number
 from derive.reading.programs.evaluation.values import whole
 from derive.reading.programs.syntax.code import (

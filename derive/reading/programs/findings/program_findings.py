@@ -15,13 +15,13 @@ from derive.reading.programs.findings.degrees import (
     starts_in_degrees,
     takes_degrees,
 )
-from derive.reading.programs.findings.equation_names import Names
-from derive.reading.programs.findings.function_equations import FunctionEquations
-from derive.reading.programs.findings.libraries import integrated, library_findings
+from derive.reading.programs.findings.function_equations import FunctionEquations, Names
 from derive.reading.programs.findings.rates import Rates, rates
 from derive.reading.programs.findings.regions import Region
 from derive.reading.programs.findings.step_methods import (
     euler_findings,
+    integrated,
+    library_findings,
     runge_kutta_findings,
     written_methods,
     written_pairs,
