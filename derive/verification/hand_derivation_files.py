@@ -9,8 +9,8 @@ from typing import Any
 from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.specialisation import substituted
+from derive.system.files.part_tables import TomlTable, read
 from derive.system.files.system_catalogue import load, published
-from derive.system.files.tables import TomlTable, read
 from derive.system.parts import SystemDefinitionError
 from derive.system.system import System
 from derive.verification.judging.derived import QUANTITIES

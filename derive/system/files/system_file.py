@@ -15,8 +15,7 @@ from derive.formulas.budget import MAX_FACTORS_IN_SYSTEM, MAX_SECOND_IN_SYSTEM, 
 from derive.formulas.expression import FUNCTIONS, number
 from derive.formulas.syntax import ExpressionError
 from derive.system.constraints import Constraint
-from derive.system.files.part_tables import read_joints, read_links, rigid_body
-from derive.system.files.tables import TomlTable, read
+from derive.system.files.part_tables import TomlTable, read, read_joints, read_links, rigid_body
 from derive.system.naming import IDENTIFIER, check_name
 from derive.system.parts import (
     Coordinate,

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.system.bodies.orientation import AXES, Orientation, rotation_matrix
 from derive.system.constraints import Constraint, Point
-from derive.system.joints.joint import canonical, coincidence, components, constraint_rows
+from derive.system.joints.point_joints import canonical, coincidence, components, constraint_rows
 from derive.system.parts import SystemDefinitionError
 from solvers.io.suggestion import shortened
 

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
-from derive.system.files.tables import TomlTable, read
+from derive.system.files.part_tables import TomlTable, read
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, kind_of
 from derive.verification.documents.letters.further_systems import named
