@@ -28,7 +28,7 @@ from derive.mechanics.steps import StepByStep
 from derive.system.bodies.rigid_body import RigidBody
 from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
-from derive.system.prescribed import prescribed_symbols
+from derive.system.symbols import prescribed_symbols
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean, warn_caller
 

@@ -30,8 +30,7 @@ from derive.formulas.evaluation.residues import (
     solved,
     without,
 )
-from derive.system.prescribed import prescribed_symbols
-from derive.system.symbols import TIME
+from derive.system.symbols import TIME, prescribed_symbols
 from derive.system.system import System
 from solvers.io.suggestion import counted
 

@@ -19,8 +19,7 @@ from derive.mechanics.derivation import warn_of_redundancy
 from derive.mechanics.equations import Equations
 from derive.system.constraints import Constraint, Eliminated
 from derive.system.parts import SystemDefinitionError
-from derive.system.prescribed import prescribed_symbols
-from derive.system.symbols import TIME
+from derive.system.symbols import TIME, prescribed_symbols
 from derive.system.system import System, as_system
 
 #: A coordinate from a formula that is 0; None if its value is not unique.

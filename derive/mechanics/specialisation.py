@@ -8,8 +8,7 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, number
 from derive.formulas.syntax import ExpressionError
 from derive.system.parts import SystemDefinitionError, formula
-from derive.system.prescribed import motions
-from derive.system.symbols import TIME
+from derive.system.symbols import TIME, motions
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean
 

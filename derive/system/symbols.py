@@ -1,7 +1,11 @@
-"""Symbols of velocities, accelerations and momenta, with names for code and LaTeX."""
+"""Symbols of velocities, accelerations, momenta and prescribed motions."""
+
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
+
+from derive.system.parts import Input
 
 
 class Derived(sp.Symbol):
@@ -69,3 +73,38 @@ def momentum(coordinate: sp.Symbol) -> Momentum:
 
 #: Time, in positions, potentials and forces that depend on it.
 TIME = sp.Symbol("t", real=True)
+
+
+def parts(motion: Input) -> tuple[Input, ...]:
+    """The inputs that describe a motion s: itself, s_dot, s_ddot and s_time."""
+    s, unit, meaning = motion.symbol, motion.unit, motion.meaning
+    return (
+        motion,
+        Input(velocity(s), f"{unit}/s", f"velocity of {meaning}"),
+        Input(acceleration(s), f"{unit}/s^2", f"acceleration of {meaning}"),
+        Input(_time(s), "s", f"time of {meaning}"),
+    )
+
+
+def motions(inputs: Iterable[Input]) -> dict[sp.Symbol, tuple[sp.Symbol, ...]]:
+    """The symbols of the `parts` of each motion."""
+    symbols = (part.symbol for part in inputs if part.motion)
+    return {s: (s, velocity(s), acceleration(s), _time(s)) for s in symbols}
+
+
+def prescribed_symbols(inputs: Iterable[Input]) -> set[sp.Symbol]:
+    """The symbols of the `parts` of all motions."""
+    return {symbol for symbols in motions(inputs).values() for symbol in symbols}
+
+
+def as_functions_of_time(inputs: Iterable[Input]) -> Mapping[sp.Symbol, sp.Expr]:
+    """Each motion and its velocity at any time, with a constant acceleration."""
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for s, rate, change, time in motions(inputs).values():
+        elapsed = TIME - time
+        values |= {s: s + rate * elapsed + change * elapsed**2 / 2, rate: rate + change * elapsed}
+    return values
+
+
+def _time(s: sp.Symbol) -> sp.Symbol:
+    return sp.Symbol(f"{s.name}_time", real=True)

@@ -23,7 +23,7 @@ from derive.system.parts import (
     formulas,
     items,
 )
-from derive.system.prescribed import as_functions_of_time, parts
+from derive.system.symbols import as_functions_of_time, parts
 from derive.system.system_checks import check
 from solvers.io.suggestion import shortened
 

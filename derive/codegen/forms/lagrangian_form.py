@@ -10,8 +10,7 @@ from derive.codegen.expression_graph.node import Node
 from derive.codegen.expression_graph.rational import rationalised, substitution
 from derive.codegen.expression_graph.sympy_translation import Translation
 from derive.codegen.forms.equations_of_motion import EquationsOfMotion
-from derive.system.prescribed import prescribed_symbols
-from derive.system.symbols import TIME
+from derive.system.symbols import TIME, prescribed_symbols
 
 HALF = Fraction(1, 2)
 
