@@ -11,7 +11,9 @@ import pytest
 import sympy as sp
 
 from derive import Derivation
+from derive.formulas.syntax import syntax_tree
 from derive.formulas.typeset import typesetting
+from derive.formulas.typeset.latex import latex
 from derive.formulas.typeset.typesetting import Formula
 from derive.verification.report.report_judgement import EQUATIONS
 
@@ -208,6 +210,11 @@ def test_derivatives_matrices_and_indices_are_typeset() -> None:
     assert rows == [["a", "b"], ["c", "d"]]
     column = ElementTree.fromstring(Formula("r = l*(sin(theta), 0)").html)
     assert len([*column.iter("mtr")]) == 2
+
+
+def test_natural_logarithms_are_ln_as_in_latex() -> None:
+    assert "<mi>ln</mi>" in Formula("log(x)").html
+    assert latex(syntax_tree("log(x)")).startswith(r"\ln")
 
 
 def test_too_long_text_is_unchanged() -> None:

@@ -169,7 +169,8 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
             return f"<msup>{grouped(value)}{grouped('<mo>−</mo><mn>1</mn>')}</msup>", POWER
         case "only", [function, *variables]:
             return function + APPLY + brackets("<mo>,</mo>".join(variables)), ATOM
-    return name_markup(name) + APPLY + brackets("<mo>,</mo>".join(parts)), ATOM
+    word = "<mi>ln</mi>" if name == "log" else name_markup(name)
+    return word + APPLY + brackets("<mo>,</mo>".join(parts)), ATOM
 
 
 def _matrix(rows: Sequence[Sequence[ast.expr]]) -> str:
