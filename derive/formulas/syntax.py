@@ -25,6 +25,8 @@ def syntax_tree(text: str) -> ast.expr:
     if len(text) > MAX_LENGTH:
         raise ExpressionError(f"a formula has {len(text)} characters; at most {MAX_LENGTH} allowed")
     text = text.strip()
+    if not text:
+        raise ExpressionError("a formula is empty: write one, such as 0")
     for character in "#\n\\":
         if character in text:
             raise ExpressionError(f"{character!r} has no meaning in a formula: {text[:80]!r}")
