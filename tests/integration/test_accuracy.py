@@ -17,6 +17,7 @@ from solvers import Ensemble, Event, Held, ensemble, run_scene
 from solvers.integration.accuracy.accurate_ensemble import AccuracyWarning
 from solvers.integration.accuracy.integration_run import (
     EndsEarlyError,
+    IntegrationRun,
     NotAccurateError,
     TooLongError,
 )
@@ -172,9 +173,20 @@ def test_longer_numbers_locate_no_events() -> None:
         integrate(dp, (0, 20), START, {}, accuracy=1e-11, events=lambda t, y: y[0])
 
 
-def test_an_accuracy_that_nothing_reaches_is_refused() -> None:
-    with pytest.raises(NotAccurateError, match="where 1e-18 is requested"):
+def test_an_accuracy_that_nothing_reaches_is_refused_early(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    states, digits = IntegrationRun.states, []
+
+    def recorded(run: IntegrationRun, *arguments: object) -> object:
+        digits.append(run.setting)
+        return states(run, *arguments)
+
+    monkeypatch.setattr(IntegrationRun, "states", recorded)
+    with pytest.raises(NotAccurateError, match=r"error of up to .* where 1e-18 is requested"):
         integrate(dp, (0, 0.1), START, {}, accuracy=1e-18, t_eval=[0.1])
+    # more digits cannot reduce the rounding of results
+    assert digits[-2:] == [24, 36]
 
 
 def check_ensemble(motions: Ensemble, starts: np.ndarray, accuracy: float) -> None:

@@ -173,7 +173,16 @@ def by_series(
         seconds = perf_counter() - before
         if coarse is not None:
             # the result is rounded to double precision
-            error = difference(motion, coarse, fine) + float(np.spacing(np.abs(fine).max()))
+            apart, rounding = (
+                difference(motion, coarse, fine),
+                float(np.spacing(np.abs(fine).max())),
+            )
+            if apart <= rounding and accuracy < rounding:
+                raise NotAccurateError(
+                    f"results in double precision have an error of up to {rounding:.1g} where "
+                    f"{accuracy:.1g} is requested: request less accuracy"
+                )
+            error = apart + rounding
         if error <= accuracy:
             model = CheckedRun(run, error)
             return replace(model, computed=(times, fine), computing_seconds=seconds)
