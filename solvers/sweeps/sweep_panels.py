@@ -125,12 +125,15 @@ def curves(panel: Axes, *, quantity: Quantity) -> None:
 
 
 def section(panel: Axes, *, results: Results, name: str, selection: Any) -> None:
-    """The crossings of some motions, a colour each: the second component over the first."""
+    """The crossings of some motions, a colour each: the second component over the first.
+
+    A single component is plotted over the number of the point.
+    """
     one, units = results.definition.maps[name], results.definition.module.UNITS
     motions = results.maps[name][selection].reshape(-1, *one.shape)
     motions = motions[np.isfinite(motions).any(axis=(1, 2))]
     (components,), (_, count) = one.labels, one.shape
-    indices = 0, min(1, len(components) - 1)
+    indices = range(min(2, len(components)))
     stride = max(1, -(-len(motions) * count // POINTS))
     # larger points where there are few
     size = float(np.clip(150 / np.sqrt(1 + np.isfinite(motions[:, 0]).sum()), 1.1, 4))
@@ -138,12 +141,14 @@ def section(panel: Axes, *, results: Results, name: str, selection: Any) -> None
     if has_function(results.definition.module, "power"):  # motions share their attractors
         shades[:] = to_rgba("black")
     for motion, colour in zip(motions[..., ::stride], shades, strict=True):
-        x, y = (
+        points = [
             wrapped(motion[k]) if one.wraps_angles and units[components[k]] == "rad" else motion[k]
             for k in indices
-        )
-        panel.plot(x, y, ".", color=colour, markersize=size, markeredgewidth=0)
-    x_label, y_label = (axis_label(symbol(components[k]), units[components[k]]) for k in indices)
+        ]
+        numbers = [] if points[1:] else [1 + stride * np.arange(len(points[0]))]
+        panel.plot(*numbers, *points, ".", color=colour, markersize=size, markeredgewidth=0)
+    labels = [axis_label(symbol(components[k]), units[components[k]]) for k in indices]
+    x_label, y_label = labels if labels[1:] else ("number of the point", *labels)
     panel.set(xlabel=x_label, ylabel=y_label)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
@@ -35,6 +35,7 @@ from solvers.sweeps.maps.lyapunov import Lyapunov
 from solvers.sweeps.maps.samples import Samples
 from solvers.sweeps.maps.section import Section
 from solvers.sweeps.results import STATUSES, Results
+from solvers.sweeps.sweep_figure import figure
 
 PI = np.pi
 FLIP = {"theta1": (-PI, PI), "theta2": (-PI, PI)}
@@ -271,6 +272,12 @@ def test_a_section_without_a_direction_has_crossings_upwards(tmp_path: Path) -> 
     count = [np.isfinite(one.maps["s"]).sum() for one in (both, up, down)]
     assert count[0] == count[1] + count[2]
     assert min(count[1:]) >= 3
+    # one component is plotted over the number of the point, not over itself
+    (panel,) = figure(up).axes
+    (points,) = panel.lines
+    assert points.get_xdata().tolist() == list(range(1, 13))
+    assert_array_equal(points.get_ydata(), up.maps["s"][0, 0])
+    assert panel.get_xlabel() == "number of the point"
 
 
 def test_any_span_of_random_axes_is_generated_by_itself() -> None:
