@@ -164,7 +164,7 @@ def test_constraints_of_a_file_are_those_of_python(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("line", "words"), [
     ('constraints = "x"', "constraints = 'x' must be a list in square brackets"),
-    ('constraints = [["x"]]', r"formula = \['x'\] in constraints 1 must be a text"),
+    ('constraints = [["x"]]', r"formula = \['x'\] in constraints 1 must be a number"),
     ("constraints = [{ name = 'rod' }]", "'formula' is missing in constraints 1"),
     ("constraints = [{ formul = 'x' }]", "'formul' in constraints 1 .did you mean 'formula'"),
     ('constraints = ["x", "hight"]', "constraints 2: unknown name 'hight' .did you mean 'height'"),
@@ -196,7 +196,7 @@ def test_invalid_constraints_are_refused(line: str, words: str, tmp_path: Path) 
     (('"m*g*height"', '"m*g^2"'), r"write powers with \*\*, not \^"),
     (('"m*g*height"', '"m*g*hight"'), "unknown name 'hight' .did you mean 'height'"),
     (('"m*g*height"', '"m*g*x_dot"'), "the potential depends on x_dot: it must be a function"),
-    (('"m*g*height"', "true"), "must be a text in quotes"),
+    (('"m*g*height"', "true"), "potential = True in .* must be a number or a formula in quotes"),
     (('"m*g*height"', '"(m, g)"'), "potential: '.m, g.' is a column or matrix, not a number"),
     (("height = ", "pair = '(x, x)'\nheight = "), "definitions.pair: .* is a column or matrix"),
     (('mass = "m"', 'mass = "(m, m)"'), "'.m, m.' is a column or matrix, not a number"),
@@ -208,7 +208,7 @@ def test_invalid_constraints_are_refused(line: str, words: str, tmp_path: Path) 
     (("value = 1, unit", "value = 0, unit"), "parameters.m = 0.0 must be a positive number"),
     (("value = 1, unit", "valu = 1, unit"), "unknown key 'valu' in parameters.m"),
     (("value = 1, unit", "value = inf, unit"), "parameters.m"),
-    (("value = 1, unit", "value = true, unit"), "must be a text in quotes"),
+    (("value = 1, unit", "value = true, unit"), "must be a number or a formula in quotes"),
     (("height = ", "x = "), "definitions.x: the name is already used"),
     (('"x", "height"', '"x"'), "1 components"),
     (('["x", "height"]', '"x"'), "must be a list"),

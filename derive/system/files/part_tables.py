@@ -65,6 +65,10 @@ class TomlTable:
         value = self.values.get(key, default)
         if isinstance(value, int | float) and not isinstance(value, bool):
             return repr(value)
+        if not isinstance(value, str | None):
+            raise InputError(
+                f"{key} = {shortened(value)} in {self.name} must be a number or a formula in quotes"
+            )
         return " ".join(self.text(key, default).split())
 
     def formulas(self, key: str) -> list[str]:

@@ -46,7 +46,9 @@ class MapTable:
             raise InputError(f'{path} is missing: give a period such as "2*pi/Omega" or "0.5 s"')
         try:
             return quantity(value, "s")
-        except QuantityError:
+        except QuantityError as error:
+            if not isinstance(value, str):
+                raise InputError(f"{path}: {error}") from error
             return toml_input.text(path, value)  # checked with the sweep
 
     def number(self, key: str, unit: str, default: float) -> float:
@@ -74,6 +76,8 @@ class MapTable:
     def positions(self, key: str) -> tuple[dict[str, float], ...]:
         """Positions, by coordinate."""
         path, positions = f"{self.path}.{key}", []
+        if key in self.table and not self.table[key]:
+            raise InputError(f"{path} = {self.table[key]} must list positions, or be left out")
         for given in as_list(self.table.get(key, [])):
             toml_input.check_keys(path, toml_input.table(path, given), self.module.COORDINATES)
             positions.append({q: self._quantity(path, q, value) for q, value in given.items()})
