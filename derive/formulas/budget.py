@@ -7,7 +7,7 @@ from math import log, prod
 import sympy as sp
 from sympy.core.basic import Basic
 
-from derive.formulas.evaluation.numeric import Evaluator
+from derive.formulas.numeric import Evaluator
 
 #: Largest absolute value of an exponent, also of a power of powers, and bits of a number.
 MAX_EXPONENT, MAX_BITS = 100, 400

@@ -16,8 +16,8 @@ from sympy.logic.boolalg import Boolean
 
 from derive.formulas import functions
 from derive.formulas.budget import INFINITE, MAX_BITS, MAX_EXPONENT, Budget, BudgetError
-from derive.formulas.evaluation.generic_values import check_value
-from derive.formulas.evaluation.numeric import NoValueError
+from derive.formulas.generic_values import check_value
+from derive.formulas.numeric import NoValueError
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from solvers.io.suggestion import did_you_mean
 

@@ -12,8 +12,8 @@ from typing import Literal, TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import STATES, sample
-from derive.formulas.evaluation.numeric import Evaluator, NoValueError
+from derive.formulas.generic_values import STATES, sample
+from derive.formulas.numeric import Evaluator, NoValueError
 from derive.formulas.typeset.lettering import lettering
 from derive.handout.document_model import (
     Block,

@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.numeric import Evaluator, mp
+from derive.formulas.numeric import Evaluator, mp
 from derive.handout.document_model import Block, HandoutTable, Paragraph
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation

@@ -8,8 +8,8 @@ from derive.handout.derived_letters import unit_words, words
 from derive.handout.document_model import Block, HandoutTable, Paragraph
 from derive.handout.numbering import Numbering
 from derive.mechanics.derivation import Derivation
-from derive.system.bodies.rigid_body import RigidBody
 from derive.system.parts import Coordinate, Input, Parameter
+from derive.system.rigid_body import RigidBody
 
 
 def system(d: Derivation, formulas: Numbering) -> Iterator[Block]:

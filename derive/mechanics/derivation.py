@@ -25,9 +25,9 @@ from derive.mechanics.linearisation.small_oscillations import Linearisation, Sma
 from derive.mechanics.linearisation.state_space import StateSpace, state_space
 from derive.mechanics.regressor import Regressor, regressor
 from derive.mechanics.steps import StepByStep
-from derive.system.bodies.rigid_body import RigidBody
 from derive.system.constraints import Constraint
 from derive.system.parts import PointMass, SystemDefinitionError, formula
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import prescribed_symbols
 from derive.system.system import System, as_system
 from solvers.io.suggestion import did_you_mean, warn_caller

@@ -15,7 +15,7 @@ from math import lcm
 import numpy as np
 import sympy as sp
 
-from derive.formulas.evaluation.residues import (
+from derive.formulas.residues import (
     PRIME,
     Evaluation,
     NoRootError,

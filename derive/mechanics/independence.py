@@ -2,9 +2,9 @@
 
 import sympy as sp
 
-from derive.formulas.evaluation.numeric import Evaluator, NoValueError
-from derive.system.bodies.rigid_body import RigidBody
+from derive.formulas.numeric import Evaluator, NoValueError
 from derive.system.parts import SystemDefinitionError
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
 

@@ -21,8 +21,8 @@ from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.independence import is_singular
-from derive.system.bodies.orientation import dot
-from derive.system.bodies.rigid_body import RigidBody
+from derive.system.orientation import dot
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 
 AXES = "xyz"

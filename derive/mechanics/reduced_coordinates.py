@@ -14,7 +14,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from derive.formulas.functions import derivative
-from derive.formulas.proofs.zero import vanishes
+from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import warn_of_redundancy
 from derive.mechanics.equations import Equations
 from derive.system.constraints import Constraint, Eliminated

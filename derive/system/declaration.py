@@ -9,7 +9,7 @@ from typing import cast
 import sympy as sp
 
 from derive.system.constraints import Constraint, Eliminated, Point
-from derive.system.links.link import Link, Shape
+from derive.system.line_links import Link, Shape
 from derive.system.parts import Coordinate, Input, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import acceleration, momentum, variation, velocity
 

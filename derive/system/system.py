@@ -10,7 +10,7 @@ import sympy as sp
 from derive.formulas.typeset.typesetting import Formula
 from derive.system.constraints import Eliminated, constraints
 from derive.system.declaration import Declaration
-from derive.system.links.link import Link
+from derive.system.line_links import Link
 from derive.system.naming import check_module_name, check_name, check_unique
 from derive.system.parts import (
     Coordinate,

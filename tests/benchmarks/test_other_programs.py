@@ -15,7 +15,7 @@ from sharing import Shared
 
 import generated.double_pendulum as dp
 from derive import Derivation
-from derive.formulas.evaluation.generic_values import is_small
+from derive.formulas.generic_values import is_small
 from solvers.app.modules import load as load_module
 from solvers.equations.forms import Form, fastest_form
 from solvers.scenes.scene_reading import find

@@ -5,8 +5,8 @@ from itertools import combinations
 import pytest
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import STATES, is_small, sample
-from derive.formulas.evaluation.numeric import Evaluator, NoValueError, independent, solved
+from derive.formulas.generic_values import STATES, is_small, sample
+from derive.formulas.numeric import Evaluator, NoValueError, independent, solved
 
 x, y = sp.symbols("x y", real=True)
 m = sp.Symbol("m", positive=True)

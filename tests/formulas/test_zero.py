@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from derive.formulas.proofs.zero import is_positive, vanishes
+from derive.formulas.zero import is_positive, vanishes
 
 a, b = sp.symbols("a b", real=True)
 m, n = sp.symbols("m n", positive=True)

@@ -18,9 +18,9 @@ from folders import ROOT
 
 from derive import Derivation, Parameter, load, names
 from derive.commands.regenerate import main
-from derive.formulas.evaluation.generic_values import STATES, sample
-from derive.formulas.evaluation.numeric import Evaluator
 from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.generic_values import STATES, sample
+from derive.formulas.numeric import Evaluator
 from derive.handout.derivation_document import document, write_document
 from derive.handout.derived_letters import DerivedLetters
 from derive.handout.document_model import Code, HandoutDocument, NumberedEquation, Paragraph

@@ -6,8 +6,8 @@ from random import Random
 import sympy as sp
 from sympy import Rational, cos, log, sin
 
-from derive.system.bodies.rigid_body import RigidBody
 from derive.system.parts import Coordinate, Parameter, PointMass
+from derive.system.rigid_body import RigidBody
 from derive.system.system import System
 
 theta, theta1, theta2, phi, x, y, x1, x2, r, s = sp.symbols(

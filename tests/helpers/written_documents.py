@@ -15,7 +15,7 @@ from derive.formulas.expression import FUNCTIONS, parse
 from derive.mechanics.derivation import Derivation
 from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import Statement
-from derive.system.bodies.rigid_body import RigidBody
+from derive.system.rigid_body import RigidBody
 from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.statements import LetterNotation
 

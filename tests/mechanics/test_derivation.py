@@ -11,7 +11,7 @@ from sympy.physics.mechanics import dynamicsymbols as dynamic
 
 from derive import TIME, Coordinate, Derivation, Parameter, PointMass, RigidBody, System
 from derive.codegen.module_functions import contents
-from derive.formulas.proofs.zero import vanishes
+from derive.formulas.zero import vanishes
 from derive.mechanics.energies.reduction import collected, reduced
 from derive.mechanics.linearisation.closed_form_equilibria import _roots
 from derive.system.parts import SystemDefinitionError

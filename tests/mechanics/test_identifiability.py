@@ -7,7 +7,7 @@ import pytest
 import sympy as sp
 
 from derive import Coordinate, Derivation, Input, Parameter, PointMass, System, load, velocity
-from derive.formulas.evaluation.residues import (
+from derive.formulas.residues import (
     PRIME,
     Evaluation,
     NoRootError,

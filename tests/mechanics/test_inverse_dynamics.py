@@ -29,14 +29,8 @@ from derive import (
     reduced,
     velocity,
 )
-from derive.formulas.evaluation.residues import (
-    Evaluation,
-    NoRootError,
-    RandomResidues,
-    ResidueSeries,
-    echelon,
-)
-from derive.formulas.proofs.zero import vanishes
+from derive.formulas.residues import Evaluation, NoRootError, RandomResidues, ResidueSeries, echelon
+from derive.formulas.zero import vanishes
 from derive.system.symbols import TIME
 from solvers import build, integrate
 

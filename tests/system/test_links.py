@@ -30,7 +30,7 @@ from derive import (
     with_inputs,
 )
 from derive.codegen.module_files import texts
-from derive.system.links.link import Link
+from derive.system.line_links import Link
 from derive.system.parts import SystemDefinitionError
 from solvers import Scene, build, run_scene
 from solvers.equations.module import links

@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from derive import Constraint, Coordinate, Derivation, Parameter, PointMass, System, load
-from derive.formulas.evaluation.generic_values import is_small, sample
-from derive.formulas.evaluation.numeric import Evaluator
+from derive.formulas.generic_values import is_small, sample
+from derive.formulas.numeric import Evaluator
 from derive.handout.derivation_document import write_document
 from derive.mechanics.routhian import Routhian
 from derive.reading.document_formats import read_document

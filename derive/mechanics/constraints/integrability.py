@@ -25,7 +25,7 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from derive.formulas.functions import derivative
-from derive.formulas.proofs.trigonometric_field import TrigonometricField
+from derive.formulas.trigonometric_field import TrigonometricField
 from derive.system.symbols import TIME
 from derive.system.system import System
 

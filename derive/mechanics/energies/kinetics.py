@@ -12,8 +12,8 @@ from derive.formulas.budget import is_expandable
 from derive.formulas.functions import CHOICES, decisive_numbers, derivative, switching_functions
 from derive.mechanics.energies.kinematic_tree import KinematicTree, kinematic_tree
 from derive.mechanics.energies.reduction import gathered, reduced
-from derive.system.bodies.orientation import dot
-from derive.system.bodies.rigid_body import RigidBody
+from derive.system.orientation import dot
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
 

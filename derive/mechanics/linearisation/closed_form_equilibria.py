@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import is_small
+from derive.formulas.generic_values import is_small
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations
 from derive.mechanics.linearisation.point import OperatingPoint, tidied

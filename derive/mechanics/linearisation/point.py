@@ -7,9 +7,9 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import is_small, sample
-from derive.formulas.evaluation.numeric import Evaluator, NoValueError
 from derive.formulas.expression import FUNCTIONS, number
+from derive.formulas.generic_values import is_small, sample
+from derive.formulas.numeric import Evaluator, NoValueError
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Kinetics, Matrix
 from derive.mechanics.energies.reduction import reduced

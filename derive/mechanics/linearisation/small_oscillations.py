@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import is_small
+from derive.formulas.generic_values import is_small
 from derive.mechanics.energies.kinetics import Matrix
 from derive.mechanics.energies.reduction import reduced
 from derive.mechanics.equations import Equations

@@ -13,16 +13,15 @@ from typing import Any
 
 import sympy as sp
 
-from derive.system.bodies.orientation import Orientation, quaternion, rotation_matrix, rotations
-from derive.system.bodies.rigid_body import RigidBody
+from derive.system.centred_links import Block, Box, Cart, Wheel
 from derive.system.constraints import Constraint
 from derive.system.joints.body_joints import hinge, prismatic
 from derive.system.joints.point_joints import ball, fixed_distance, pin, slider
 from derive.system.joints.rolling_joints import rolling_on_line, rolling_on_plane
-from derive.system.links.centred_links import Block, Box, Cart, Wheel
-from derive.system.links.line_links import Line, Plate, Rail, Rod, Spring, Thread
-from derive.system.links.link import Link
+from derive.system.line_links import Line, Link, Plate, Rail, Rod, Spring, Thread
+from derive.system.orientation import Orientation, quaternion, rotation_matrix, rotations
 from derive.system.parts import SystemDefinitionError
+from derive.system.rigid_body import RigidBody
 from solvers.io import toml_input
 from solvers.io.suggestion import did_you_mean, shortened
 from solvers.io.toml_input import InputError

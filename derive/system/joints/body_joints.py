@@ -7,9 +7,9 @@ this is the component of δθ about an axis of the second body: the multiplier i
 
 import sympy as sp
 
-from derive.system.bodies.orientation import AXES, Orientation, rotation_matrix
 from derive.system.constraints import Constraint, Point
 from derive.system.joints.point_joints import canonical, coincidence, components, constraint_rows
+from derive.system.orientation import AXES, Orientation, rotation_matrix
 from derive.system.parts import SystemDefinitionError
 from solvers.io.suggestion import shortened
 

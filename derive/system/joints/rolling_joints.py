@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.formulas.functions import derivative
-from derive.system.bodies.orientation import AXES, Orientation
 from derive.system.constraints import Constraint, Point
 from derive.system.joints.point_joints import canonical, components, constraint_rows, unit_vector
+from derive.system.orientation import AXES, Orientation
 from derive.system.parts import SystemDefinitionError, formula
 from derive.system.symbols import TIME, velocity
 from solvers.io.suggestion import shortened

@@ -5,7 +5,7 @@ from contextlib import suppress
 
 import sympy as sp
 
-from derive.formulas.evaluation.numeric import Approximation, Evaluator, mp
+from derive.formulas.numeric import Approximation, Evaluator, mp
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.verification.judging.engine import State

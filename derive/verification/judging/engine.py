@@ -12,11 +12,11 @@ from functools import cached_property
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import STATES
-from derive.formulas.evaluation.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
 from derive.formulas.expression import Namespace, parse
-from derive.formulas.proofs.zero import is_positive, vanishes
+from derive.formulas.generic_values import STATES
+from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
 from derive.formulas.syntax import RELATION, ExpressionError
+from derive.formulas.zero import is_positive, vanishes
 
 State = Mapping[sp.Symbol, sp.Expr]
 

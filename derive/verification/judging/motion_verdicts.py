@@ -8,7 +8,7 @@ from functools import partial
 import sympy as sp
 
 from derive.formulas.budget import is_expandable
-from derive.formulas.evaluation.numeric import independent, solved
+from derive.formulas.numeric import independent, solved
 from derive.formulas.syntax import ExpressionError
 from derive.verification.judging.constrained_motions import equations
 from derive.verification.judging.engine import joined

@@ -1,14 +1,17 @@
 """Solutions of equations that are not linear in the accelerations."""
 
-from collections.abc import Iterator
 from itertools import islice
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import changes_of_sign
-from derive.formulas.evaluation.numeric import mp
+from derive.formulas.generic_values import changes_of_sign
+from derive.formulas.numeric import mp
 from derive.verification.judging.engine import State
 from derive.verification.judging.reference_system import ReferenceSystem, depends_on
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 #: States at which solutions are computed, and the largest relative value that counts as zero.
 STATES, TINY = 3, 1e-15

@@ -8,10 +8,10 @@ from typing import Self
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import STATES, is_small, near_zeros, sample
-from derive.formulas.evaluation.numeric import Evaluator, NoValueError, solved
 from derive.formulas.expression import FUNCTIONS, Namespace, Value
 from derive.formulas.functions import derivative, turning_arguments
+from derive.formulas.generic_values import STATES, is_small, near_zeros, sample
+from derive.formulas.numeric import Evaluator, NoValueError, solved
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME

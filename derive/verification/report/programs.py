@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 import sympy as sp
 
 from derive.formulas.expression import parse
-from derive.formulas.proofs.zero import vanishes
+from derive.formulas.zero import vanishes
 from derive.verification.report.contexts import double_pendulum
 
 OPENING = {"]": "[", "}": "{", ")": "("}

@@ -8,9 +8,9 @@ from pathlib import Path
 import sympy as sp
 from sympy import cos, sin, symbols
 
-from derive.system.bodies.rigid_body import RigidBody
 from derive.system.files.system_catalogue import load
 from derive.system.parts import Coordinate, Parameter, PointMass
+from derive.system.rigid_body import RigidBody
 from derive.system.symbols import TIME
 from derive.system.system import System
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.formulas.expression import parse
-from derive.formulas.proofs.zero import vanishes
 from derive.formulas.syntax import ExpressionError
+from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText, order

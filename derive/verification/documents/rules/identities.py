@@ -9,8 +9,8 @@ from collections.abc import Collection, Iterator, Sequence
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import is_small
 from derive.formulas.expression import FUNCTIONS, Value, parse
+from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import RATES, order, stem

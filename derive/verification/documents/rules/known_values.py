@@ -7,10 +7,10 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.evaluation.generic_values import is_small
 from derive.formulas.expression import Value, parse
-from derive.formulas.proofs.zero import vanishes
+from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
+from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.routhian import Routhian
 from derive.system.symbols import TIME, acceleration, velocity

@@ -13,7 +13,7 @@ from typing import Self, TypeAlias
 import sympy as sp
 
 from derive.formulas.functions import derivative
-from derive.formulas.proofs.zero import vanishes
+from derive.formulas.zero import vanishes
 from derive.system.parts import SystemDefinitionError, formula, formulas, items
 from solvers.io.suggestion import shortened
 

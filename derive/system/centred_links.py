@@ -6,9 +6,9 @@ from typing import Self
 
 import sympy as sp
 
-from derive.system.bodies.rigid_body import RigidBody
-from derive.system.links.link import Link, Place, Point, Shape, checked_place, mapped, position
+from derive.system.line_links import Link, Place, Point, Shape, checked_place, mapped, position
 from derive.system.parts import PointMass, SystemDefinitionError, formula, formulas, items
+from derive.system.rigid_body import RigidBody
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from derive.formulas.evaluation.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
+from derive.formulas.numeric import DIGITS, Approximation, Evaluator, NoValueError, mp
 
 #: The number of states at which formulas are compared.
 STATES = 12

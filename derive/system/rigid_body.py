@@ -7,7 +7,7 @@ from typing import Self
 
 import sympy as sp
 
-from derive.system.bodies.orientation import Orientation
+from derive.system.orientation import Orientation
 from derive.system.parts import PointMass, SystemDefinitionError, formula, formulas, items
 from solvers.io.suggestion import shortened
 

@@ -1,1 +1,0 @@
-"""Formulas in numbers: digits, samples, residues."""

@@ -1,1 +1,0 @@
-"""Proofs that expressions are zero or positive."""

@@ -1,1 +1,0 @@
-"""Links that pictures show between points."""
