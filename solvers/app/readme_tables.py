@@ -7,7 +7,7 @@ from math import inf
 from pathlib import Path
 
 from derive.codegen.module_files import GeneratedFiles
-from derive.commands import system_description
+from derive.system.files import system_catalogue
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.runge_kutta.tableau import Tableau
@@ -65,7 +65,7 @@ def _joined(numbers: list[int]) -> str:
 
 #: The table between the markers ``<!-- title -->`` and ``<!-- end of title -->`` of a README.
 TABLES: tuple[tuple[str, str, Callable[[], str]], ...] = (
-    ("derive/README.md", "systems", system_description.markdown_table),
+    ("derive/README.md", "systems", system_catalogue.markdown_table),
     ("derive/verification/README.md", "files", partial(contents_table, "derive/verification")),
     ("solvers/runge_kutta/README.md", "methods", methods_table),
     ("solvers/runge_kutta/README.md", "files", partial(contents_table, "solvers/runge_kutta")),

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from derive import Derivation, load, names, systems
-from derive.commands.system_description import markdown_table
+from derive.system.files.system_catalogue import markdown_table
 from solvers.app.cli import main
 
 SYSTEM = r'''

@@ -27,9 +27,8 @@ from scipy.optimize import minimize
 
 import generated
 from derive import TIME, PointMass, RigidBody, System, load, names, reduced, systems, write
-from derive.commands.system_description import description
 from derive.system.files.shipped import large_names
-from derive.system.files.system_catalogue import drawing
+from derive.system.files.system_catalogue import description, drawing
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
 from solvers.equations.consistent_start import consistent_start

@@ -1,4 +1,4 @@
-"""The systems that ship with holonomic, found by their files' names.
+"""The systems that ship with holonomic, found by their files' names, and descriptions of them.
 
 A file whose name ends in ``_n`` holds a family: its ``system`` is a function of n, and
 ``chain_5`` is its member with n = 5. A file may also define ``PUBLISHED``: published equations of
@@ -7,8 +7,11 @@ folder ``large`` are too long to ship: they are derived when they are first used
 """
 
 import re
+import tomllib
 from importlib import import_module
+from itertools import groupby
 from os import PathLike, fspath
+from textwrap import TextWrapper
 from types import ModuleType
 
 from derive.system.files.shipped import USUAL, large_names, names, stems
@@ -103,3 +106,47 @@ def _file(name: str) -> tuple[str, int]:
             "of a system file ends in .toml"
         )
     return name, 0
+
+
+WIDTH = 96
+#: Remark on systems whose modules do not ship.
+LARGE = "derived when it is first used"
+
+
+def description(name: str) -> str:
+    """Drawing of a system, and names and units of its coordinates, state and parameters."""
+    system = load(name)
+    _, *picture = drawing(name).splitlines()  # the title replaces the first line
+    coordinates = [
+        f"{', '.join(str(c.symbol) for c in group)} [{unit}], {meaning}"
+        for (unit, meaning), group in groupby(system.coordinates, lambda c: (c.unit, c.meaning))
+    ]
+    parameters = [f"{p.symbol} = {p.default:g} {p.unit}" for p in system.parameters]
+    rows = {
+        "coordinates": "; ".join(coordinates),
+        "state": ", ".join(s.name for s in system.q + system.qdot),
+        "parameters": ", ".join(parameters) or "none",
+    }
+    if system.inputs:
+        rows["inputs"] = ", ".join(f"{u.symbol} [{u.unit}]" for u in system.inputs)
+    if name in large_names():
+        rows["module"] = LARGE
+    layout = TextWrapper(WIDTH + 2, initial_indent="  ", subsequent_indent=" " * 6)
+    lines = [layout.fill(f"{title}: {text}") for title, text in rows.items()]
+    return "\n".join([f"{name}: {system.title}", *picture, "", *lines])
+
+
+def markdown_table() -> str:
+    """The systems that ship, as a table in Markdown; each row comes from the system's file."""
+    head = "| system | coordinates | description | source of the published equations |"
+    return "\n".join([head, "|---|---|---|---|", *map(_row, (*names(), *large_names())), ""])
+
+
+def _row(name: str) -> str:
+    coordinates = ", ".join(f"`{q.name}`" for q in load(name).q)
+    summary = drawing(name).partition("\n")[0].rstrip(".")
+    source = tomllib.loads(published(name)).get("source", "")
+    stem = re.sub(rf"{USUAL}\Z", "", name)
+    family = f"; `{stem}1` to `{stem}{LARGEST}`" if stem != name else ""
+    remark = f" ({LARGE})" if name in large_names() else ""
+    return f"| `{name}`{family}{remark} | {coordinates} | {summary} | {source} |"

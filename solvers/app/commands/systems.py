@@ -19,7 +19,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Print the descriptions."""
-    from derive.commands.system_description import description
+    from derive.system.files.system_catalogue import description
 
     print("\n\n".join(map(description, arguments.systems or (*names(), *large_names()))))
     return 0
