@@ -17,7 +17,7 @@ from solvers.references.extrapolation import extrapolated
 from solvers.references.taylor import taylor
 from solvers.runge_kutta.method_catalogue import load
 from solvers.scenes.scene import Scene
-from solvers.studies.failure_modes.largest_exponent import Mean, lyapunov
+from solvers.studies.failure_modes.chaos import Mean, lyapunov
 from solvers.studies.work_precision.measured_curves import REPORT_METHODS
 
 Array = NDArray[np.float64]

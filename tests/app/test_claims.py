@@ -14,7 +14,7 @@ from solvers.app.report_evidence import Evidence
 from solvers.app.report_verdicts import _chapter_3, _chapter_5, claims, objectives, recommendations
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
-from solvers.studies.failure_modes.largest_exponent import Mean
+from solvers.studies.failure_modes.chaos import Mean
 from solvers.studies.failure_modes.study import studies
 
 EQUATIONS = {"verified": 119, "misprint": 23}

@@ -14,9 +14,8 @@ from solvers.app.report_evidence import Evidence
 from solvers.app.report_verdicts import objectives
 from solvers.runge_kutta.method_catalogue import load as load_method
 from solvers.scenes.scene import Scene
-from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, statistics
+from solvers.studies.failure_modes.chaos import CHAOTIC, LONG_RUNS, lyapunov, statistics
 from solvers.studies.failure_modes.drift import EnergyDrift
-from solvers.studies.failure_modes.largest_exponent import lyapunov
 from solvers.studies.failure_modes.separatrix import upright
 from solvers.studies.failure_modes.stiffness import Stiffness, crossover
 from solvers.studies.stability import CriticalStep

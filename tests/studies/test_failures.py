@@ -20,21 +20,23 @@ from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
 from solvers.studies.failure_modes.chaos import (
     CHAOTIC,
+    INDEPENDENT,
     LONG_RUNS,
     OFFSET,
     Chaos,
     ChaosResults,
     Horizon,
+    Mean,
     Separation,
     Statistics,
     horizon,
+    lyapunov,
     reference_motion,
     separation,
     statistics,
 )
 from solvers.studies.failure_modes.conservation import Conservation, cost
 from solvers.studies.failure_modes.drift import CASES, Drift, EnergyDrift
-from solvers.studies.failure_modes.largest_exponent import INDEPENDENT, Mean, lyapunov
 from solvers.studies.failure_modes.study import studies
 
 
