@@ -8,7 +8,6 @@ Further kinds of tokens arise: ``word`` (``\text{kin}``), ``prose`` (``\text{and
 import re
 from dataclasses import replace
 
-from derive.reading.latex.layout.cursor import Cursor
 from derive.reading.latex.layout.latex_symbols import (
     BRACKETS,
     CONNECTIVES,
@@ -23,7 +22,7 @@ from derive.reading.latex.layout.latex_symbols import (
     UPRIGHT,
 )
 from derive.reading.latex.layout.pairs import is_operator
-from derive.reading.latex.layout.tokens import Token, UnreadError
+from derive.reading.latex.layout.tokens import Token, UnreadError, argument, skip_spaces
 from derive.reading.latex.tree import Span
 
 #: Lengths from which a space separates statements, in each unit.
@@ -34,11 +33,11 @@ WIDE = {"cm": 0.5, "mm": 5, "em": 1, "ex": 2, "pt": 10, "in": 0.2, "mu": 18}
 ENERGY = re.compile(r"[KPTkp]\.[Ee]\.")
 
 
-class Layout(Cursor):
+class Layout:
     """A reader of the tokens of a display."""
 
     def __init__(self, tokens: list[Token]) -> None:
-        super().__init__(tokens)
+        self.tokens = tokens
         self.result: list[Token] = []
         self._opened: list[int] = []  # places of \left in the result
 
@@ -48,6 +47,29 @@ class Layout(Cursor):
         while at < len(self.tokens):
             at = self._read(at)
         return self.result
+
+    def star(self, at: int) -> int:
+        """The token after a star, if there is one."""
+        return at + 1 if at < len(self.tokens) and self.tokens[at].kind == "*" else at
+
+    def skip(self, at: int) -> int:
+        """The first token from a place on that is no space."""
+        return skip_spaces(self.tokens, at)
+
+    def end_of_argument(self, at: int) -> int:
+        """The token after the argument at a place."""
+        if self.skip(at) >= len(self.tokens):
+            raise UnreadError("an argument is missing at the end")
+        if (result := argument(self.tokens, at)) is None:
+            raise UnreadError("a brace is never closed")
+        return result[1]
+
+    def source(self, start: int, end: int) -> str:
+        """The text of tokens without outer braces, spaces as they stand."""
+        tokens = self.tokens[self.skip(start) : end]
+        if tokens and tokens[0].kind == "{":
+            tokens = tokens[1:-1]
+        return "".join(f"\\{t.text}" if t.kind == "command" else t.text for t in tokens)
 
     def _read(self, at: int) -> int:
         token = self.tokens[at]

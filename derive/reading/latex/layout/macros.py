@@ -9,7 +9,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from derive.reading.latex.layout.tokens import Token, UnreadError, tokenize
+from derive.reading.latex.layout.tokens import (
+    Token,
+    UnreadError,
+    argument,
+    skip_spaces,
+    tokenize,
+)
 from derive.reading.latex.tree import Span
 
 COMMANDS = frozenset(
@@ -53,24 +59,24 @@ def _is_comment(text: str, position: int) -> bool:
 def definition(latex: str, tokens: list[Token], start: int) -> tuple[Macro, int] | None:
     """The macro that a command defines, and the token after it; None if it defines no macro."""
     command = tokens[start].text
-    at = _skip(tokens, start + 1)
+    at = skip_spaces(tokens, start + 1)
     if at < len(tokens) and tokens[at].kind == "*":
-        at = _skip(tokens, at + 1)
+        at = skip_spaces(tokens, at + 1)
     if command in ("def", "gdef"):
         return _plain_definition(latex, tokens, at)
-    name = _argument(tokens, at)
+    name = argument(tokens, at)
     inner = [t for t in tokens[slice(*name[0])] if t.kind != "space"] if name else []
     if name is None or len(inner) != 1 or inner[0].kind != "command":
         return None
     options: list[str] = []
-    at = _skip(tokens, name[1])
+    at = skip_spaces(tokens, name[1])
     while at < len(tokens) and tokens[at].kind == "[" and len(options) < 2:
         end = next((i for i in range(at, len(tokens)) if tokens[i].kind == "]"), None)
         if end is None:
             return None
         options.append(_text(latex, tokens[at + 1 : end]))
-        at = _skip(tokens, end + 1)
-    body = _argument(tokens, at)
+        at = skip_spaces(tokens, end + 1)
+    body = argument(tokens, at)
     if body is None or (options and not re.fullmatch(r"\s*\d\s*", options[0])):
         return None
     text = _text(latex, tokens[slice(*body[0])])
@@ -89,31 +95,10 @@ def _plain_definition(latex: str, tokens: list[Token], at: int) -> tuple[Macro, 
         count, at = count + 1, at + 2
     if at >= len(tokens) or tokens[at].kind != "{":
         return None
-    body = _argument(tokens, at)
+    body = argument(tokens, at)
     if body is None:
         return None
     return Macro(name, _text(latex, tokens[slice(*body[0])]), count), body[1]
-
-
-def _skip(tokens: list[Token], at: int) -> int:
-    while at < len(tokens) and tokens[at].kind == "space":
-        at += 1
-    return at
-
-
-def _argument(tokens: list[Token], at: int) -> tuple[tuple[int, int], int] | None:
-    """Tokens of the argument at a place, and the token after it; None if there is none."""
-    at = _skip(tokens, at)
-    if at >= len(tokens):
-        return None
-    if tokens[at].kind != "{":
-        return (at, at + 1), at + 1
-    depth = 0
-    for end in range(at, len(tokens)):
-        depth += {"{": 1, "}": -1}.get(tokens[end].kind, 0)
-        if depth == 0:
-            return (at + 1, end), end + 1
-    return None
 
 
 def _text(latex: str, tokens: list[Token]) -> str:

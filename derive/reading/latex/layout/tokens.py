@@ -85,3 +85,25 @@ def script_of(character: str) -> str:
     """The sign of a raised or lowered character, ``^`` or ``_``, or nothing."""
     kind = unicodedata.decomposition(character).partition(">")[0]
     return {"<super": "^", "<sub": "_"}.get(kind, "")
+
+
+def skip_spaces(tokens: list[Token], at: int) -> int:
+    """The first token from a place on that is no space."""
+    while at < len(tokens) and tokens[at].kind == "space":
+        at += 1
+    return at
+
+
+def argument(tokens: list[Token], at: int) -> tuple[tuple[int, int], int] | None:
+    """Tokens of the argument at a place, and the token after it; None if there is none."""
+    at = skip_spaces(tokens, at)
+    if at >= len(tokens):
+        return None
+    if tokens[at].kind != "{":
+        return (at, at + 1), at + 1
+    depth = 0
+    for end in range(at, len(tokens)):
+        depth += {"{": 1, "}": -1}.get(tokens[end].kind, 0)
+        if depth == 0:
+            return (at + 1, end), end + 1
+    return None
