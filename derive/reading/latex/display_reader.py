@@ -36,7 +36,11 @@ from derive.reading.latex.layout.layout_removal import Layout
 from derive.reading.latex.layout.macros import Macro, expanded, macros_of
 from derive.reading.latex.layout.pairs import inside, pairs
 from derive.reading.latex.layout.rows import flattened, statements
-from derive.reading.latex.layout.spellings import with_new_fonts, with_unicode_scripts
+from derive.reading.latex.layout.spellings import (
+    with_fractions_of_derivatives,
+    with_new_fonts,
+    with_unicode_scripts,
+)
 from derive.reading.latex.layout.tokens import Token, UnreadError, tokenize
 from derive.reading.latex.tree import Letter, Node, Span, Statement, Unreadable
 
@@ -79,6 +83,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
         tokens = expanded(latex, tokenize(latex), macros)
         pairs(tokens)  # refuses deep braces before anything descends into them
         tokens = with_new_fonts(with_unicode_scripts(tokens))
+        tokens = with_fractions_of_derivatives(tokens)
         tokens = Layout(tokens).tokens_without_layout()
         found = statements(flattened(tokens))
     except UnreadError as error:

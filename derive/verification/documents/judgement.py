@@ -12,6 +12,7 @@ from derive.reading.latex.tree import (
     Derivative,
     Letter,
     Node,
+    Span,
     Statement,
     Unreadable,
     letters,
@@ -81,7 +82,48 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     A document can treat several systems: another is sought for the formulas with letters that
     have no meaning in those before, then for such below each heading.
     """
-    occurrences, judged = _read(document)
+    occurrences, unreadable = _read(document)
+    result = _judge(document, hints, occurrences, unreadable)
+    for variant, name in VARIANTS:
+        same = _with_one_letter(occurrences, variant, name)
+        if same and (wrong := _wrong(result)):
+            other = _judge(document, hints, same, unreadable)
+            if _wrong(other) < wrong:
+                note = f"{variant} and {name} are taken for one letter, with which more holds"
+                result = replace(other, notes=(*other.notes, note))
+    return result
+
+
+def _wrong(verdicts: DocumentVerdicts) -> set[Span]:
+    """The places of wrong formulas."""
+    return {one.span for one in verdicts.formulas if one.verdict == "wrong"}
+
+
+def _with_one_letter(
+    occurrences: Sequence[Occurrence], variant: str, name: str
+) -> list[Occurrence]:
+    """The statements with one letter for two forms of it; none unless they have both."""
+    if not {variant, name} <= {one.name for place in occurrences for one in letters(place.sides)}:
+        return []
+
+    def change(letter: Letter) -> Letter:
+        return replace(letter, name=name) if letter.name == variant else letter
+
+    return [_with_sides(one, with_letters(one.sides, change)) for one in occurrences]
+
+
+#: Two forms of one letter, which some documents mix.
+VARIANTS = (("ell", "l"), ("varphi", "phi"), ("vartheta", "theta"), ("varepsilon", "epsilon"))
+
+
+def _judge(
+    document: Document,
+    hints: Hints | None,
+    occurrences: Sequence[Occurrence],
+    unreadable: Sequence[FormulaVerdict],
+) -> DocumentVerdicts:
+    """Verdicts on the statements of a document."""
+    judged = [*unreadable]
     statements = implied_rates(translated(occurrences))
     judged += [_plain(place, "context", note) for place, note in statements.failures]
     written = _written(occurrences)
@@ -161,7 +203,30 @@ def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
                     unreadable.append(_plain(place, "unreadable", one.reason))
             elif one.relations or not (display.is_inline or LABEL.fullmatch(place.source)):
                 occurrences.append(place)
-    return _with_differences(_with_lengths(occurrences)), unreadable
+    return _with_any_coordinate(_with_differences(_with_lengths(occurrences))), unreadable
+
+
+def _with_any_coordinate(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
+    """The statements with an index for a letter q by which energies are differentiated alone.
+
+    It stands for any coordinate then, as q_i does.
+    """
+
+    def count(sides: object) -> int:
+        return sum((one.name, one.index) == ("q", "") for one in letters(sides))
+
+    def change(letter: Letter) -> Letter:
+        return replace(letter, index="i") if (letter.name, letter.index) == ("q", "") else letter
+
+    variables = [
+        node.variables
+        for one in occurrences
+        for node in nodes(one.sides)
+        if isinstance(node, Derivative) and count(node.variables)
+    ]
+    if count(tuple(variables)) < sum(count(one.sides) for one in occurrences):
+        return [*occurrences]
+    return [_with_sides(one, with_letters(one.sides, change)) for one in occurrences]
 
 
 #: The name of a plain letter L beside the Lagrangian in script.

@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import groupby
 
 from derive.reading.latex.layout.latex_symbols import COMBINING
+from derive.reading.latex.layout.pairs import pairs
 from derive.reading.latex.layout.tokens import Token, UnreadError, script_of, tokenize
 
 #: Fonts that hold to the end of their braces.
@@ -28,6 +29,25 @@ def with_new_fonts(tokens: list[Token]) -> list[Token]:
             result.insert(brace, font)
         else:
             result.append(token)
+    return result
+
+
+def with_fractions_of_derivatives(tokens: list[Token]) -> list[Token]:
+    r"""Tokens in which ``\partial_{x}`` is ``\frac{\partial}{\partial x}``."""
+    partner, result, at = pairs(tokens), list[Token](), 0
+    while at < len(tokens):
+        sign = tokens[at]
+        index = next((k for k in range(at + 1, len(tokens)) if tokens[k].kind != "space"), at)
+        first = index + 1
+        if sign.text == "partial" and tokens[index].kind == "_" and first < len(tokens):
+            last = partner.get(first, first)
+            variable = tokens[first + 1 : last] if last > first else [tokens[first]]
+            result += [replace(sign, text="frac"), *_braced([sign])]
+            result += _braced([replace(sign, span=tokens[index].span), *variable])
+            at = last
+        else:
+            result.append(sign)
+        at += 1
     return result
 
 

@@ -61,16 +61,16 @@ def _examples(text: str, statements: Translated) -> Iterator[Formulas]:
     """Yield the formulas of examples below headings of their own.
 
     An example begins below a heading with an energy that has been stated before, but has no
-    coordinate in common with the energies since.
+    coordinate in common with the energies since, but for places that it states by others.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
     example, seen = list[DocumentFormula](), dict[str, set[str]]()
     for part in below_each(text, statements.formulas, lambda one: one.occurrence.start):
         own: dict[str, set[str]] = {}
+        placed = {one.subject for one in part if _moving(one, letters) - {one.subject}}
         for formula in part:
             if formula.subject in letters.quantities:
-                words = {stem(word) for word in WORD.findall(formula.sides[-1].text)}
-                moving = words & {*letters.coordinates}
+                moving = _moving(formula, letters) - placed
                 if moving:
                     own.setdefault(formula.subject, set()).update(moving)
         before, after = (set[str]().union(*one.values()) for one in (seen, own))
@@ -81,6 +81,12 @@ def _examples(text: str, statements: Translated) -> Iterator[Formulas]:
         for name, moving in own.items():
             seen.setdefault(name, set()).update(moving)
     yield tuple(example)
+
+
+def _moving(formula: DocumentFormula, letters: Letters) -> set[str]:
+    """The coordinates of the last side of a formula."""
+    words = {stem(word) for word in WORD.findall(formula.sides[-1].text)}
+    return words & {*letters.coordinates}
 
 
 def _cases(formulas: Sequence[DocumentFormula]) -> list[Formulas]:
