@@ -235,6 +235,13 @@ def _contradictions(best: Match, matches: Sequence[Match], judges: Judges) -> Co
                 doubts.setdefault(number, match.candidate.stating)
             for number in match.failed - best.failed:
                 disputed.setdefault(number, best.failed - match.failed)
+    for match in matches:
+        # as a known system without those formulas that state the best
+        is_known = match.candidate.basis == "catalogue" and not match.candidate.lacking
+        rest = match.failed - best.candidate.stating
+        if is_known and match.candidate.is_usual and rest < best.failed - best.candidate.stating:
+            for number in best.failed - match.failed:
+                doubts.setdefault(number, frozenset())
     return Contradictions(doubts, disputed)
 
 
@@ -262,6 +269,7 @@ def _with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) ->
         return best, False
     formulas, letters = judges.statements.formulas, judges.letters
     written = {p for one in formulas for p in one.words} & {*letters.parameters}
+    written &= best.candidate.letters
     others = dict[str, Match]()
     for match in sorted(matches, key=lambda one: -one.score):
         one = match.candidate

@@ -28,21 +28,56 @@ def energies_of_hamiltonians(
     if not 0 < len(momenta) <= MAX_COORDINATES:
         return
     columns = [*momenta.values()]
+    v = sp.Matrix([rates[q] for p, q in letters.momenta.items() if p in momenta])
+    for H, numbers in _hamiltonians(letters, formulas, scope, momenta):
+        with suppress(NotImplementedError, ValueError, TypeError):
+            inverse = sp.ImmutableDenseMatrix(sp.hessian(H, columns))
+            if inverse.free_symbols & {*columns} or inverse.det() == 0:
+                continue
+            if max(map(sp.count_ops, inverse)) > MAX_OPERATIONS:
+                continue
+            T = (v.T * inverse.inv().applyfunc(sp.cancel) * v)[0, 0] / 2
+            yield T, H.xreplace(dict.fromkeys(columns, sp.S.Zero)), numbers
+
+
+def _hamiltonians(
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    scope: Mapping[str, Value],
+    momenta: Mapping[str, sp.Symbol],
+) -> Iterator[tuple[sp.Expr, frozenset[int]]]:
+    """Yield Hamiltonians that are stated, and the one that the canonical equations determine."""
+    rates: dict[str, tuple[sp.Expr, int]] = {}
     for number, formula in enumerate(formulas):
-        kinds = {name: letters.quantities.get(name) for name, _ in definitions(formula)}
-        texts = [text for name, text in definitions(formula) if kinds[name] == "hamiltonian"]
-        for text in texts:
-            with suppress(ExpressionError, NotImplementedError, ValueError, TypeError):
-                H = parse(text, scope)
-                inverse = sp.ImmutableDenseMatrix(sp.hessian(H, columns))
-                if inverse.free_symbols & {*columns} or inverse.det() == 0:
-                    continue
-                if max(map(sp.count_ops, inverse)) > MAX_OPERATIONS:
-                    continue
-                v = sp.Matrix([rates[q] for p, q in letters.momenta.items() if p in momenta])
-                T = (v.T * inverse.inv().applyfunc(sp.cancel) * v)[0, 0] / 2
-                V = H.xreplace(dict.fromkeys(columns, sp.S.Zero))
-                yield T, V, frozenset({number})
+        for name, text in definitions(formula):
+            is_rate = name.endswith("_dot")
+            if is_rate or letters.quantities.get(name) == "hamiltonian":
+                with suppress(ExpressionError, NotImplementedError, ValueError, TypeError):
+                    value = parse(text, scope)
+                    if is_rate:
+                        rates[name] = value, number
+                    else:
+                        yield value, frozenset({number})
+    needed = [f"{one}_dot" for p in momenta for one in (p, letters.momenta[p])]
+    if not {*needed} <= {*rates}:
+        return
+    q = [scope[letters.momenta[p]] for p in momenta]
+    slopes = [rates[f"{letters.momenta[p]}_dot"][0] for p in momenta]
+    T = sp.Add(*(p * slope for p, slope in zip(momenta.values(), slopes, strict=True))) / 2
+    forces = [rates[f"{p}_dot"][0] for p in momenta]
+    gradient = [sp.expand(-force - T.diff(x)) for x, force in zip(q, forces, strict=True)]
+    V = (
+        None
+        if sp.Tuple(*gradient).free_symbols & {*momenta.values()}
+        else potential_of(gradient, q)
+    )
+    if V is not None and all(
+        sp.expand(T.diff(p) - slope) == 0 for p, slope in zip(momenta.values(), slopes, strict=True)
+    ):
+        # an equation with no other force than those of T follows from the others
+        stating = {rates[f"{one}_dot"][1] for one in map(letters.momenta.get, momenta)}
+        pairs = zip(momenta, gradient, strict=True)
+        yield T + V, frozenset(stating | {rates[f"{p}_dot"][1] for p, one in pairs if one != 0})
 
 
 def inertial(kinetic: sp.Expr, q: Sequence[sp.Symbol], index: int) -> sp.Expr:

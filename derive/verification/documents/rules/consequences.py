@@ -216,6 +216,9 @@ def weighed(
         elif verdict.verdict in ("verified", "equivalent") and number in contradictions.disputed:
             note = opposed(lines[min(contradictions.disputed[number])])
             result = plain("context", formula, note)
+        elif verdict.verdict == "wrong" and contradictions.inhomogeneous in candidate.stating:
+            line = lines[contradictions.inhomogeneous or 0]
+            result = plain("context", formula, opposed(line))
         elif verdict.verdict == "wrong" and number in contradictions.doubts:
             other = _lines(lines[k] for k in contradictions.doubts[number] - {number})
             beside = f" and agrees with {other}" if other else ""
