@@ -191,3 +191,17 @@ With $m_1 = m_2 = m$ and $a_1 = a_2 = a$ this is
 $$2 a\ddot\phi_1 + a\ddot\phi_2\cos(\phi_1 - \phi_2) + a\dot\phi_2^2\sin(\phi_1 - \phi_2)
  + 2 g\sin\phi_1 = 0$$"""
     assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
+
+
+def test_an_example_can_use_a_coordinate_before_as_a_component(tmp_path: Path) -> None:
+    text = r"""
+### Ball
+$$T = \frac12 m\dot y^2$$ $$U = m g y$$ $$L = \frac12 m\dot y^2 - m g y$$ $$\ddot y = -g$$
+### Swing
+$$x = l\sin\theta$$ $$y = -l\cos\theta$$ $$U = m g y$$ $$T = \frac12 m(\dot x^2 + \dot y^2)$$
+$$L = \frac12 m l^2\dot\theta^2 + m g l\cos\theta$$ $$\ddot\theta = -\frac gl\sin\theta$$
+"""
+    assert not {"wrong", "context"} & {one.verdict for one in judged(tmp_path, text)}
+    wrong = judged(tmp_path, text.replace(r"\ddot y = -g", r"\ddot y = -2 g"))[3]
+    other = judged(tmp_path, text.replace(r"-\frac gl", r"\frac gl"))[-1]
+    assert (wrong.verdict, other.verdict) == ("wrong", "wrong")

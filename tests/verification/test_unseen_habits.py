@@ -101,3 +101,80 @@ $$m\ddot r = \frac{\ell^2}{m r^3} - \frac{k}{r^2}$$ With $$u = \frac1r$$
 $$\frac{d^2u}{d\theta^2} + u = \frac{m k}{\ell^2}$$"""
     assert verdicts(tmp_path, text)[-1] == "verified"
     assert verdicts(tmp_path, text.replace(r"\frac{m k}", r"\frac{2 m k}"))[-1] == "wrong"
+
+
+DISC = r"""$$H = \frac{p_\alpha^2}{2 A} + \frac{p_\beta^2}{2 A\sin^2\alpha} - m g h\cos\alpha$$
+$$\dot\alpha = \frac{p_\alpha}{A}$$ $$\dot\beta = \frac{p_\beta}{A\sin^2\alpha}$$
+$$\dot p_\alpha = \frac{p_\beta^2\cos\alpha}{A\sin^3\alpha} - m g h\sin\alpha$$
+$$\dot p_\beta = 0$$"""
+
+
+@pytest.mark.parametrize(("old", "new", "first"), [
+    (r"+ \frac{p_\beta^2}{2", r"- \frac{p_\beta^2}{2", "wrong"), (r"h\cos", r"\cos", "wrong"),
+    ("{2 A}", "{A}", "definition"), (r"h\cos", r"h\sin", "definition"),  # opposed by one equation
+])  # fmt: skip
+def test_canonical_equations_refute_a_hamiltonian(
+    old: str, new: str, first: str, tmp_path: Path
+) -> None:
+    assert "wrong" not in verdicts(tmp_path, DISC)
+    found = verdicts(tmp_path, DISC.replace(old, new, 1))
+    assert found[0] == first
+    assert "wrong" not in found[1:]
+
+
+def test_a_slip_in_a_canonical_equation_is_its_own(tmp_path: Path) -> None:
+    text = DISC.replace(r"\dot\beta = \frac{p_\beta}", r"\dot\beta = \frac{2 p_\beta}")
+    assert [k for k, one in enumerate(verdicts(tmp_path, text)) if one == "wrong"] == [2]
+
+
+BLOCKS = r"""$$T_1 = \frac12 M\dot s^2$$
+$$T_2 = \frac12 m(\dot s^2 + b^2\dot\beta^2 + 2 b\dot s\dot\beta\sin\beta)$$
+$$V_1 = \frac12 c s^2$$ $$V_2 = m g b(1 - \sin\beta) + \frac12 d\beta^2$$
+$$(M + m)\ddot s + m b\ddot\beta\sin\beta + m b\dot\beta^2\cos\beta + c s = 0$$
+$$m b^2\ddot\beta + m b\ddot s\sin\beta - m g b\cos\beta + d\beta = 0$$
+$$p_s = (M + m)\dot s + m b\dot\beta\sin\beta$$"""
+
+
+def test_energies_of_parts_alone_state_a_system(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, BLOCKS) == ["definition"] * 4 + ["verified"] * 3
+    assert verdicts(tmp_path, BLOCKS.replace("p_s = (M +", "p_s = (M -"))[-1] == "wrong"
+
+
+def test_an_exponent_of_an_energy_is_a_label(tmp_path: Path) -> None:
+    text = BLOCKS.replace("T_1", "T^c_1").replace("T_2", "T^b_2")
+    assert verdicts(tmp_path, text)[4:] == ["verified"] * 3
+
+
+SWING = r"""$$T = \frac12 m\ell^2\dot\theta^2$$ $$U = -m g l\cos\theta$$
+$$L = \frac12 m\ell^2\dot\theta^2 + m g l\cos\theta$$"""
+
+
+def test_two_forms_of_a_letter_are_one(tmp_path: Path) -> None:
+    equation = r"$$m\ell^2\ddot\theta = -m g\ell\sin\theta$$"
+    assert verdicts(tmp_path, SWING + equation)[-1] == "verified"
+    wrong = equation.replace(r"g\ell", r"g\ell^2")
+    assert verdicts(tmp_path, SWING + wrong)[-1] == "wrong"
+
+
+@pytest.mark.parametrize("momentum", [r"\partial_{\dot\theta} L", r"\partial_{\dot{\theta}}L"])
+def test_an_index_of_a_derivative_is_its_variable(momentum: str, tmp_path: Path) -> None:
+    text = SWING.replace(r"\ell", "l") + rf"$$p_\theta = {momentum} = m l^2\dot\theta$$"
+    assert verdicts(tmp_path, text)[-1] == "verified"
+    assert verdicts(tmp_path, text.replace("= m l^2", "= 2 m l^2"))[-1] == "wrong"
+
+
+def test_a_coordinate_q_of_derivatives_alone_is_any(tmp_path: Path) -> None:
+    general = (
+        r"$$\frac{\partial L}{\partial q} - \frac{d}{dt}\frac{\partial L}{\partial\dot q} = 0$$"
+    )
+    text = SWING.replace(r"\ell", "l") + general
+    assert verdicts(tmp_path, text)[-1] == "verified"
+
+
+def test_a_known_system_that_fits_all_but_an_energy_leaves_it_open(tmp_path: Path) -> None:
+    text = r"""$$T = \frac15 (M + m)\dot x^2 + m l\dot x\dot\theta\cos\theta
+ + \frac12 (m l^2 + I)\dot\theta^2$$ $$V = -m g l\cos\theta$$
+$$(M + m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$(m l^2 + I)\ddot\theta + m l\ddot x\cos\theta + m g l\sin\theta = 0$$"""
+    assert verdicts(tmp_path, text)[2:] != ["wrong", "verified"]
+    assert "wrong" not in verdicts(tmp_path, text)[1:]

@@ -248,6 +248,15 @@ def with_differences(node: Any) -> Any:
     return _with_parts(node, with_differences)
 
 
+def with_labels(node: Any, names: Collection[str]) -> Any:
+    """A tree, or a tuple of trees, in which letters as exponents of some letters are indices."""
+    match node:
+        case Power(base=Letter() as base, exponent=Letter() as label) if base.name in names:
+            index = "_".join(filter(None, (base.index, label.identifier)))
+            return replace(base, index=index, span=node.span)
+    return _with_parts(node, lambda part: with_labels(part, names))
+
+
 def _difference(sign: Letter, node: Node) -> Node | None:
     """The letter behind a sign of differences with this as part of its name, or its power."""
     if isinstance(node, Power):

@@ -18,6 +18,7 @@ from derive.reading.latex.tree import (
     letters,
     nodes,
     with_differences,
+    with_labels,
     with_letters,
 )
 from derive.verification.documents.formula_translation import RATES, FormulaTranslator, stem
@@ -31,6 +32,7 @@ from derive.verification.documents.letter_meanings import (
 from derive.verification.documents.letters.convention import convention
 from derive.verification.documents.letters.hints import Hints
 from derive.verification.documents.letters.letter_roles import letters_of
+from derive.verification.documents.letters.letters import QUANTITIES
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.subjects import implied_rates, subjects
 from derive.verification.documents.pages.verdicts_in_place import (
@@ -201,7 +203,9 @@ def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
             if isinstance(one, Unreadable):
                 if not display.is_inline:
                     unreadable.append(_plain(place, "unreadable", one.reason))
-            elif one.relations or not (display.is_inline or LABEL.fullmatch(place.source)):
+                continue
+            place = _with_sides(place, with_labels(one.sides, QUANTITIES))
+            if one.relations or not (display.is_inline or LABEL.fullmatch(place.source)):
                 occurrences.append(place)
     return _with_any_coordinate(_with_differences(_with_lengths(occurrences))), unreadable
 

@@ -318,8 +318,7 @@ def _is_supported(best: Match, least: float) -> bool:
     """Whether enough comparisons hold: more of them if most do not, or letters are unusual."""
     if best.support < 0 and best.compared - len(best.failed) < ENOUGH:
         return False
-    stated = len(best.candidate.stating)  # of which the system follows
-    holding, compared = best.holding - stated, best.compared - stated
+    holding, compared = best.holding - best.stating, best.compared - best.stating
     if best.candidate.is_usual:
         return holding >= max(1, min(ENOUGH, least * compared))
     return holding >= max(1, UNUSUAL * compared)

@@ -23,7 +23,7 @@ from derive.verification.documents.letters.implied_energies import (
     Energies,
     energies_of_hamiltonians,
 )
-from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.letters import Letters, energy_of_part
 from derive.verification.documents.statements import DocumentFormula, definitions
 
 #: Energies by their kinds, and the numbers of their formulas: different values, the first first.
@@ -223,8 +223,32 @@ def stated_energies(
             V = sign * value.xreplace(at_rest)
             yield sp.expand(value - sign * V), V, frozenset({number})
     yield from energies_of_hamiltonians(letters, formulas, values)
+    if not kinetic:
+        yield from _sums_of_parts(formulas, values)
     if not potential:
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
+
+
+def _sums_of_parts(
+    formulas: Sequence[DocumentFormula], values: Mapping[str, Value]
+) -> Iterator[Energies]:
+    """Yield the sums of energies of parts, such as T_1 and T_2, that no other part contains."""
+    parts: dict[str, tuple[sp.Expr, int]] = {}
+    words = {one.subject: {*one.words} for one in formulas if energy_of_part(one.subject)}
+    for number, formula in enumerate(formulas):
+        name = formula.subject
+        is_inner = any(name in own for subject, own in words.items() if subject != name)
+        if name in words and name not in parts and not is_inner:
+            with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                value = parse(formula.sides[-1].text, values)
+                if isinstance(value, sp.Expr):
+                    parts[name] = value, number
+    sums = {"kinetic_energy": sp.S.Zero, "potential_energy": sp.S.Zero}
+    for name, (value, _) in parts.items():
+        sums[str(energy_of_part(name))] += value
+    if all(sums.values()):
+        numbers = frozenset(number for _, number in parts.values())
+        yield sums["kinetic_energy"], sums["potential_energy"], numbers
 
 
 def stated_values(

@@ -38,6 +38,15 @@ SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
 #: Indices that change nothing.
 TOTAL = ("", "tot", "total", "sys")
 
+
+def energy_of_part(name: str) -> str | None:
+    """The energy of which a name denotes a part, such as T_1 and E_k1."""
+    letter, _, index = name.partition("_")
+    kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
+    is_part = kind in ("kinetic_energy", "potential_energy") and index not in TOTAL
+    return kind if is_part else None
+
+
 #: Kinds of parameters by the first letters of their names, the usual ones first.
 KINDS: dict[str, tuple[str, ...]] = {
     "mass": ("m", "M", "mu", "mass"),

@@ -67,10 +67,12 @@ def _examples(text: str, statements: Translated) -> Iterator[Formulas]:
     example, seen = list[DocumentFormula](), dict[str, set[str]]()
     for part in below_each(text, statements.formulas, lambda one: one.occurrence.start):
         own: dict[str, set[str]] = {}
-        placed = {one.subject for one in part if _moving(one, letters) - {one.subject}}
+        places = {one.subject: _moving(one, letters) for one in part if POINT.match(one.subject)}
         for formula in part:
             if formula.subject in letters.quantities:
-                moving = _moving(formula, letters) - placed
+                moving = {
+                    one for name in _moving(formula, letters) for one in places.get(name) or {name}
+                }
                 if moving:
                     own.setdefault(formula.subject, set()).update(moving)
         before, after = (set[str]().union(*one.values()) for one in (seen, own))

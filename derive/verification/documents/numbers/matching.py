@@ -49,6 +49,8 @@ class Match:
     is_nearly: bool = True
     #: Alike for candidates of the same motions and energies.
     signature: bytes = b""
+    #: Comparisons that hold because they state the system.
+    stating: int = 0
 
     @property
     def support(self) -> float:
@@ -132,7 +134,7 @@ def best_matches(
     rows = np.array([index for index, *_ in votes])
     return [
         Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
-              bool(is_nearly[k]), signature)
+              bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows))
         for signature, k in [*chosen.items()][:MAX_RIVALS]
     ]  # fmt: skip
 

@@ -16,6 +16,7 @@ from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import derivation
+from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import WORD, DocumentFormula
@@ -163,10 +164,10 @@ def weighed(
     rate of a position that a system of energies or equations does not contain. A system that is
     known from elsewhere must have a letter for each of its parameters, unless that is a factor of
     the Lagrangian, such as the mass of a single body, and the accelerations as written have no
-    potential of their own; and more formulas that hold than such with more than one wrong term, and
-    than slips if one is in an energy, beside which one must hold. With a partial search for it,
-    none is wrong. A formula whose dimensions contradict those of all others needs no more evidence
-    if one term is wrong.
+    potential of their own; and no more formulas with more than one wrong term, or slips if one is
+    in an energy, than half of those that hold, of which there must be one. With a partial search
+    for it, none is wrong. A formula whose dimensions contradict those of all others needs no more
+    evidence if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -184,20 +185,21 @@ def weighed(
         one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES for _, one in results
     )
     slips = max(misfits, len(terms) if has_energy else 0)
+    few = max(1, min(holding, max(2, holding // 2)))
     has_none = has_energy and holding == 0 and len(wrong) > 1
-    is_weak = is_known and (is_partial or not has_all or has_none or slips > max(1, holding))
+    is_weak = is_known and (is_partial or not has_all or has_none or slips > few)
     is_guess = is_known and holding < 2 and candidate.is_turned
     independent = sum(FOLLOWS not in one.note for one in wrong)
     is_tie = candidate.is_of_equations and (independent != 1 or holding < 2 or misfits > 0)
     given = _lines(lines[k] for k in candidate.stating)
     undecided = {*_of_friction(results, candidate)}
-    # rates of positions of which nothing in a system of energies or equations shows that they hold
+    # rates of positions, or of other names, of which nothing in a system shows that they hold
     shown = {w for formula, one in results if one.verdict.verdict == "verified"
              for w in formula.words}  # fmt: skip
     unused = {
         f"{formula.subject}_dot": lines[k]
         for k, (formula, one) in enumerate(results)
-        if candidate.stating
+        if (candidate.stating or (is_known and not POINT.match(formula.subject)))
         and one.verdict.verdict == "definition"
         and k not in candidate.stating
         and formula.subject not in shown

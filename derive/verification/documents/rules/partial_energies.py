@@ -9,12 +9,9 @@ import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Kinetics
-from derive.verification.documents.letters.letters import KINDS_OF_ENERGIES, QUANTITIES, TOTAL
+from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
-
-#: Energies whose parts are considered.
-SUMMED = ("kinetic_energy", "potential_energy")
 
 
 class PartialEnergies:
@@ -40,7 +37,7 @@ class PartialEnergies:
     def _correct(self, formula: DocumentFormula) -> sp.Expr | None:
         """The value of another side that is a part of the energy, or what the sum requires."""
         name = formula.subject
-        kind = _kind(name)
+        kind = energy_of_part(name)
         own = self._namespace.names[name]
         if kind is None or isinstance(own, sp.MatrixBase) or self._is_part(kind, own):
             return None
@@ -72,7 +69,7 @@ class PartialEnergies:
         """The names of partial energies that the document defines, one for each body or force."""
         groups: dict[str, list[str]] = {}
         for name in self._namespace.defining:
-            kind = _kind(name)
+            kind = energy_of_part(name)
             if kind and not isinstance(self._namespace.names[name], sp.MatrixBase):
                 groups.setdefault(kind, []).append(name)
         masses = len(self._namespace.derivation.system.masses)
@@ -108,10 +105,3 @@ class PartialEnergies:
             )
         except (ExpressionError, NotImplementedError):
             return False
-
-
-def _kind(name: str) -> str | None:
-    """The energy of which a name denotes a part."""
-    letter, _, index = name.partition("_")
-    kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
-    return kind if kind in SUMMED and index not in TOTAL else None
