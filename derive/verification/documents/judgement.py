@@ -9,11 +9,13 @@ from derive.reading.document import Display, Document, divided
 from derive.reading.latex.display_reader import formulas, macros_of
 from derive.reading.latex.tree import (
     DIFFERENCE,
+    Application,
     Derivative,
     Letter,
     Node,
     Span,
     Statement,
+    Sum,
     Unreadable,
     letters,
     nodes,
@@ -233,12 +235,15 @@ def _with_any_coordinate(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     return [_with_sides(one, with_letters(one.sides, change)) for one in occurrences]
 
 
-#: The name of a plain letter L beside the Lagrangian in script.
+#: The name of a letter L that is a length beside the Lagrangian.
 LENGTH = "length"
 
 
 def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
-    r"""The statements, with lengths for plain letters L where the Lagrangian is ``\mathcal L``."""
+    r"""The statements, with lengths for some letters L beside the Lagrangian.
+
+    They are plain where the Lagrangian is ``\mathcal L``, or factors where it is alone.
+    """
 
     def is_plain(place: Occurrence, letter: Letter) -> bool:
         return place.latex[slice(*letter.span)].lstrip("{ ").startswith("L")
@@ -249,14 +254,35 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         for letter in nodes(one.sides)
         if isinstance(letter, Letter) and letter.name == "L"
     }
-    if len(found) < 2:
+    differentiated = {
+        letter.name
+        for one in occurrences
+        for node in nodes(one.sides)
+        if isinstance(node, Derivative) and isinstance(letter := node.operand, Letter)
+    }
+    if len(found) < 2 and "L" not in differentiated:
         return [*occurrences]
 
-    def change(place: Occurrence, letter: Letter) -> Letter:
-        is_length = letter.name == "L" and is_plain(place, letter)
+    def change(place: Occurrence, alone: set[Span], letter: Letter) -> Letter:
+        if letter.name != "L" or letter.index:
+            return letter
+        is_length = is_plain(place, letter) if len(found) > 1 else letter.span not in alone
         return replace(letter, name=LENGTH) if is_length else letter
 
-    return [_with_sides(one, with_letters(one.sides, partial(change, one))) for one in occurrences]
+    def changed(place: Occurrence) -> Occurrence:
+        alone = {one.span for one in (*place.sides, *_terms(place.sides))}
+        return _with_sides(place, with_letters(place.sides, partial(change, place, alone)))
+
+    return [changed(one) for one in occurrences]
+
+
+def _terms(sides: object) -> Iterator[Node]:
+    """Terms of sums, and what derivatives apply to."""
+    for node in nodes(sides):
+        if isinstance(node, Sum):
+            yield from (term for _, term in node.terms)
+        if isinstance(node, Derivative | Application):
+            yield node.operand if isinstance(node, Derivative) else node.head
 
 
 def _with_sides(place: Occurrence, sides: tuple[Node, ...]) -> Occurrence:

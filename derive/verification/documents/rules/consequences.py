@@ -34,6 +34,8 @@ ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
 #: The note on a formula whose dimensions contradict those of all others.
 INHOMOGENEOUS = "its dimensions contradict those of all other formulas"
+#: The note on a rate that contradicts any position.
+NO_RATE = "nothing that depends on the coordinates has this rate"
 UNDECIDED = "nothing else in the document decides which of them is wrong"
 #: The reason of a verdict that a system without enough support gives.
 UNSUPPORTED = (
@@ -213,6 +215,8 @@ def weighed(
             result = replace(result, verdict=replace(verdict, note=note))
         elif is_inhomogeneous and verdict.verdict == "definition":
             result = plain("context", formula, INHOMOGENEOUS)
+        elif verdict.verdict == "wrong" and _is_no_rate(formula, candidate):
+            result = replace(result, verdict=replace(verdict, note=joined(verdict.note, NO_RATE)))
         elif is_guess and verdict.verdict in ("verified", "equivalent", "wrong"):
             result = plain("context", formula, UNSTATED)
         elif verdict.verdict in ("verified", "equivalent") and number in contradictions.disputed:
@@ -242,6 +246,27 @@ def weighed(
             note = joined(verdict.note, f"given {given}")
             result = replace(result, verdict=replace(verdict, note=note))
         yield formula, result
+
+
+def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
+    """Whether a formula states the rate of a component of a position that no function has."""
+    name = formula.subject.removesuffix("_dot")
+    if name == formula.subject or not POINT.match(name) or name in candidate.coordinates:
+        return False
+    words = {*formula.words, *candidate.coordinates, *(f"{q}_dot" for q in candidate.coordinates)}
+    symbols = {word: sp.Symbol(word) for word in words - {*FUNCTIONS, "t"}}
+    try:
+        value = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS, "t": TIME})
+    except ExpressionError:
+        return False
+    pairs = [(symbols[q], symbols[f"{q}_dot"]) for q in candidate.coordinates]
+    if not isinstance(value, sp.Expr):
+        return False
+    slopes = [(q, value.diff(v)) for q, v in pairs]
+    if any(slope.has(v) for _, slope in slopes for _, v in pairs):
+        return True
+    slopes.append((TIME, value.xreplace({v: sp.S.Zero for _, v in pairs})))
+    return any(sp.expand(a.diff(p) - b.diff(q)) != 0 for (q, a), (p, b) in combinations(slopes, 2))
 
 
 def _is_driven(candidate: SystemCandidate) -> bool:
