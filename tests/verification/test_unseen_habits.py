@@ -178,3 +178,62 @@ $$(M + m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
 $$(m l^2 + I)\ddot\theta + m l\ddot x\cos\theta + m g l\sin\theta = 0$$"""
     assert verdicts(tmp_path, text)[2:] != ["wrong", "verified"]
     assert "wrong" not in verdicts(tmp_path, text)[1:]
+
+
+PULLEY = r"""$$T = \frac12 m_1\dot y_1^2 + \frac12 m_2\dot y_2^2$$ $$V = m_1 g y_1 + m_2 g y_2$$
+$$y_1 + y_2 = c$$ $$\dot y_2 = -\dot y_1$$ $$(m_1 + m_2)\ddot y_1 = (m_2 - m_1) g$$"""
+
+
+def test_lost_dots_that_dimensions_restore_are_wrong(tmp_path: Path) -> None:
+    assert "wrong" not in verdicts(tmp_path, PULLEY)
+    lost = PULLEY.replace(r"\dot y_1^2", "y_1^2").replace(r"\dot y_2^2", "y_2^2")
+    first, *others = judged(tmp_path, lost).formulas
+    assert first.verdict == "wrong"
+    assert first.correction == r"T = \frac12 m_1\dot y_1^2 + \frac12 m_2\dot y_2^2"
+    assert "wrong" not in [one.verdict for one in others]
+
+
+def test_a_lost_dot_beside_forces_without_a_meaning_is_wrong(tmp_path: Path) -> None:
+    text = r"""$$M = m l^2\ddot\theta + m g l\sin\theta + B\dot\theta$$
+$$K = \frac12 m l^2\dot\theta^2$$ $$U = -m g l\cos\theta$$ $$E = K + U$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+    (wrong,) = [
+        one
+        for one in judged(tmp_path, text.replace(r"\ddot", r"\dot")).formulas
+        if one.verdict == "wrong"
+    ]
+    assert (wrong.line, wrong.wrong_term) == (1, r"\dot\theta")
+
+
+CARRIAGE = r"""$$L = T - V$$ $$\frac{d}{dt}\frac{\partial L}{\partial\dot x} = 0$$
+$$x_p = x + L\sin\theta$$ $$\dot x_p = \dot x + L\dot\theta\cos\theta$$
+$$y_p = L\cos\theta$$ $$\dot y_p = -L\dot\theta\sin\theta$$
+$$T = \frac12 M\dot x^2 + \frac12 m(\dot x_p^2 + \dot y_p^2)$$ $$V = m g y_p$$
+$$L = \frac12 (M + m)\dot x^2 + m L\dot x\dot\theta\cos\theta + \frac12 m L^2\dot\theta^2
+ - m g L\cos\theta$$"""
+
+
+@pytest.mark.parametrize(("old", "new", "number"), [
+    (r"L\dot\theta\cos\theta$$", r"L\cos\theta$$", 3), (r"-L\dot\theta\sin", r"-L\sin", 5),
+    (r"+ m L\dot x", r"- m L\dot x", 8), (r"L^2\dot\theta^2", r"L\dot\theta^2", 8),
+])  # fmt: skip
+def test_a_length_l_beside_a_lagrangian_l(old: str, new: str, number: int, tmp_path: Path) -> None:
+    assert not {"wrong", "context"} & {*verdicts(tmp_path, CARRIAGE)}
+    found = verdicts(tmp_path, CARRIAGE.replace(old, new))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [number]
+
+
+BALL = r"""$$x = R\sin\alpha\cos\beta$$ $$y = R\sin\alpha\sin\beta$$ $$z = R\cos\alpha$$
+$$\dot x = R\dot\alpha\cos\alpha\cos\beta - R\dot\beta\sin\alpha\sin\beta$$
+$$\dot y = R\dot\alpha\cos\alpha\sin\beta + R\dot\beta\sin\alpha\cos\beta$$
+$$\dot z = -R\dot\alpha\sin\alpha$$"""
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    (r"\sin\alpha\cos\beta" + "$$\n$$\\dot z", r"\sin\alpha\cos\alpha" + "$$\n$$\\dot z"),
+    (r"R\dot\alpha\cos\alpha\sin", r"R\alpha\cos\alpha\sin"),
+])  # fmt: skip
+def test_a_rate_that_no_position_has_is_wrong(old: str, new: str, tmp_path: Path) -> None:
+    assert "wrong" not in verdicts(tmp_path, BALL)
+    found = verdicts(tmp_path, BALL.replace(old, new))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [4]

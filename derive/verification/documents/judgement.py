@@ -43,7 +43,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.documents.rules.consequences import weighed
+from derive.verification.documents.rules.consequences import of_lost_dots, weighed
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
 from derive.verification.documents.rules.identities import Identities
@@ -143,6 +143,10 @@ def _judge(
             part = replace(statements, formulas=remaining)
             found = interpretation(part, hints, work, moving)
             if found.match is None:
+                if found.contradictions.lost_dots:
+                    formula = remaining[found.contradictions.inhomogeneous or 0]
+                    result = of_lost_dots(formula, found.contradictions)
+                    results[formula.occurrence] = formula, result
                 break
             candidate = found.match.candidate
             titles.append(candidate.title)

@@ -10,7 +10,7 @@ from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.judges import Judges, Results
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
-from derive.verification.documents.letters.dimensions import inhomogeneous_formula
+from derive.verification.documents.letters.dimensions import inhomogeneous_formula, lost_dots
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
 from derive.verification.documents.letters.further_systems import templates
 from derive.verification.documents.letters.hints import Hints
@@ -116,7 +116,8 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
     """The interpretation, or one by the other formulas if these alone refute the inhomogeneous."""
     judges = result.judges
     letters, statements = judges.letters, judges.statements
-    known = replace(result.contradictions, inhomogeneous=number)
+    dots = lost_dots(letters, statements.formulas, statements.derivatives, number)
+    known = replace(result.contradictions, inhomogeneous=number, lost_dots=dots)
     own = result.match.candidate if result.match else None
     if own and _refutes(judges, own, number):
         disputed = {k: them - {number} for k, them in known.disputed.items() if them - {number}}

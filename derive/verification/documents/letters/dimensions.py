@@ -8,12 +8,19 @@ letters; others follow from the document.
 
 import ast
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
-from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.formula_translation import (
+    RATES,
+    FormulaText,
+    order,
+    stem,
+)
 from derive.verification.documents.letters.letters import ANGLES, MATRICES, Letters
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.judging.verdict import Correction
 
 #: The exponent of each letter in a dimension; those of units are names that no letter has.
 Dimension = Mapping[str, Fraction]
@@ -60,6 +67,35 @@ def inhomogeneous_formula(
     dimensions = (_reduced(equations.letter(one), pivots) for one in own)
     has_units = any(one and {*one} <= {*UNITS} for one in dimensions)
     return number if has_units else None
+
+
+def lost_dots(
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+    number: int,
+) -> tuple[Correction, ...]:
+    """The rates in place of letters in the last side of a formula that restore its dimensions.
+
+    These are one rate, or those of all letters without dots; none if several would do.
+    """
+    formula = formulas[number]
+    *first, last = formula.sides
+    words = {word for one in formulas for word in one.words}
+    moving = {*letters.coordinates, *(stem(word) for word in words if order(word))}
+    places = [one for one in WORD.finditer(last.text) if stem(one[0]) in moving]
+    found: dict[str, tuple[Correction, ...]] = {}
+    for chosen in ([one for one in places if not order(one[0])], *([one] for one in places)):
+        text, pieces = last.text, list[Correction]()
+        for place in reversed(chosen):
+            rate = stem(place[0]) + RATES[min(2, order(place[0]) + 1)]
+            text = text[: place.start()] + rate + text[place.end() :]
+            pieces.append(Correction(place[0], rate, place.span()))
+        other = replace(formula, sides=(*first, FormulaText(text)))
+        changed = (*formulas[:number], other, *formulas[number + 1 :])
+        if _pivots(_Equations(letters, changed, derivatives).rows().values()) is not None:
+            found[text] = tuple(pieces[::-1])
+    return next(iter(found.values())) if len(found) == 1 and not formula.index else ()
 
 
 class _Equations:

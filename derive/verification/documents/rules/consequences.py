@@ -22,6 +22,7 @@ from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import time_derivative
+from derive.verification.judging.verdict import Correction
 
 #: Kinds of formulas that no other case of the system gives.
 OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
@@ -59,6 +60,8 @@ class Contradictions:
     disputed: Mapping[int, frozenset[int]] = field(default_factory=dict)
     #: The one formula whose dimensions contradict those of all others.
     inhomogeneous: int | None = None
+    #: The rates that it lacks.
+    lost_dots: tuple[Correction, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -213,6 +216,8 @@ def weighed(
             note = joined(verdict.note, INHOMOGENEOUS)
             note = joined(note, f"given {given}") if given else note
             result = replace(result, verdict=replace(verdict, note=note))
+        elif is_inhomogeneous and verdict.verdict != "wrong" and contradictions.lost_dots:
+            result = of_lost_dots(formula, contradictions)
         elif is_inhomogeneous and verdict.verdict == "definition":
             result = plain("context", formula, INHOMOGENEOUS)
         elif verdict.verdict == "wrong" and _is_no_rate(formula, candidate):
@@ -246,6 +251,13 @@ def weighed(
             note = joined(verdict.note, f"given {given}")
             result = replace(result, verdict=replace(verdict, note=note))
         yield formula, result
+
+
+def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> SideVerdict:
+    """The verdict on a formula that lacks dots, which its dimensions alone show."""
+    result = plain("wrong", formula, INHOMOGENEOUS)
+    verdict = replace(result.verdict, corrections=contradictions.lost_dots)
+    return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
 
 
 def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
