@@ -10,7 +10,6 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.formula_translation import FormulaText, order, stem
-from derive.verification.documents.letters.entries import matrices_by_entries
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
     COLUMN,
@@ -23,6 +22,7 @@ from derive.verification.documents.letters.letters import (
     SQUARES,
     TOTAL,
     Letters,
+    matrices_by_entries,
 )
 from derive.verification.documents.letters.stated_constraints import (
     multipliers_of,

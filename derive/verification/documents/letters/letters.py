@@ -5,10 +5,12 @@ alike everywhere.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Self
+from typing import Any, Self
+
+import sympy as sp
 
 from derive.verification.documents.jets import FUNCTIONS
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
@@ -138,3 +140,46 @@ class Letters:
         worded = [p for p in self.parameters if any(one in p.lower() for one in parts)]
         worded = [p for p in worded if p not in (*named, *self.kinds)]
         return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p)), *worded]
+
+
+#: Names of an entry: a letter and one index, or two.
+ENTRY = re.compile(r"([A-Za-z]+)_(\d)(?:_?(\d))?\Z")
+
+
+def matrices_by_entries(names: Iterable[str]) -> frozenset[str]:
+    """Letters that have entries in two rows and columns."""
+    result: dict[str, set[tuple[str, str]]] = {}
+    for name in names:
+        if (match := ENTRY.match(name)) and match[3]:
+            result.setdefault(match[1], set()).add((match[2], match[3]))
+    return frozenset(
+        letter for letter, places in result.items() if {("1", "1"), ("2", "2")} <= places
+    )
+
+
+def composed(
+    words: Iterable[str], namespace: Mapping[str, Any], count: int
+) -> Iterator[tuple[str, sp.ImmutableDenseMatrix]]:
+    """Yield the names of matrices and columns without a value whose entries have one."""
+    matrices = matrices_by_entries(namespace)
+    for name in words:
+        letter = name.removesuffix("_column")
+        if name in namespace or "_" in letter:
+            continue
+        if letter in matrices:
+            yield name, _matrix(letter, namespace, count)
+        elif name != letter:
+            column = [namespace.get(f"{letter}_{k + 1}") for k in range(count)]
+            if all(isinstance(one, sp.Expr) for one in column):
+                yield name, sp.ImmutableDenseMatrix(column)
+
+
+def _matrix(letter: str, namespace: Mapping[str, Any], count: int) -> sp.ImmutableDenseMatrix:
+    """A matrix whose entries that are not written are those of its transpose, or zero."""
+
+    def entry(i: int, j: int) -> sp.Expr:
+        places = ((i + 1, j + 1), (j + 1, i + 1))
+        names = [f"{letter}_{a}{between}{b}" for a, b in places for between in ("", "_")]
+        return next((namespace[name] for name in names if name in namespace), sp.S.Zero)
+
+    return sp.ImmutableDenseMatrix(count, count, entry)

@@ -7,7 +7,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.letters.entries import ENTRY
+from derive.verification.documents.letters.letters import ENTRY
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.small_motions import SmallMotions
 

@@ -16,8 +16,7 @@ from derive.mechanics.routhian import Routhian
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.verification.documents.formula_translation import RATES, stem
 from derive.verification.documents.letters.document_system import SystemLetters
-from derive.verification.documents.letters.entries import composed
-from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.letters import Letters, composed
 from derive.verification.documents.letters.stated_positions import AXES, COLUMN
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 from derive.verification.judging.reference_system import (
