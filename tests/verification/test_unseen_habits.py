@@ -122,6 +122,12 @@ def test_canonical_equations_refute_a_hamiltonian(
     assert "wrong" not in found[1:]
 
 
+def test_canonical_equations_can_have_units_of_their_own(tmp_path: Path) -> None:
+    text = r"""$$H = \frac{p_x^2 + p_y^2}{2 m} + \frac12 k(x^2 + y^2)$$
+$$\dot x = p_x$$ $$\dot y = p_y$$ $$\dot p_x = -k x$$ $$\dot p_y = -k y$$"""
+    assert verdicts(tmp_path, text)[0] != "wrong"
+
+
 def test_a_slip_in_a_canonical_equation_is_its_own(tmp_path: Path) -> None:
     text = DISC.replace(r"\dot\beta = \frac{p_\beta}", r"\dot\beta = \frac{2 p_\beta}")
     assert [k for k, one in enumerate(verdicts(tmp_path, text)) if one == "wrong"] == [2]

@@ -48,29 +48,33 @@ def _hamiltonians(
 ) -> Iterator[tuple[sp.Expr, frozenset[int]]]:
     """Yield Hamiltonians that are stated, and the one that the canonical equations determine."""
     rates: dict[str, tuple[sp.Expr, int]] = {}
+    written = set[str]()
     for number, formula in enumerate(formulas):
         for name, text in definitions(formula):
             is_rate = name.endswith("_dot")
             if is_rate or letters.quantities.get(name) == "hamiltonian":
                 with suppress(ExpressionError, NotImplementedError, ValueError, TypeError):
                     value = parse(text, scope)
+                    if not isinstance(value, sp.Expr):
+                        continue
                     if is_rate:
                         rates[name] = value, number
                     else:
+                        written |= {*formula.words} & {*letters.parameters}
                         yield value, frozenset({number})
     needed = [f"{one}_dot" for p in momenta for one in (p, letters.momenta[p])]
     if not {*needed} <= {*rates}:
         return
+    if written - {word for name in needed for word in formulas[rates[name][1]].words}:
+        return  # equations in units in which a parameter of H is 1
     q = [scope[letters.momenta[p]] for p in momenta]
     slopes = [rates[f"{letters.momenta[p]}_dot"][0] for p in momenta]
     T = sp.Add(*(p * slope for p, slope in zip(momenta.values(), slopes, strict=True))) / 2
     forces = [rates[f"{p}_dot"][0] for p in momenta]
     gradient = [sp.expand(-force - T.diff(x)) for x, force in zip(q, forces, strict=True)]
-    V = (
-        None
-        if sp.Tuple(*gradient).free_symbols & {*momenta.values()}
-        else potential_of(gradient, q)
-    )
+    if sp.Tuple(*gradient).free_symbols & {*momenta.values()}:
+        return
+    V = potential_of(gradient, q)
     if V is not None and all(
         sp.expand(T.diff(p) - slope) == 0 for p, slope in zip(momenta.values(), slopes, strict=True)
     ):

@@ -265,8 +265,11 @@ def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
     name = formula.subject.removesuffix("_dot")
     if name == formula.subject or not POINT.match(name) or name in candidate.coordinates:
         return False
-    words = {*formula.words, *candidate.coordinates, *(f"{q}_dot" for q in candidate.coordinates)}
-    symbols = {word: sp.Symbol(word) for word in words - {*FUNCTIONS, "t"}}
+    words = {*candidate.coordinates, *(f"{q}_dot" for q in candidate.coordinates)}
+    words |= candidate.letters - {"t"}
+    if not {*WORD.findall(formula.sides[-1].text)} <= {*words, *FUNCTIONS, "t"}:
+        return False  # such as speeds by name
+    symbols = {word: sp.Symbol(word) for word in words}
     try:
         value = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS, "t": TIME})
     except ExpressionError:
