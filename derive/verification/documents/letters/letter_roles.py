@@ -344,7 +344,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         # so has phi = w beside phi_dot = w
         lost_dot = lost_dot or any({f"{name}_dot", one} in equal for one in others)
         last = formula.sides[-1]
-        if not (others - {"pi"} or last.entries):  # a value, such as m = l = 1
+        if NUMBER.fullmatch(last.text):  # a value, such as m = l = 1
             continue
         if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue
