@@ -86,7 +86,12 @@ class Judges:
 
     def count_wrong(self, candidate: SystemCandidate) -> int:
         """The number of formulas that are wrong."""
-        return [one.verdict for one in self.incorrect(candidate)].count("wrong")
+        return len(self.wrong(candidate))
+
+    def wrong(self, candidate: SystemCandidate) -> list[int]:
+        """The numbers of the formulas that are wrong."""
+        verdicts = self.verdicts(candidate)
+        return [k for k, (_, one) in enumerate(verdicts) if one.verdict.verdict == "wrong"]
 
 
 def _with_order(statements: Translated, letters: Letters, candidate: SystemCandidate) -> Letters:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 
-from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.judges import Judges, Results
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
@@ -228,7 +228,7 @@ def _contradictions(best: Match, matches: Sequence[Match], judges: Judges) -> Co
     stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
     if stated and _is_decisive(best, matches) and judges.count_wrong(best.candidate) == 1:
         return Contradictions()
-    doubts, disputed = dict[int, frozenset[int]](), dict[int, frozenset[int]]()
+    doubts, disputed = _rates_and_energies(best, judges), dict[int, frozenset[int]]()
     for match in stated:
         has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
         if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
@@ -266,6 +266,8 @@ def _with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) ->
     What follows from a slip is none. Positions that do not lead to the stated energies are one.
     The second value is whether there are fewer.
     """
+    if best.candidate.basis == "positions":
+        return _with_one_wrong_position(best, matches, judges)
     if best.candidate.basis != "energies":
         return best, False
     formulas, letters = judges.statements.formulas, judges.letters
@@ -297,6 +299,40 @@ def _with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) ->
     order = [basis for basis in ("positions", "energies", "catalogue") if basis in fewest]
     first = min(order, key=lambda basis: (fewest[basis], -matched[basis].support))
     return matched[first], fewest[first] < fewest["energies"]
+
+
+def _with_one_wrong_position(
+    best: Match, matches: Sequence[Match], judges: Judges
+) -> tuple[Match, bool]:
+    """The match of stated positions, or of a known system that fits all but one of these.
+
+    The second value is whether it does.
+    """
+    formulas = judges.statements.formulas
+    for match in matches if len(best.failed) > 1 else ():
+        one = match.candidate
+        is_known = one.basis == "catalogue" and one.is_usual and not one.lacking
+        if is_known and match.score >= best.score - TIE:
+            wrong = judges.wrong(one)
+            subject = formulas[wrong[0]].subject if len(wrong) == 1 else ""
+            is_position = POINT.match(subject) and not order(subject)
+            if is_position and judges.count_wrong(best.candidate) > 1:
+                return match, True
+    return best, False
+
+
+def _rates_and_energies(best: Match, judges: Judges) -> dict[int, frozenset[int]]:
+    """Rates of positions, and energies, that both differ from those of stated positions.
+
+    A slip in a position is as likely, with which both can agree.
+    """
+    if best.candidate.basis != "positions":
+        return {}
+    formulas, wrong = judges.statements.formulas, judges.wrong(best.candidate)
+    rates = [k for k in wrong if POINT.match(stem(formulas[k].subject))]
+    energies = [k for k in wrong if formulas[k].subject in judges.letters.quantities]
+    both = frozenset((*rates, *energies))
+    return dict.fromkeys(both, both) if rates and energies else {}
 
 
 def _abbreviations(formulas: Sequence[DocumentFormula], letters: Letters) -> set[str]:
