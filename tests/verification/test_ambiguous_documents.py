@@ -158,12 +158,12 @@ $$\ddot\theta_2 = \frac{2\sin(\theta_1-\theta_2)(\dot\theta_1^2 l_1(m_1+m_2)
     assert document.formulas[1].wrong_term == r"\sin\theta_1"
 
 
-CART = r"""$$x_p = x - l\sin\theta, \quad y_p = -l\cos\theta$$
+SLIP = r"""$$x_p = x - l\sin\theta, \quad y_p = -l\cos\theta$$
 $$\dot x_p = \dot x + l\dot\theta\cos\theta, \quad \dot y_p = l\dot\theta\sin\theta$$
 $$T = \frac12 (M+m)\dot x^2 + m l\dot x\dot\theta\cos\theta + \frac12 m l^2\dot\theta^2$$
 $$V = -m g l\cos\theta$$"""
 #: The same of an ellipse, which no known system has.
-ELLIPSE = CART.replace(r"l\sin\theta,", r"b\sin\theta,").replace(
+ELLIPSE = SLIP.replace(r"l\sin\theta,", r"b\sin\theta,").replace(
     r"\dot x + l", r"\dot x + b"
 ).replace("m l\\dot x", "m b\\dot x").replace(
     r"\frac12 m l^2\dot\theta^2", r"\frac12 m \dot\theta^2 (b^2\cos^2\theta + l^2\sin^2\theta)"
@@ -171,7 +171,7 @@ ELLIPSE = CART.replace(r"l\sin\theta,", r"b\sin\theta,").replace(
 
 
 def test_a_position_that_all_others_contradict_is_wrong_by_a_known_system(tmp_path: Path) -> None:
-    document = judged(tmp_path, CART)
+    document = judged(tmp_path, SLIP)
     assert verdicts(document) == [
         "wrong", "definition", "verified", "verified", "verified", "verified",
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Judges of a document's formulas by each of the systems that can be meant."""
+"""Judges of a document's formulas by systems that can be meant, and of contrary statements."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -8,19 +8,28 @@ from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import OPERATORS, Letters
-from derive.verification.documents.numbers.matching import best_matches
+from derive.verification.documents.letters.stated_positions import POINT
+from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
-from derive.verification.documents.rules.consequences import WithVerdict
+from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, plain
-from derive.verification.documents.statements import Translated
+from derive.verification.documents.statements import DocumentFormula, Translated
 from derive.verification.judging.verdict import Verdict
 
 #: Verdicts on formulas that are no definitions and hold.
 HOLDING = ("verified", "equivalent")
 #: The note on a formula that holds in other units than the rest of a document.
 OWN_UNITS = "it holds in units in which the other parameters are 1, which nothing states"
+#: Formulas that contain an abbreviation.
+SEVERAL = 2
+#: Formulas that hold, from which on a complete known system decides which one is wrong.
+DECISIVE = 3
+#: The largest difference of scores that decides nothing.
+TIE = 0.25
+#: Most potential energies of stated positions that are compared by their verdicts.
+MAX_DIRECTIONS = 4
 
 Results = Sequence[WithVerdict]
 
@@ -106,3 +115,152 @@ def _with_order(statements: Translated, letters: Letters, candidate: SystemCandi
 
     orders = (letters.ordered, *letters.other_orders)
     return max((replace(letters, ordered=one) for one in orders), key=holding)
+
+
+def with_direction(best: Match, matches: Sequence[Match], judges: Judges) -> Match:
+    """Of stated positions with both directions of gravity, that with fewest wrong formulas."""
+    same = [
+        one for one in matches
+        if one.candidate.basis == "positions" and one.score == best.score
+    ]  # fmt: skip
+    if best.candidate.basis != "positions" or not best.failed or len(same) < 2:
+        return best
+    first: dict[int, Match] = {}
+    for one in (best, *same):
+        first.setdefault(id(one.candidate.system), one)
+    tried = [*first.values()][:MAX_DIRECTIONS]
+    return min(tried, key=lambda one: judges.count_wrong(one.candidate))
+
+
+def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> Contradictions:
+    """Formulas that do not hold, but do by other stated energies with as much support.
+
+    What holds by the best alone is disputed. As much is also as many formulas that fail by one term
+    each: the score does not show that one is missing. Equations, which follow from energies, must
+    not contradict more formulas than these.
+    """
+
+    def has_as_few_slips(match: Match) -> bool:
+        explains_less = match.compared < best.compared  # such as no positions
+        leaves_out = explains_less and not match.candidate.is_of_equations
+        if leaves_out or len(match.failed) > len(best.failed):
+            return False
+        wrong, own = (judges.incorrect(one.candidate) for one in (match, best))
+        return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
+
+    stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
+    if stated and _is_decisive(best, matches) and judges.count_wrong(best.candidate) == 1:
+        return Contradictions()
+    doubts, disputed = _rates_and_energies(best, judges), dict[int, frozenset[int]]()
+    for match in stated:
+        has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
+        if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
+            for number in best.failed - match.failed:
+                doubts.setdefault(number, match.candidate.stating)
+            for number in match.failed - best.failed:
+                disputed.setdefault(number, best.failed - match.failed)
+    for match in matches:
+        # as a known system without those formulas that state the best
+        is_known = match.candidate.basis == "catalogue" and not match.candidate.lacking
+        rest = match.failed - best.candidate.stating
+        if is_known and match.candidate.is_usual and rest < best.failed - best.candidate.stating:
+            for number in best.failed - match.failed:
+                doubts.setdefault(number, frozenset())
+    return Contradictions(doubts, disputed)
+
+
+def _is_decisive(best: Match, matches: Sequence[Match]) -> bool:
+    """Whether a known system fits most formulas, and no other one fits as well in another way."""
+    return (
+        best.candidate.basis == "catalogue"
+        and not best.candidate.lacking
+        and best.compared - len(best.failed) >= DECISIVE
+        and all(
+            match.failed == best.failed or match.score < best.score - TIE
+            for match in matches
+            if match.candidate.basis == "catalogue"
+        )
+    )
+
+
+def with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> tuple[Match, bool]:
+    """The match of stated energies, or one of positions or a known system with fewer slips.
+
+    What follows from a slip is none. Positions that do not lead to the stated energies are one.
+    The second value is whether there are fewer.
+    """
+    if best.candidate.basis == "positions":
+        return _with_one_wrong_position(best, matches, judges)
+    if best.candidate.basis != "energies":
+        return best, False
+    formulas, letters = judges.statements.formulas, judges.letters
+    written = {p for one in formulas for p in one.words} & {*letters.parameters}
+    written &= best.candidate.letters
+    others = dict[str, Match]()
+    for match in sorted(matches, key=lambda one: -one.score):
+        one = match.candidate
+        if one.basis != "energies" and not one.lacking and written <= one.letters:
+            others.setdefault(one.basis, match)
+    is_contradicted = "positions" in others and bool(others["positions"].failed)
+    abbreviations = _abbreviations(formulas, letters)
+    if not others or (len(best.failed) + is_contradicted < 2 and not abbreviations):
+        return best, False
+
+    def slips(match: Match) -> float:
+        verdicts = judges.verdicts(match.candidate)
+        wrong = [(formula, one) for formula, one in verdicts if one.verdict.verdict == "wrong"]
+        own = [formula for formula, one in wrong if FOLLOWS not in one.verdict.note]
+        has_wrong_positions = is_contradicted and match.candidate.basis == "energies"
+        if has_wrong_positions:
+            own = [one for one in own if not POINT.match(one.subject.removesuffix("_dot"))]
+        if len(own) == 1 and own[0].subject in abbreviations:
+            return -1  # all that contains it is right
+        return len(own) + has_wrong_positions
+
+    matched = {**others, "energies": best}
+    fewest = {basis: slips(match) for basis, match in matched.items()}
+    order = [basis for basis in ("positions", "energies", "catalogue") if basis in fewest]
+    first = min(order, key=lambda basis: (fewest[basis], -matched[basis].support))
+    return matched[first], fewest[first] < fewest["energies"]
+
+
+def _with_one_wrong_position(
+    best: Match, matches: Sequence[Match], judges: Judges
+) -> tuple[Match, bool]:
+    """The match of stated positions, or of a known system that fits all but one of these.
+
+    The second value is whether it does.
+    """
+    formulas = judges.statements.formulas
+    for match in matches if len(best.failed) > 1 else ():
+        one = match.candidate
+        is_known = one.basis == "catalogue" and one.is_usual and not one.lacking
+        if is_known and match.score >= best.score - TIE:
+            wrong = judges.wrong(one)
+            subject = formulas[wrong[0]].subject if len(wrong) == 1 else ""
+            is_position = POINT.match(subject) and not order(subject)
+            if is_position and judges.count_wrong(best.candidate) > 1:
+                return match, True
+    return best, False
+
+
+def _rates_and_energies(best: Match, judges: Judges) -> dict[int, frozenset[int]]:
+    """Rates of positions, and energies, that both differ from those of stated positions.
+
+    A slip in a position is as likely, with which both can agree.
+    """
+    if best.candidate.basis != "positions":
+        return {}
+    formulas, wrong = judges.statements.formulas, judges.wrong(best.candidate)
+    rates = [k for k in wrong if POINT.match(stem(formulas[k].subject))]
+    energies = [k for k in wrong if formulas[k].subject in judges.letters.quantities]
+    both = frozenset((*rates, *energies))
+    return dict.fromkeys(both, both) if rates and energies else {}
+
+
+def _abbreviations(formulas: Sequence[DocumentFormula], letters: Letters) -> set[str]:
+    """Names that a document defines by others, and uses several times."""
+    used = Counter(word for one in formulas for word in one.words if word != one.subject)
+    known = {*letters.quantities, *letters.coordinates, *letters.momenta, *letters.parameters}
+    subjects = {one.subject for one in formulas} - known - {""}
+    return {name for name in subjects if used[name] >= SEVERAL and name.isidentifier()}

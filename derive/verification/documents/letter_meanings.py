@@ -6,8 +6,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 
-from derive.verification.documents.formula_translation import FormulaText, order, stem
-from derive.verification.documents.judges import Judges, Results
+from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.judges import (
+    Judges,
+    Results,
+    contradictions_of,
+    with_direction,
+    with_fewest_slips,
+)
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.convention import difference, is_crossed, names_of
 from derive.verification.documents.letters.dimensions import inhomogeneous_formula, lost_dots
@@ -18,13 +24,12 @@ from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_equations import StatedEquations
 from derive.verification.documents.letters.stated_positions import (
-    POINT,
     stated_candidates,
     stated_systems,
 )
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
-from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions
+from derive.verification.documents.rules.consequences import Contradictions
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
@@ -38,17 +43,9 @@ THIRD = re.compile(r"\b(?:3|6|12|24)\b")
 UNUSUAL = 0.4
 #: What a system can rest on, of two with the same score the last.
 BASES = ("equations", "energies", "catalogue", "positions")
-#: Formulas that contain an abbreviation.
-SEVERAL = 2
-#: Formulas that hold, from which on a complete known system decides which one is wrong.
-DECISIVE = 3
-#: The largest difference of scores that decides nothing.
-TIE = 0.25
 #: Most work of a search: characters of formulas, times candidates, times coordinates. Documents
 #: of several pages take up to two fifths.
 MAX_WORK = 1_000_000_000
-#: Most potential energies of stated positions that are compared by their verdicts.
-MAX_DIRECTIONS = 4
 #: Most stated systems that are tried by all verdicts where numbers support none.
 MAX_VERIFIED = 4
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
@@ -179,12 +176,12 @@ def _best(
         stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
         fitting = (one for one in stated if _fits(judges, one.candidate))
         return Interpretation(judges, next(fitting, None))
-    best = _with_direction(best, matches, judges)
-    best, is_decided = _with_fewest_slips(best, matches, judges)
+    best = with_direction(best, matches, judges)
+    best, is_decided = with_fewest_slips(best, matches, judges)
     rivals = tuple(_rivals(best, matches))
     if best.candidate.basis == "energies":  # which equations alone can contradict
         matches += circular
-    contradictions = Contradictions() if is_decided else _contradictions(best, matches, judges)
+    contradictions = Contradictions() if is_decided else contradictions_of(best, matches, judges)
     return Interpretation(judges, best, rivals, contradictions)
 
 
@@ -192,155 +189,6 @@ def _fits(judges: Judges, candidate: SystemCandidate) -> bool:
     """Whether a formula is verified by a system and none is wrong, or two beside a wrong one."""
     kinds = Counter(one.verdict.verdict for _, one in judges.verdicts(candidate))
     return kinds["wrong"] <= 1 and kinds["verified"] > kinds["wrong"]
-
-
-def _with_direction(best: Match, matches: Sequence[Match], judges: Judges) -> Match:
-    """Of stated positions with both directions of gravity, that with fewest wrong formulas."""
-    same = [
-        one for one in matches
-        if one.candidate.basis == "positions" and one.score == best.score
-    ]  # fmt: skip
-    if best.candidate.basis != "positions" or not best.failed or len(same) < 2:
-        return best
-    first: dict[int, Match] = {}
-    for one in (best, *same):
-        first.setdefault(id(one.candidate.system), one)
-    tried = [*first.values()][:MAX_DIRECTIONS]
-    return min(tried, key=lambda one: judges.count_wrong(one.candidate))
-
-
-def _contradictions(best: Match, matches: Sequence[Match], judges: Judges) -> Contradictions:
-    """Formulas that do not hold, but do by other stated energies with as much support.
-
-    What holds by the best alone is disputed. As much is also as many formulas that fail by one term
-    each: the score does not show that one is missing. Equations, which follow from energies, must
-    not contradict more formulas than these.
-    """
-
-    def has_as_few_slips(match: Match) -> bool:
-        explains_less = match.compared < best.compared  # such as no positions
-        leaves_out = explains_less and not match.candidate.is_of_equations
-        if leaves_out or len(match.failed) > len(best.failed):
-            return False
-        wrong, own = (judges.incorrect(one.candidate) for one in (match, best))
-        return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
-
-    stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
-    if stated and _is_decisive(best, matches) and judges.count_wrong(best.candidate) == 1:
-        return Contradictions()
-    doubts, disputed = _rates_and_energies(best, judges), dict[int, frozenset[int]]()
-    for match in stated:
-        has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
-        if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
-            for number in best.failed - match.failed:
-                doubts.setdefault(number, match.candidate.stating)
-            for number in match.failed - best.failed:
-                disputed.setdefault(number, best.failed - match.failed)
-    for match in matches:
-        # as a known system without those formulas that state the best
-        is_known = match.candidate.basis == "catalogue" and not match.candidate.lacking
-        rest = match.failed - best.candidate.stating
-        if is_known and match.candidate.is_usual and rest < best.failed - best.candidate.stating:
-            for number in best.failed - match.failed:
-                doubts.setdefault(number, frozenset())
-    return Contradictions(doubts, disputed)
-
-
-def _is_decisive(best: Match, matches: Sequence[Match]) -> bool:
-    """Whether a known system fits most formulas, and no other one fits as well in another way."""
-    return (
-        best.candidate.basis == "catalogue"
-        and not best.candidate.lacking
-        and best.compared - len(best.failed) >= DECISIVE
-        and all(
-            match.failed == best.failed or match.score < best.score - TIE
-            for match in matches
-            if match.candidate.basis == "catalogue"
-        )
-    )
-
-
-def _with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> tuple[Match, bool]:
-    """The match of stated energies, or one of positions or a known system with fewer slips.
-
-    What follows from a slip is none. Positions that do not lead to the stated energies are one.
-    The second value is whether there are fewer.
-    """
-    if best.candidate.basis == "positions":
-        return _with_one_wrong_position(best, matches, judges)
-    if best.candidate.basis != "energies":
-        return best, False
-    formulas, letters = judges.statements.formulas, judges.letters
-    written = {p for one in formulas for p in one.words} & {*letters.parameters}
-    written &= best.candidate.letters
-    others = dict[str, Match]()
-    for match in sorted(matches, key=lambda one: -one.score):
-        one = match.candidate
-        if one.basis != "energies" and not one.lacking and written <= one.letters:
-            others.setdefault(one.basis, match)
-    is_contradicted = "positions" in others and bool(others["positions"].failed)
-    abbreviations = _abbreviations(formulas, letters)
-    if not others or (len(best.failed) + is_contradicted < 2 and not abbreviations):
-        return best, False
-
-    def slips(match: Match) -> float:
-        verdicts = judges.verdicts(match.candidate)
-        wrong = [(formula, one) for formula, one in verdicts if one.verdict.verdict == "wrong"]
-        own = [formula for formula, one in wrong if FOLLOWS not in one.verdict.note]
-        has_wrong_positions = is_contradicted and match.candidate.basis == "energies"
-        if has_wrong_positions:
-            own = [one for one in own if not POINT.match(one.subject.removesuffix("_dot"))]
-        if len(own) == 1 and own[0].subject in abbreviations:
-            return -1  # all that contains it is right
-        return len(own) + has_wrong_positions
-
-    matched = {**others, "energies": best}
-    fewest = {basis: slips(match) for basis, match in matched.items()}
-    order = [basis for basis in ("positions", "energies", "catalogue") if basis in fewest]
-    first = min(order, key=lambda basis: (fewest[basis], -matched[basis].support))
-    return matched[first], fewest[first] < fewest["energies"]
-
-
-def _with_one_wrong_position(
-    best: Match, matches: Sequence[Match], judges: Judges
-) -> tuple[Match, bool]:
-    """The match of stated positions, or of a known system that fits all but one of these.
-
-    The second value is whether it does.
-    """
-    formulas = judges.statements.formulas
-    for match in matches if len(best.failed) > 1 else ():
-        one = match.candidate
-        is_known = one.basis == "catalogue" and one.is_usual and not one.lacking
-        if is_known and match.score >= best.score - TIE:
-            wrong = judges.wrong(one)
-            subject = formulas[wrong[0]].subject if len(wrong) == 1 else ""
-            is_position = POINT.match(subject) and not order(subject)
-            if is_position and judges.count_wrong(best.candidate) > 1:
-                return match, True
-    return best, False
-
-
-def _rates_and_energies(best: Match, judges: Judges) -> dict[int, frozenset[int]]:
-    """Rates of positions, and energies, that both differ from those of stated positions.
-
-    A slip in a position is as likely, with which both can agree.
-    """
-    if best.candidate.basis != "positions":
-        return {}
-    formulas, wrong = judges.statements.formulas, judges.wrong(best.candidate)
-    rates = [k for k in wrong if POINT.match(stem(formulas[k].subject))]
-    energies = [k for k in wrong if formulas[k].subject in judges.letters.quantities]
-    both = frozenset((*rates, *energies))
-    return dict.fromkeys(both, both) if rates and energies else {}
-
-
-def _abbreviations(formulas: Sequence[DocumentFormula], letters: Letters) -> set[str]:
-    """Names that a document defines by others, and uses several times."""
-    used = Counter(word for one in formulas for word in one.words if word != one.subject)
-    known = {*letters.quantities, *letters.coordinates, *letters.momenta, *letters.parameters}
-    subjects = {one.subject for one in formulas} - known - {""}
-    return {name for name in subjects if used[name] >= SEVERAL and name.isidentifier()}
 
 
 def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidate]]:
