@@ -58,7 +58,13 @@ def _constants(value: sp.Expr, model: ReferenceSystem) -> Iterator[sp.Expr]:
     They are those of the value as it stands, and with squares of cosines alone or of sines alone.
     """
     state = variables(model.derivation.system)
-    simple = value.expand(trig=True)  # without cos(2*q)
+    halves = {wave: wave.args[0] / 2 for wave in value.atoms(sp.cos)}
+    squares = {
+        wave: 2 * sp.cos(half) ** 2 - 1
+        for wave, half in halves.items()
+        if half.as_coeff_Mul()[0] == 1
+    }
+    simple = value.xreplace(squares)  # without cos(2*q)
     for form in (value, TR5(simple), TR6(simple)):
-        terms = sp.Add.make_args(sp.expand(form))
+        terms = sp.Add.make_args(sp.expand(form)) if is_expandable(form) else ()
         yield sp.Add(*(term for term in terms if not depends_on(term, state)))
