@@ -316,7 +316,7 @@ def test_directions_are_shown_between_half_turns(tmp_path: Path) -> None:
     angles, rates = results.maps["both"][0, 0]
     assert np.nanmax(angles) > 2 * PI
     assert np.array_equal(points(both.lines[0]), np.c_[wrapped(angles), rates], equal_nan=True)
-    assert (one.get_xlabel(), one.get_ylabel()) == (r"$\theta$ / rad",) * 2
+    assert (one.get_xlabel(), one.get_ylabel()) == ("number of the point", r"$\theta$ / rad")
 
 
 @pytest.mark.parametrize(("lengths", "extent"), [
