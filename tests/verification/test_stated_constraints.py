@@ -120,6 +120,13 @@ def test_documents_with_their_own_constraints_are_verified(name: str, tmp_path: 
     assert document.system.endswith("with the constraints that the document states")
 
 
+def test_of_two_forms_of_a_constraint_the_multiplier_has_that_which_is_zero(tmp_path: Path) -> None:
+    text = SKATE.replace("It cannot", "It has $\\dot y = \\dot x \\tan\\phi$, and cannot")
+    document = judged(tmp_path, text)
+    assert len(document.formulas) == 6
+    assert {one.verdict for one in document.formulas} <= CORRECT
+
+
 @pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("name", "old", "new"),

@@ -59,12 +59,13 @@ def stated_constraints(
     """
     letters = {*parameters} - {*multipliers}
     result = [*_possible(formulas, {*coordinates}, letters, {*multipliers}, derivatives)]
+    # of several forms of one constraint, multipliers belong to that which is zero
+    result.sort(key=lambda one: all(side.text != "0" for side in formulas[one.number].sides))
     named = [one for one in result if _is_named(formulas[one.number])]
-    count = len(multipliers)
-    if len(_independent(named)) == count or not count:
+    if not multipliers:
         return tuple(_independent(named))
-    everything = _independent(result)
-    return tuple(everything) if len(everything) == count else ()
+    groups = (_independent(result), _independent(named))
+    return next((tuple(one) for one in groups if len(one) == len(multipliers)), ())
 
 
 def _is_named(formula: DocumentFormula) -> bool:
@@ -145,7 +146,7 @@ def rate_of(expression: sp.Expr, coordinates: Collection[str]) -> sp.Expr:
 
 
 def _independent(result: Sequence[StatedConstraint]) -> list[StatedConstraint]:
-    """The constraints without those that follow from others, such as their rates."""
+    """The constraints without those that follow from earlier ones, by their numbers."""
     every = sorted({q for one in result for q in one.coordinates})
     rates = [symbol(f"{q}_dot") for q in every]
     kept, rows = list[StatedConstraint](), sp.Matrix(0, len(rates), [])
@@ -162,7 +163,7 @@ def _independent(result: Sequence[StatedConstraint]) -> list[StatedConstraint]:
         ranks = [more.xreplace(place).evalf(30).rank(iszerofunc=_is_tiny) for place in places]
         if max(ranks) == more.rows:
             kept, rows = [*kept, one], more
-    return kept
+    return sorted(kept, key=lambda one: one.number)
 
 
 def _is_tiny(value: sp.Expr) -> bool:
