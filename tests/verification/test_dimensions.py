@@ -59,6 +59,13 @@ def test_of_an_energy_and_its_equation_the_inhomogeneous_one_is_wrong(
     assert not {one.verdict for one in judged(tmp_path, *pair)} & {"wrong", "context"}
 
 
+def test_a_canonical_equation_in_other_units_is_not_wrong(tmp_path: Path) -> None:
+    hamiltonian = r"H = \frac{p^2}{2 m l^2} - m g l \cos\theta"
+    canonical = (r"\dot\theta = \frac{p}{m l^2}", r"\dot p = - m g l \sin\theta")
+    results = judged(tmp_path, hamiltonian, *canonical, r"\dot\theta = p")
+    assert [one.verdict for one in results] == ["verified"] * 3 + ["context"]
+
+
 def test_a_potential_with_a_square_of_a_sine_is_corrected_in_one_term(tmp_path: Path) -> None:
     # that of the equation contains cos(2 theta), and differs by a constant
     kinetic = r"T = \frac{1}{2} m R^2 \dot\theta^2"

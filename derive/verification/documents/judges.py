@@ -1,10 +1,11 @@
 """Judges of a document's formulas by systems that can be meant, and of contrary statements."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from re import sub
 
-from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import OPERATORS, Letters
@@ -66,7 +67,8 @@ class Judges:
         """The verdicts on all formulas."""
         if id(candidate) not in self._verdicts:
             verdicts = self.judge(candidate).verdicts(self.statements.formulas)
-            self._verdicts[id(candidate)] = [*self._in_own_units(candidate, verdicts)]
+            results = self._in_own_units(candidate, verdicts)
+            self._verdicts[id(candidate)] = [*self._with_angular_velocities(candidate, results)]
         return self._verdicts[id(candidate)]
 
     def _in_own_units(self, candidate: SystemCandidate, verdicts: Results) -> Iterator[WithVerdict]:
@@ -75,17 +77,35 @@ class Judges:
         It has no parameter that other formulas contain, as one without dimensions has not.
         """
         used = Counter(w for one in self.statements.formulas for w in one.words)
-        common = {*self.letters.coordinates, *self.letters.quantities, *OPERATORS}
+        letters = self.letters
+        common = {*letters.coordinates, *letters.quantities, *letters.momenta, *OPERATORS}
         for formula, result in verdicts:
             is_alone = all(used[w] == 1 or stem(w) in common for w in formula.words)
-            has_acceleration = any(order(word) == 2 for word in formula.words)
-            if result.verdict.verdict == "wrong" and is_alone and has_acceleration:
+            # an equation of motion, or a canonical one
+            is_equation = any(order(word) == 2 for word in formula.words) or order(formula.subject)
+            if result.verdict.verdict == "wrong" and is_alone and is_equation:
                 own = {p: one for p, one in candidate.parameters.items() if one in formula.words}
                 names = (one.symbol.name for one in candidate.system.parameters)
                 ones = {name: "1" for name in names if name not in own}
                 units = replace(candidate, parameters=own, numbers=ones)
                 if self._judge(units).verdict(formula).verdict.verdict in HOLDING:
                     result = plain("context", formula, OWN_UNITS)
+            yield formula, result
+
+    def _with_angular_velocities(
+        self, candidate: SystemCandidate, results: Iterable[WithVerdict]
+    ) -> Iterator[WithVerdict]:
+        """Yield the verdicts; no formula is wrong in which ω can be the rate of an angle."""
+        for formula, result in results:
+            words = sorted(formula.words)
+            names = [w for w in words if w.partition("_")[0] == "omega" and not order(w)]
+            for name in names if result.verdict.verdict == "wrong" else ():
+                for q in self.letters.coordinates:
+                    sides = [sub(rf"\b{name}\b", f"{q}_dot", side.text) for side in formula.sides]
+                    other = replace(formula, sides=tuple(map(FormulaText, sides)))
+                    if self.judge(candidate).verdict(other).verdict.verdict in HOLDING:
+                        note = f"it holds if {name} is {q}_dot, which nothing states"
+                        result = plain("context", formula, note)
             yield formula, result
 
     def incorrect(self, candidate: SystemCandidate) -> list[Verdict]:
