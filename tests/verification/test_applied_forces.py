@@ -52,5 +52,20 @@ def test_equations_that_do_not_hold_otherwise_are_not_verified(
     assert last(tmp_path, f"{ROBOT}$${equation}$$").verdict == "context"
 
 
+CART = r"""
+$$f_\theta = -\dot\theta$$
+$$T = \frac12 \dot x^2 (M + m) + m l\dot x\dot\theta\cos\theta + \frac12 m l^2\dot\theta^2$$
+$$U = -m g l\cos\theta$$
+"""
+
+
+def test_an_equation_with_a_force_that_has_a_value_is_not_accused(tmp_path: Path) -> None:
+    equation = r"$$m l\ddot x\cos\theta + m l^2\ddot\theta + m g l\sin\theta = f_\theta$$"
+    one = last(tmp_path, CART + equation)
+    assert one.verdict == "context"
+    assert one.note == "it holds but for f_theta, which the system does not contain"
+    assert last(tmp_path, CART + equation.replace("m g", "2 m g")).verdict == "wrong"
+
+
 def test_a_column_of_columns_is_one_column() -> None:
     assert parse("((1, 2), (3, 4, 5))", {}).shape == (5, 1)

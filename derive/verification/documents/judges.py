@@ -8,10 +8,11 @@ from re import sub
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
-from derive.verification.documents.letters.letters import OPERATORS, Letters
+from derive.verification.documents.letters.letters import KINDS, OPERATORS, Letters
 from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
+from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -68,6 +69,7 @@ class Judges:
         if id(candidate) not in self._verdicts:
             verdicts = self.judge(candidate).verdicts(self.statements.formulas)
             results = self._in_own_units(candidate, verdicts)
+            results = self._with_stated_forces(candidate, results)
             self._verdicts[id(candidate)] = [*self._with_angular_velocities(candidate, results)]
         return self._verdicts[id(candidate)]
 
@@ -90,6 +92,21 @@ class Judges:
                 units = replace(candidate, parameters=own, numbers=ones)
                 if self._judge(units).verdict(formula).verdict.verdict in HOLDING:
                     result = plain("context", formula, OWN_UNITS)
+            yield formula, result
+
+    def _with_stated_forces(
+        self, candidate: SystemCandidate, results: Iterable[WithVerdict]
+    ) -> Iterator[WithVerdict]:
+        """Yield the verdicts; no equation is wrong that holds but for a force with a value."""
+        subjects = {one.subject for one in self.statements.formulas}
+        forces = {name for name in subjects if name.partition("_")[0] in KINDS["force"]}
+        for formula, result in results:
+            own = sorted(forces & {*formula.words} - {formula.subject})
+            rest = without_unknown_terms(formula, own) if own else None
+            rest = rest if result.verdict.verdict == "wrong" else None
+            if rest and self.judge(candidate).verdict(rest).verdict.verdict in HOLDING:
+                note = f"it holds but for {', '.join(own)}, which the system does not contain"
+                result = plain("context", formula, note)
             yield formula, result
 
     def _with_angular_velocities(
