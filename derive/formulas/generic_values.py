@@ -96,6 +96,14 @@ def is_small(expression: sp.Expr) -> bool:
         return False
 
 
+def is_nonzero(expression: sp.Expr) -> bool:
+    """Whether `expression` is not zero at a state, before which all states have values."""
+    try:
+        return not all(value.is_zero for value in _values(expression))
+    except (NoValueError, NotImplementedError):
+        return False
+
+
 def _values(expression: sp.Expr) -> Iterator[Approximation]:
     symbols = sorted(expression.free_symbols, key=lambda symbol: str(symbol.name))
     for index in range(STATES):

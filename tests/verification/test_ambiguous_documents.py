@@ -188,3 +188,16 @@ def test_a_rate_and_an_energy_that_a_position_contradicts_are_not_accused(tmp_pa
     assert {*verdicts(judged(tmp_path, right))} == {"definition", "verified"}
     wrong = judged(tmp_path, right.replace("+ m b", "- m b"))
     assert verdicts(wrong)[2:] == ["verified", "verified", "wrong", "verified"]
+
+
+def test_a_rate_in_another_form_than_its_position_is_one(tmp_path: Path) -> None:
+    text = r"""$$x = a\sin\alpha - b\sin(\alpha+\beta)$$
+$$y = -a\cos\alpha - b\cos(\alpha+\beta)$$
+$$\dot x = a\dot\alpha\cos\alpha + b\dot\alpha\cos(\alpha+\beta)
+ + b\dot\beta(\cos\alpha\cos\beta - \sin\alpha\sin\beta)$$
+$$T = \frac12 m (a^2\dot\alpha^2 + b^2(\dot\alpha+\dot\beta)^2
+ + 2 a b\dot\alpha(\dot\alpha+\dot\beta)\cos\beta)$$"""
+    assert verdicts(judged(tmp_path, text)) == ["definition", "definition", "context", "context"]
+    # the rate of no position
+    wrong = judged(tmp_path, text.replace(r"b\dot\beta(", r"2 b\dot\beta("))
+    assert verdicts(wrong)[2] == "wrong"

@@ -84,8 +84,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     occurrences, unreadable = _read(document)
     result = _judge(document, hints, occurrences, unreadable)
     for variant, name in VARIANTS:
-        same = with_one_letter(occurrences, variant, name)
-        if same and (wrong := _wrong(result)):
+        wrong = _wrong(result)
+        if wrong and (same := with_one_letter(occurrences, variant, name)):
             other = _judge(document, hints, same, unreadable)
             if _wrong(other) < wrong:
                 note = f"{variant} and {name} are taken for one letter, with which more holds"

@@ -1,9 +1,11 @@
 """Judges of a document's formulas by systems that can be meant, and of contrary statements."""
 
+import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from re import sub
+from itertools import chain, product
+from typing import TypeAlias
 
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
@@ -16,7 +18,7 @@ from derive.verification.documents.rules.applied_forces import without_unknown_t
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.rules.side_verdict import CORRECT, plain
+from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
 from derive.verification.judging.verdict import Verdict
 
@@ -34,6 +36,8 @@ TIE = 0.25
 MAX_DIRECTIONS = 4
 
 Results = Sequence[WithVerdict]
+#: Other meanings of a formula: what they suppose, and a judge of another form of it.
+Meanings: TypeAlias = Iterator[tuple[str, Judge, DocumentFormula]]
 
 
 class Judges:
@@ -44,6 +48,7 @@ class Judges:
         # by identity, for as long as the candidate exists
         self._judges: dict[int, tuple[SystemCandidate, Judge]] = {}
         self._verdicts: dict[int, Results] = {}
+        self._used = Counter(word for one in statements.formulas for word in one.words)
 
     def judge(self, candidate: SystemCandidate) -> Judge:
         """The judge with the meanings of a candidate."""
@@ -68,62 +73,62 @@ class Judges:
         """The verdicts on all formulas."""
         if id(candidate) not in self._verdicts:
             verdicts = self.judge(candidate).verdicts(self.statements.formulas)
-            results = self._in_own_units(candidate, verdicts)
-            results = self._with_stated_forces(candidate, results)
-            self._verdicts[id(candidate)] = [*self._with_angular_velocities(candidate, results)]
+            self._verdicts[id(candidate)] = [
+                (formula, self._unless_meant_otherwise(candidate, formula, result))
+                for formula, result in verdicts
+            ]
         return self._verdicts[id(candidate)]
 
-    def _in_own_units(self, candidate: SystemCandidate, verdicts: Results) -> Iterator[WithVerdict]:
-        """Yield the verdicts; no equation is wrong that holds with 1 for what it does not contain.
+    def _unless_meant_otherwise(
+        self, candidate: SystemCandidate, formula: DocumentFormula, result: SideVerdict
+    ) -> SideVerdict:
+        """The verdict; a wrong formula that holds with another meaning is not judged."""
+        if result.verdict.verdict == "wrong":
+            meanings = (self._in_own_units, self._without_forces, self._with_angular_velocities)
+            for note, judge, other in chain(*(one(candidate, formula) for one in meanings)):
+                if judge.verdict(other).verdict.verdict in HOLDING:
+                    return plain("context", formula, note)
+        return result
+
+    def _in_own_units(self, candidate: SystemCandidate, formula: DocumentFormula) -> Meanings:
+        """Yield an equation with 1 for what it does not contain.
 
         It has no parameter that other formulas contain, as one without dimensions has not.
         """
-        used = Counter(w for one in self.statements.formulas for w in one.words)
         letters = self.letters
         common = {*letters.coordinates, *letters.quantities, *letters.momenta, *OPERATORS}
-        for formula, result in verdicts:
-            is_alone = all(used[w] == 1 or stem(w) in common for w in formula.words)
-            # an equation of motion, or a canonical one
-            is_equation = any(order(word) == 2 for word in formula.words) or order(formula.subject)
-            if result.verdict.verdict == "wrong" and is_alone and is_equation:
-                own = {p: one for p, one in candidate.parameters.items() if one in formula.words}
-                names = (one.symbol.name for one in candidate.system.parameters)
-                ones = {name: "1" for name in names if name not in own}
-                units = replace(candidate, parameters=own, numbers=ones)
-                if self._judge(units).verdict(formula).verdict.verdict in HOLDING:
-                    result = plain("context", formula, OWN_UNITS)
-            yield formula, result
+        is_alone = all(self._used[w] == 1 or stem(w) in common for w in formula.words)
+        # an equation of motion, or a canonical one
+        is_equation = order(formula.subject) or any(order(word) == 2 for word in formula.words)
+        if is_alone and is_equation:
+            own = {p: one for p, one in candidate.parameters.items() if one in formula.words}
+            names = (one.symbol.name for one in candidate.system.parameters)
+            ones = {name: "1" for name in names if name not in own}
+            units = replace(candidate, parameters=own, numbers=ones)
+            yield OWN_UNITS, self._judge(units), formula
 
-    def _with_stated_forces(
-        self, candidate: SystemCandidate, results: Iterable[WithVerdict]
-    ) -> Iterator[WithVerdict]:
-        """Yield the verdicts; no equation is wrong that holds but for a force with a value."""
-        subjects = {one.subject for one in self.statements.formulas}
+    def _without_forces(self, candidate: SystemCandidate, formula: DocumentFormula) -> Meanings:
+        """Yield an equation without the forces of which a document states values."""
+        subjects = {one.subject for one in self.statements.formulas} - {formula.subject}
         forces = {name for name in subjects if name.partition("_")[0] in KINDS["force"]}
-        for formula, result in results:
-            own = sorted(forces & {*formula.words} - {formula.subject})
-            rest = without_unknown_terms(formula, own) if own else None
-            rest = rest if result.verdict.verdict == "wrong" else None
-            if rest and self.judge(candidate).verdict(rest).verdict.verdict in HOLDING:
+        if own := sorted(forces & {*formula.words}):
+            rest = without_unknown_terms(formula, own)
+            if rest is not None:
                 note = f"it holds but for {', '.join(own)}, which the system does not contain"
-                result = plain("context", formula, note)
-            yield formula, result
+                yield note, self.judge(candidate), rest
 
     def _with_angular_velocities(
-        self, candidate: SystemCandidate, results: Iterable[WithVerdict]
-    ) -> Iterator[WithVerdict]:
-        """Yield the verdicts; no formula is wrong in which ω can be the rate of an angle."""
-        for formula, result in results:
-            words = sorted(formula.words)
-            names = [w for w in words if w.partition("_")[0] == "omega" and not order(w)]
-            for name in names if result.verdict.verdict == "wrong" else ():
-                for q in self.letters.coordinates:
-                    sides = [sub(rf"\b{name}\b", f"{q}_dot", side.text) for side in formula.sides]
-                    other = replace(formula, sides=tuple(map(FormulaText, sides)))
-                    if self.judge(candidate).verdict(other).verdict.verdict in HOLDING:
-                        note = f"it holds if {name} is {q}_dot, which nothing states"
-                        result = plain("context", formula, note)
-            yield formula, result
+        self, candidate: SystemCandidate, formula: DocumentFormula
+    ) -> Meanings:
+        """Yield a formula with the rate of each angle in place of ω."""
+        words = sorted(formula.words)
+        names = [one for one in words if one.partition("_")[0] == "omega" and not order(one)]
+        for name, q in product(names, self.letters.coordinates):
+            rate = f"{q}_dot"
+            sides = [re.sub(rf"\b{name}\b", rate, side.text) for side in formula.sides]
+            other = replace(formula, sides=tuple(map(FormulaText, sides)))
+            note = f"it holds if {name} is {rate}, which nothing states"
+            yield note, self.judge(candidate), other
 
     def incorrect(self, candidate: SystemCandidate) -> list[Verdict]:
         """The verdicts on formulas that are not correct."""
@@ -196,13 +201,6 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
                 doubts.setdefault(number, match.candidate.stating)
             for number in match.failed - best.failed:
                 disputed.setdefault(number, best.failed - match.failed)
-    for match in matches:
-        # as a known system without those formulas that state the best
-        is_known = match.candidate.basis == "catalogue" and not match.candidate.lacking
-        rest = match.failed - best.candidate.stating
-        if is_known and match.candidate.is_usual and rest < best.failed - best.candidate.stating:
-            for number in best.failed - match.failed:
-                doubts.setdefault(number, frozenset())
     return Contradictions(doubts, disputed)
 
 

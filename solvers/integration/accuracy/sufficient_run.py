@@ -173,10 +173,8 @@ def by_series(
         seconds = perf_counter() - before
         if coarse is not None:
             # the result is rounded to double precision
-            apart, rounding = (
-                difference(motion, coarse, fine),
-                float(np.spacing(np.abs(fine).max())),
-            )
+            apart = difference(motion, coarse, fine)
+            rounding = float(np.spacing(np.abs(fine).max()))
             if apart <= rounding and accuracy < rounding:
                 raise NotAccurateError(
                     f"results in double precision have an error of up to {rounding:.1g} where "

@@ -37,17 +37,10 @@ MAX_COORDINATES = 6
 MATRICES = {"M": "mass_matrix", "C": "coriolis_matrix", "G": "gravity", "g": "gravity"}
 #: Numbers of entries of matrices and columns.
 SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
+#: Names of an entry: a letter and one index, or two.
+ENTRY = re.compile(r"([A-Za-z]+)_(\d)(?:_?(\d))?\Z")
 #: Indices that change nothing.
 TOTAL = ("", "tot", "total", "sys")
-
-
-def energy_of_part(name: str) -> str | None:
-    """The energy of which a name denotes a part, such as T_1 and E_k1."""
-    letter, _, index = name.partition("_")
-    kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
-    is_part = kind in ("kinetic_energy", "potential_energy") and index not in TOTAL
-    return kind if is_part else None
-
 
 #: Kinds of parameters by the first letters of their names, the usual ones first.
 KINDS: dict[str, tuple[str, ...]] = {
@@ -142,8 +135,12 @@ class Letters:
         return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p)), *worded]
 
 
-#: Names of an entry: a letter and one index, or two.
-ENTRY = re.compile(r"([A-Za-z]+)_(\d)(?:_?(\d))?\Z")
+def energy_of_part(name: str) -> str | None:
+    """The energy of which a name denotes a part, such as T_1 and E_k1."""
+    letter, _, index = name.partition("_")
+    kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
+    is_part = kind in ("kinetic_energy", "potential_energy") and index not in TOTAL
+    return kind if is_part else None
 
 
 def matrices_by_entries(names: Iterable[str]) -> frozenset[str]:

@@ -11,6 +11,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.generic_values import is_nonzero
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
@@ -278,10 +279,10 @@ def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
     if not isinstance(value, sp.Expr):
         return False
     slopes = [(q, value.diff(v)) for q, v in pairs]
-    if any(slope.has(v) for _, slope in slopes for _, v in pairs):
+    if any(is_nonzero(slope.diff(v)) for _, slope in slopes for _, v in pairs):
         return True
     slopes.append((TIME, value.xreplace({v: sp.S.Zero for _, v in pairs})))
-    return any(sp.expand(a.diff(p) - b.diff(q)) != 0 for (q, a), (p, b) in combinations(slopes, 2))
+    return any(is_nonzero(a.diff(p) - b.diff(q)) for (q, a), (p, b) in combinations(slopes, 2))
 
 
 def _is_driven(candidate: SystemCandidate) -> bool:
