@@ -2,7 +2,8 @@
 
 A jet holds the Taylor coefficients of a quantity in time, each an array over many states, so that
 the rate of any formula is known without differentiating it (A. Griewank, A. Walther, Evaluating
-Derivatives, chapter 13). Unknown coefficients, such as third derivatives, are NaN.
+Derivatives, chapter 13). Unknown coefficients, such as third derivatives, are NaN; a jet can also
+have fewer of them, and what is computed with it has no more.
 """
 
 import ast
@@ -29,7 +30,7 @@ class UnknownNameError(LookupError):
 
 @dataclass(frozen=True, eq=False)
 class Jet:
-    """A quantity at many states; `coefficients` has the shape (3, states)."""
+    """A quantity at many states; `coefficients` has the shape (orders, candidates, states)."""
 
     coefficients: Array
 
@@ -45,7 +46,13 @@ class Jet:
     @property
     def value(self) -> Array:
         """The values at all states."""
-        return self.coefficients[0]
+        value: Array = self.coefficients[0]
+        return value
+
+    @property
+    def constant(self) -> "Jet":
+        """The value alone, without its derivatives."""
+        return Jet(self.coefficients[:1])
 
     @property
     def rate(self) -> "Jet":
@@ -54,29 +61,40 @@ class Jet:
         return Jet(np.array([c[1], 2 * c[2], np.full_like(c[0], np.nan)]))
 
     def __add__(self, other: "Jet") -> "Jet":
-        return Jet(self.coefficients + other.coefficients)
+        a, b = self._common(other)
+        return Jet(a + b)
 
     def __sub__(self, other: "Jet") -> "Jet":
-        return Jet(self.coefficients - other.coefficients)
+        a, b = self._common(other)
+        return Jet(a - b)
 
     def __neg__(self) -> "Jet":
         return Jet(-self.coefficients)
 
     def __mul__(self, other: "Jet") -> "Jet":
-        a, b = self.coefficients, other.coefficients
-        return Jet(np.array([sum(a[j] * b[k - j] for j in range(k + 1)) for k in range(ORDERS)]))
+        a, b = self._common(other)
+        orders = range(len(a))
+        return Jet(np.array([sum(a[j] * b[k - j] for j in range(k + 1)) for k in orders]))
 
     def __truediv__(self, other: "Jet") -> "Jet":
         quotients: list[Array] = []
-        a, b = self.coefficients, other.coefficients
-        for k in range(ORDERS):
+        a, b = self._common(other)
+        for k in range(len(a)):
             rest = a[k] - sum(quotients[j] * b[k - j] for j in range(k))
             quotients.append(rest / b[0])
         return Jet(np.array(quotients))
 
+    def _common(self, other: "Jet") -> tuple[Array, Array]:
+        """The coefficients of both, as many as both have."""
+        a, b = self.coefficients, other.coefficients
+        orders = min(len(a), len(b))
+        return a[:orders], b[:orders]
+
     def function(self, value: Callable[[Array], tuple[Array, Array, Array]]) -> "Jet":
         """A function of the quantity, from its value and first two derivatives."""
         f, first, second = value(self.value)
+        if len(self.coefficients) == 1:
+            return Jet(f[np.newaxis])
         _, b, c = self.coefficients
         return Jet(np.array([f, first * b, first * c + second * b**2 / 2]))
 
@@ -145,13 +163,15 @@ def evaluated(text: str, values: Mapping[str, Value]) -> Value:
 def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
     match node:
         case ast.Constant(value=int() | float() as number):
-            return Jet.of(np.array([float(number)]))
+            return _constant(float(number))
         case ast.Name(id=name):
             if name not in values:
                 raise UnknownNameError(name)
             return values[name]
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return -_value(operand, values)
+        case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int() | float() as n)):
+            return _value(base, values).power(float(n))
         case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
             return _raised(_value(base, values), _value(exponent, values))
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
@@ -205,6 +225,11 @@ def _product(value: Value, factor: Jet) -> Value:
     return np.vectorize(lambda entry: entry * factor, otypes=[object])(value)
 
 
+@cache
+def _constant(number: float) -> Jet:
+    return Jet.of(np.array([number]))
+
+
 def _raised(base: Jet, exponent: Jet) -> Jet:
     value = exponent.value
     if np.any(value != value.flat[0]) or np.any(exponent.coefficients[1:]):
@@ -213,12 +238,16 @@ def _raised(base: Jet, exponent: Jet) -> Jet:
 
 
 def _chosen(condition: Any, a: Jet, b: Jet) -> Jet:
-    return Jet(np.where(condition, a.coefficients, b.coefficients))
+    first, second = a._common(b)
+    return Jet(np.where(condition, first, second))
 
 
 def _angle(y: Jet, x: Jet) -> Jet:
+    value = np.arctan2(y.value, x.value)
+    if len(y._common(x)[0]) == 1:
+        return Jet(value[np.newaxis])
     rate = (x * y.rate - y * x.rate) / (x * x + y * y)
-    return Jet.of(np.arctan2(y.value, x.value), rate.value, rate.coefficients[1])
+    return Jet.of(value, rate.value, rate.coefficients[1])
 
 
 def _first_piece(pieces: Sequence[ast.expr], values: Mapping[str, Value]) -> Jet:

@@ -302,7 +302,8 @@ class CandidateMotions:
         return result
 
     def _numbers(self, expression: sp.Expr) -> Array:
-        value = evaluated(_text(expression), self._names).value
+        names = {name: one.constant for name, one in self._names.items()}
+        value = evaluated(_text(expression), names).value
         return np.asarray(np.broadcast_to(value, self.shape))
 
     def _parameter(self, candidate: SystemCandidate, name: str, default: float) -> float:
@@ -322,9 +323,13 @@ class CandidateMotions:
         names: dict[str, Value] = {"t": Jet.of(time, 1.0), "pi": Jet.of(np.array([[np.pi]]))}
         for i, (symbol, rate) in enumerate(zip(self._system.q, self._system.qdot, strict=True)):
             names[symbol.name], names[rate.name] = Jet.of(q[:, i]), Jet.of(qdot[:, i])
+        # many candidates share their parameters
+        shared = {(id(one.parameters), id(one.numbers)): one for one in self._tried}
+        numbers = {key: k for k, key in enumerate(shared)}
+        rows = [numbers[id(one.parameters), id(one.numbers)] for one in self._tried]
         for p in own:
-            column = [[self._parameter(one, p, own[p])] for one in self._tried]
-            names[p] = Jet.of(np.broadcast_to(np.array(column), self.shape))
+            values = np.array([self._parameter(one, p, own[p]) for one in shared.values()])
+            names[p] = Jet.of(np.broadcast_to(values[rows, np.newaxis], self.shape))
         return names
 
 
