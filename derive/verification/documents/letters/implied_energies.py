@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from functools import lru_cache
 
 import sympy as sp
 from sympy.integrals.manualintegrate import manualintegrate
@@ -100,11 +101,17 @@ def potential_of(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr
         rest = sp.expand(slope - V.diff(one))
         if rest.free_symbols & rates or sp.count_ops(rest) > MAX_OPERATIONS:
             return None
-        # positive constants, of which none is a case of its own as 0 in sin(a*x)
-        positive = {s: sp.Dummy(s.name, positive=True) for s in rest.free_symbols - {one}}
-        constants = {dummy: s for s, dummy in positive.items()}
-        V += manualintegrate(rest.xreplace(positive), one).xreplace(constants)
+        V += _integral(rest, one)
     exact = not V.has(sp.Integral) and all(
         sp.expand(V.diff(one) - slope) == 0 for one, slope in zip(q, gradient, strict=True)
     )
     return V if exact else None
+
+
+@lru_cache(maxsize=1000)  # several equations of a document have the same force
+def _integral(integrand: sp.Expr, one: sp.Symbol) -> sp.Expr:
+    """The integral by a symbol, which contains `Integral` where it is not found."""
+    # positive constants, of which none is a case of its own as 0 in sin(a*x)
+    positive = {s: sp.Dummy(s.name, positive=True) for s in integrand.free_symbols - {one}}
+    constants = {dummy: s for s, dummy in positive.items()}
+    return manualintegrate(integrand.xreplace(positive), one).xreplace(constants)
