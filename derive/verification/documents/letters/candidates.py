@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from itertools import combinations, islice, permutations, product
 from math import pi
 from typing import Any, Literal, TypeAlias
@@ -236,22 +237,17 @@ def _absent(system: System, mapping: Mapping[str, str]) -> dict[str, str]:
 
 def _likeliest(*choices: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
     """Combinations of choices, each sorted: those with the smallest sum of indices first."""
-    sizes = [len(one) for one in choices]
-    for total in range(sum(sizes) - len(sizes) + 1):
-        for indices in _with_sum(total, sizes):
-            yield tuple(one[i] for one, i in zip(choices, indices, strict=True))
 
+    @cache
+    def with_sum(total: int, axis: int) -> list[tuple[Any, ...]]:
+        """Combinations of the choices from an axis on whose indices have a sum."""
+        if axis == len(choices):
+            return [] if total else [()]
+        own = enumerate(choices[axis][: total + 1])
+        return [(one, *rest) for i, one in own for rest in with_sum(total - i, axis + 1)]
 
-def _with_sum(total: int, sizes: Sequence[int]) -> Iterator[tuple[int, ...]]:
-    """Indices with a given sum."""
-    if not sizes:
-        if not total:
-            yield ()
-        return
-    first, *rest = sizes
-    for index in range(max(0, total - sum(rest) + len(rest)), min(total + 1, first)):
-        for others in _with_sum(total - index, rest):
-            yield (index, *others)
+    for total in range(sum(map(len, choices)) - len(choices) + 1):
+        yield from with_sum(total, 0)
 
 
 def _conventions(
