@@ -273,7 +273,7 @@ def reaching(mutants: Sequence[Mutant], place: Path) -> list[list[str]]:
         indent = len(lines[start - 1]) - len(lines[start - 1].lstrip())
         lines.insert(start - 1, b" " * indent + "".join(probes).encode())
         (project / name).write_bytes(b"\n".join(lines) + b"\n")
-    workers = ("--numprocesses", "auto", "--dist", "worksteal")
+    workers = ("--numprocesses", str(processors()), "--dist", "worksteal")
     (reached / "failed").touch()
     pytest(project, *workers, REACHED=str(reached))
     failed = without_probes(place)
@@ -288,6 +288,12 @@ def reaching(mutants: Sequence[Mutant], place: Path) -> list[list[str]]:
         names.sort(key=frequency.__getitem__)
         del names[MOST_TESTS // 2 : -MOST_TESTS // 2]
     return tests
+
+
+def processors() -> int:
+    """The number of processors that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
 def without_probes(place: Path) -> list[str]:
@@ -367,7 +373,7 @@ def main() -> int:
         place = Path(folder)
         tests = reaching(mutants, place)
         projects: SimpleQueue[Path] = SimpleQueue()
-        workers = os.cpu_count() or 1
+        workers = processors()
         for k in range(workers):
             projects.put(copy(place / f"worker{k}" / "holonomic"))
 
