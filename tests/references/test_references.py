@@ -16,9 +16,12 @@ import generated.coupled_pendulums as coupled
 import generated.double_pendulum as dp
 import generated.driven_pendulum as driven
 import generated.foucault_pendulum as foucault
+import generated.four_bar as four_bar
+import generated.free_body as free_body
 import generated.single_pendulum as sp
 from holonomic import Coordinate, Parameter, PointMass, System, build
 from solvers.app.modules import load as load_module
+from solvers.equations.consistent_start import consistent_start
 from solvers.equations.module import ELEMENTARY
 from solvers.references.decimal_numbers import sine_and_cosine, with_exact_literals
 from solvers.references.elliptic import jacobi, pendulum, swing
@@ -145,6 +148,22 @@ def test_references_of_driven_systems_agree(module: ModuleType, start: tuple) ->
     # from the middle on, at its own time
     rest = taylor(module, module.DEFAULTS, series[1], times[1:])
     assert np.abs(rest[-1] - series[-1]).max() < 1e-13
+
+
+@pytest.mark.parametrize("module", [four_bar, free_body])
+def test_references_are_on_the_constraints_at_all_times(module: ModuleType) -> None:
+    """From a start that is not: there and later, constraints and energy have all digits."""
+    guess = np.linspace(0.4, 0.9, len(module.STATE))
+    y0 = consistent_start(module, {}, {}, guess=guess).y
+    beside = y0 + 1e-6 * np.cos(np.arange(len(y0)))
+    states = taylor(module, module.DEFAULTS, beside, [0.0, 0.05, 0.1], 20)
+    for one in (beside, *states):
+        residual = np.abs(module.constraints(0.0, one.tolist(), module.DEFAULTS)).max()
+        assert (residual > 1e-8) if one is beside else (residual < 1e-14)
+    assert states[0] == pytest.approx(beside, abs=1e-5)
+    energies = [module.energy(0.0, one.tolist(), module.DEFAULTS) for one in states]
+    assert energies == pytest.approx([energies[0]] * 3, rel=1e-14)
+    assert np.abs(states[2] - states[0]).max() > 5e-3
 
 
 def test_a_reference_of_a_state_of_zeros_that_a_force_moves() -> None:
