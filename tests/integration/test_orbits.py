@@ -122,8 +122,12 @@ def test_the_period_of_a_pendulum_is_an_elliptic_integral() -> None:
     assert orbit.multipliers == pytest.approx([1.0, 1.0], abs=1e-5)
 
 
-def test_a_rotation_returns_after_a_whole_turn() -> None:
-    orbit = periodic_orbit(single, {"theta": 0.0, "theta_dot": 8.0}, 1.0, {"l": 1.0})
+@pytest.mark.parametrize("symmetry", [(), ("theta",)])
+@pytest.mark.parametrize("speed", [8.0, -8.0])
+def test_a_rotation_returns_after_a_whole_turn(symmetry: tuple[str, ...], speed: float) -> None:
+    start = {"theta": 0.0, "theta_dot": speed}
+    orbit = periodic_orbit(single, start, 1.0, {"l": 1.0}, symmetry=symmetry)
+    assert orbit.y[1] == pytest.approx(speed, abs=1.0)  # the nearest member of the family
     energy = single.energy(0.0, orbit.y.tolist(), (1.0, 1.0, 9.81)) + 9.81
     square = 2 * 9.81 / energy
     assert orbit.period == pytest.approx(2 * ellipk(square) * np.sqrt(2 / energy), rel=1e-11)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
+from velocity_constraints import CASES, stated
 
 from derive import (
     Coordinate,
@@ -149,3 +150,14 @@ def test_inputs_in_potentials() -> None:
     assert module.input_jacobian(0.0, (0.5, 0.0), (4.0,)) == ((0.0,), (-0.5,))
     with pytest.raises(SystemDefinitionError, match=r"positions .* depend on w.*motion=True"):
         Derivation(System("no", "", [THETA], [], [PointMass(1, (w, theta))], 0, inputs=[lifted]))
+
+
+def test_all_quantities_are_real() -> None:
+    """SymPy simplifies roots and moduli of real numbers, which no other symbol allows."""
+    d, wheel = Derivation(system()), Derivation(stated("wheel", *CASES["wheel"][:2]))
+    derived = [d.lagrangian, d.hamiltonian, d.power, *d.accelerations, *d.momenta]
+    symbols = set().union(*(one.free_symbols for one in derived))
+    symbols |= {*d.system.qddot, *d.system.p, *wheel.system.multipliers, *wheel.integral_values}
+    symbols |= {*d.system.variations, *d.system.parameter_variations}
+    assert len({one.name for one in symbols}) == len(symbols) == 20
+    assert all(one.is_real for one in symbols)
