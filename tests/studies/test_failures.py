@@ -1,6 +1,8 @@
 """Failure modes: each study's numbers, and that it would notice if nothing failed."""
 
 import re
+from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from math import inf, log, pi, sqrt
 from types import SimpleNamespace
@@ -17,7 +19,14 @@ from solvers.app.modules import load
 from solvers.equations.linearisation.normal_modes import Modes
 from solvers.io.terminal import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
-from solvers.studies.failure_modes import oscillation, separatrix, singular, stiffness, tolerances
+from solvers.studies.failure_modes import (
+    chaos,
+    oscillation,
+    separatrix,
+    singular,
+    stiffness,
+    tolerances,
+)
 from solvers.studies.failure_modes.chaos import (
     CHAOTIC,
     INDEPENDENT,
@@ -36,7 +45,7 @@ from solvers.studies.failure_modes.chaos import (
     statistics,
 )
 from solvers.studies.failure_modes.conservation import Conservation, cost
-from solvers.studies.failure_modes.drift import CASES, Drift, EnergyDrift
+from solvers.studies.failure_modes.drift import CASES, Drift, EnergyDrift, drift
 from solvers.studies.failure_modes.study import studies
 
 
@@ -125,6 +134,55 @@ def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
     assert np.isnan(stiffness.crossover(costs, "light second mass", "work_rhs"))
 
 
+def test_the_cheapest_run_is_the_first_of_sufficient_accuracy(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Against a program of known errors: the tolerance, or h² of a method with fixed steps."""
+    exact, gap, timed = 0.25, 0.0, []
+
+    class Run:
+        def __init__(self, method: str, rtol: float, h: float | None) -> None:
+            error = h**2 if h else rtol
+            self.error = {"verner98": 0.0, "gauss3": gap}.get(method, -error)
+            self.steps = round(stiffness.DURATION / h) if h else round(1 / rtol)
+            self.nfev = 4 * self.steps
+
+        def __call__(self, span: tuple[float, float], y0: tuple[float, ...]) -> list[float]:
+            assert span == (0.0, 6.0)
+            return [y0[0], exact + self.error]
+
+    def median(run: Callable[[], object]) -> float:
+        timed.append(run())
+        return 7e-6
+
+    def prepared(_: object, method: str, rtol: float = 0.0, h: float | None = None) -> Run:
+        return Run(method, rtol, h)
+
+    monkeypatch.setattr(stiffness.StiffScene, "prepared", prepared)
+    monkeypatch.setattr(stiffness, "median_seconds", median)
+    spring = stiffness.FAMILIES["stiff spring"]
+    monkeypatch.setattr(stiffness, "FAMILIES", {"stiff spring": spring})
+    study = stiffness.Stiffness((30.0,), ("rk4", "dp54", "radau3", "gauss2"))
+    costs = {row.method: row for row in study.run(load)}
+    assert [*costs] == ["rk4", "dp54", "radau3", "gauss2"]
+    # tolerances are 1e-1, 1e-1.5, ..., and steps 10, 10 √2, 20, ...: an error just below 1e-3
+    fewest = next(n for n in np.ceil(10 * 2 ** np.arange(0, 9, 0.5)) if (6 / n) ** 2 < 1e-3)
+    for method in ("rk4", "radau3", "gauss2"):
+        assert (costs[method].steps, costs[method].work_rhs) == (fewest, 4 * fewest)
+        assert costs[method].global_error == pytest.approx((6 / fewest) ** 2)
+    assert costs["dp54"].global_error == pytest.approx(10**-3.5)
+    for row in costs.values():
+        assert (row.family, row.work_seconds) == ("stiff spring", 7e-6)
+        assert row.ratio == pytest.approx(30.0, rel=3 / 30**2)
+    assert [end[1] for end in timed] == [exact - row.global_error for row in costs.values()]
+    # no number of steps is sufficient, and references that differ
+    monkeypatch.setattr(stiffness, "STEPS", np.array([2.0]))
+    assert [row.method for row in study.run(load)] == ["dp54"]
+    for gap in (0.9e-5, 1.1e-5):  # a hundredth of the accuracy
+        with nullcontext() if gap < 1e-5 else pytest.raises(ArithmeticError, match="references"):
+            study.run(load)
+
+
 def test_the_crossover_is_where_costs_are_equal() -> None:
     base = stiffness.Cost("family", "rk4", 1.0, 1, 1, 1.0, 0.0)
     costs = [
@@ -160,6 +218,48 @@ def test_energy_drifts_steadily_with_rk_and_stays_bounded_with_gauss() -> None:
         else:
             assert found.exponent == pytest.approx(1.0, abs=0.1)
             assert abs(found.rate) * 2000 == pytest.approx(found.largest_error, rel=0.2)
+
+
+def test_the_energy_drift_of_rk4_is_that_of_a_loop_by_hand(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    start, steps, periods = np.array([0.5, 0.6, 0.0, 0.0]), 15, 300
+    period = 2 * pi / sqrt((2 - sqrt(2)) * 9.81 / 2)  # the slow mode of two rods of 2 m
+
+    def rate(y: np.ndarray) -> np.ndarray:
+        return np.array(dp.rhs(0.0, y.tolist(), dp.DEFAULTS))
+
+    h, states = period / steps, [start]
+    for _ in range(steps * periods):
+        y = states[-1]
+        a = rate(y)
+        b = rate(y + h / 2 * a)
+        c = rate(y + h / 2 * b)
+        states.append(y + h / 6 * (a + 2 * b + 2 * c + rate(y + h * c)))
+    clock = iter([5.0, 5.003])
+    name = "solvers.studies.failure_modes.drift.perf_counter"
+    monkeypatch.setattr(name, lambda: next(clock))
+    found = drift(dp, start.tolist(), periods, ("rk4", "lagrangian", steps))
+    assert found.microseconds == pytest.approx(10.0)  # 3 ms of 300 periods
+    places = np.round(found.periods * steps).astype(int)
+    assert found.periods == pytest.approx(places / steps, abs=1e-9)
+    assert (places[0], places[1]) == (0, steps)
+    assert steps * periods - 2 <= places[-1] <= steps * periods
+    whole = np.isin(places + steps - 1, places) | np.isin(places - steps + 1, places)
+    assert whole[1:].all()  # blocks of whole periods
+    assert len(places) > 10 * 3 * steps
+    energy = dp.energy_many(0.0, np.array(states)[places].T, dp.DEFAULTS)
+    rest = dp.energy(0.0, (0.0,) * 4, dp.DEFAULTS)
+    expected = (energy - energy[0]) / (energy[0] - rest)
+    assert found.energy_error == pytest.approx(expected, rel=1e-8, abs=1e-13)
+    largest = np.maximum.accumulate(np.abs(expected))
+    is_early = found.periods < periods / 100
+    ends = largest[is_early][-1], largest[-1]
+    assert (found.early_error, found.largest_error) == pytest.approx(ends, rel=1e-8)
+    line = np.polyfit(found.periods, expected, 1)[0]
+    power = np.polyfit(np.log(found.periods[~is_early]), np.log(largest[~is_early]), 1)[0]
+    assert (found.rate, found.exponent) == pytest.approx((line, power), rel=1e-8)
+    assert found.calls == pytest.approx(4 * steps, abs=1 / periods)  # and one at the start
 
 
 def test_splittings_conserve_energy_at_the_least_cost() -> None:
@@ -491,6 +591,28 @@ def test_rk3_and_rk4_are_studied_on_both_sides_of_their_limits(
         (above3, below3, 2 * pi / sqrt(3)), (above4, below4, 2 * pi / sqrt(8)),
     ):  # fmt: skip
         assert (above, below) == pytest.approx((1.02 * limit, 0.98 * limit)), name
+
+
+def test_parts_of_the_study_of_chaos_have_its_durations_and_methods(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def said(name: str) -> Callable[..., object]:
+        return lambda _, *arguments: (name, *arguments)
+
+    for name in ("statistics", "separation", "horizon"):
+        monkeypatch.setattr(chaos, name, said(name))
+    monkeypatch.setattr(chaos, "lyapunov", lambda _, *arguments: Mean(0.5, arguments[2]))
+    monkeypatch.setattr(chaos, "reference_motion", lambda _, *arguments: arguments)
+    found = Chaos(100.0, 20.0, 300.0, ("dp54", "bs32")).run(load)
+    assert found.exponent == Mean(0.5, 100.0)
+    assert found.separation == ("separation", CHAOTIC, 20.0)
+    assert found.horizons == [
+        ("horizon", CHAOTIC, 20.0, 0.5, method, tolerance)
+        for method in ("dp54", "bs32")
+        for tolerance in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+    ]
+    assert found.statistics == [("statistics", 300.0, run) for run in LONG_RUNS]
+    assert len(LONG_RUNS) == 4
 
 
 def test_plots_and_summaries_of_studies_are_as_recorded(record: Record) -> None:
