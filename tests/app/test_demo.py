@@ -1,6 +1,7 @@
 """The demonstration: one screen of text, and one page that fits every screen and loads nothing."""
 
 import json
+import math
 import re
 from collections.abc import Iterator
 from contextlib import redirect_stdout
@@ -8,10 +9,12 @@ from functools import partial
 from io import StringIO
 from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
@@ -26,6 +29,8 @@ from solvers.equations.module import operations_on_state
 from solvers.integration.integrate import integrate
 from solvers.scenes.scene_reading import find
 from solvers.studies.work_precision import measured_curves
+from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun
+from solvers.sweeps.definition import sweep_reading
 
 
 @pytest.fixture(scope="module")
@@ -252,6 +257,110 @@ def test_the_numbers_of_the_motion_are_its_largest_errors() -> None:
     text = f"difference from SciPy's DOP853 {apart:.1g}, energy error {error:.1g}"
     assert stage.lines[2] == text
     assert 1e-13 < apart < 1e-9
+
+
+def test_methods_are_listed_by_their_cost_for_the_same_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of three curves: two reach the error, midway between two runs."""
+
+    def curve(method: str, seconds: float, *errors: float) -> CostCurve:
+        runs = [MeasuredRun({}, seconds * 100**k, None, error, 0.0)
+                for k, error in enumerate(errors)]  # fmt: skip
+        form, backend = ("rational", "compiled") if method != "RK45" else ("lagrangian", "scipy")
+        return CostCurve("report", method, form, backend, runs)
+
+    measured = [curve("RK45", 2.5e-3, 1e-5, 1e-7), curve("rk1", 1e-6, 1e-1, 1e-2),
+                curve("verner98", 2e-6, 1e-5, 1e-7)]  # fmt: skip
+    reference = SimpleNamespace(METHOD="a series", global_error=3e-14)
+    monkeypatch.setattr(motions_stage, "curves", lambda *_: measured)
+    monkeypatch.setattr(motions_stage.Reference, "of", lambda _: reference)
+    monkeypatch.setattr(motions_stage, "svg_image", lambda *_: "image")
+    stage = motions_stage.cost(find("report", load_module))
+    assert stage.lines == (
+        "an error of 1e-06 takes Verner 9(8) 20 µs;", "SciPy RK45 1250 ×",
+    )  # fmt: skip
+    assert "<td>Verner 9(8)</td><td>1</td></tr><tr><td>SciPy RK45</td><td>1250</td>" in stage.html
+    (number,) = stage.numbers
+    assert number.value == "Verner 9(8) 20 µs; SciPy RK45 1250 ×"
+    assert "errors against a series, own error 3e-14" in number.method
+    assert number.command == "holonomic chart report"
+    assert [motions_stage._ratio(value) for value in (3.14159, 99.96, 100.4)] == [
+        "3.14", "100", "100",
+    ]  # fmt: skip
+    (panel,) = motions_stage._work_precision(measured).axes
+    for line, one in zip(panel.lines, measured, strict=True):
+        seconds = [run.work_seconds for run in one.points]
+        assert line.get_xdata() == pytest.approx(seconds)
+        assert line.get_ydata() == pytest.approx([run.global_error for run in one.points])
+        assert line.get_linestyle() == ("--" if one.method == "RK45" else "-")
+
+
+def test_the_longest_stable_steps_are_those_of_the_fastest_oscillation(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fastest = math.sqrt((2 + math.sqrt(2)) * 9.81 / 2)  # two equal rods of 2 m
+    rk4 = SimpleNamespace(predicted=0.123456, measured=0.123789)
+    monkeypatch.setattr(motions_stage, "critical_step", lambda *_: rk4)
+    monkeypatch.setattr(motions_stage, "LISTED", ("rk1", "rk3", "rk4", "gauss1"))
+    monkeypatch.setattr(motions_stage, "PLOTTED", {"rk1": "Euler"})
+    monkeypatch.setattr(motions_stage, "boundaries", list)
+    monkeypatch.setattr(motions_stage, "svg_image", lambda *_: "image")
+    stage = motions_stage.limits(find("report", load_module))
+    cells = re.findall(r"<tr><td>(\w+): .*?</td><td>(\d)</td><td>(.*?)</td></tr>", stage.html)
+    assert cells == [
+        ("rk1", "1", "none"),
+        ("rk3", "3", f"{math.sqrt(3) / fastest:.4g} s"),
+        ("rk4", "4", f"{math.sqrt(8) / fastest:.4g} s"),
+        ("gauss1", "2", "any"),
+    ]
+    words = "longest stable step of RK4: 0.12346 s predicted, 0.12379 s measured"
+    assert stage.lines == (words,)
+    assert [number.value for number in stage.numbers] == ["0.12346 s", "0.12379 s"]
+    assert f"{fastest:.5g} rad/s" in stage.numbers[0].method
+
+
+def test_the_map_of_motions_has_its_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = iter([10.0, 12.34])
+    change = SimpleNamespace(motions=64, median=3e-7)
+    results = SimpleNamespace(count={"event": 1234, "finished": 5})
+    monkeypatch.setattr(motions_stage.time, "perf_counter", lambda: next(clock))
+    monkeypatch.setattr(motions_stage, "sweep", lambda *_: results)
+    monkeypatch.setattr(motions_stage, "convergence", lambda _: {"flip": change})
+    monkeypatch.setattr(motions_stage, "figure", lambda _: Figure())
+    monkeypatch.setattr(motions_stage, "png_image", lambda *_: "image")
+    definition = sweep_reading.find("flips", load_module)
+    stage = motions_stage.flips(definition, tmp_path)
+    assert stage.html == "image"
+    motions = f"{definition.motions:,} motions of {definition.duration:g} s"
+    assert stage.lines == (f"{motions}: 1,234 flip (2.3 s this time)",)
+    (number,) = stage.numbers
+    assert number.value == "1,234"
+    assert number.command == "holonomic sweep flips"
+    assert number.method.startswith("64 of them repeated with rtol = ")
+    assert number.method.endswith("half of the times change by less than 3e-07 s")
+
+
+def test_the_derivation_prints_equations_that_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """M q̈ = f and L as printed are those of the generated module at a random state."""
+    steps = [SimpleNamespace(section=one) for one in ("<p>first</p>", "<p>second</p>")]
+    monkeypatch.setattr(equations_stage, "compare_steps", lambda *_: steps)
+    stage = equations_stage.derivation()
+    assert stage.html == "<p>first</p><p>second</p>"
+    text = " ".join(" ".join(stage.lines).split())
+    found = re.fullmatch(
+        r"L = (.*) M = (\[.*?\]) (\[.*?\]) and M qddot = \(f1, f2\) with f1 = (.*) f2 = (.*)", text
+    )
+    assert found
+    values = np.random.default_rng(3).uniform(0.5, 2.0, 9).tolist()
+    symbols = dict(zip([*dp.STATE, *dp.PARAMETERS], values, strict=True))
+    names = symbols | {"sin": math.sin, "cos": math.cos}
+    L, first, second, *forces = (np.array(eval(one, names)) for one in found.groups())
+    y, params = values[:4], values[4:]
+    accelerations = np.linalg.solve([first, second], forces)
+    assert accelerations == pytest.approx(dp.rhs(0.0, y, params)[2:], rel=1e-12)
+    at_rest = dp.energy(0.0, [*y[:2], 0.0, 0.0], params)
+    assert float(L) == pytest.approx(dp.energy(0.0, y, params) - 2 * at_rest, rel=1e-12)
 
 
 def test_the_generated_code_is_shown_with_its_operations() -> None:

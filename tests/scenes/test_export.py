@@ -98,22 +98,29 @@ def test_pictures_for_slides(suffix: str, swing: SceneResult, tmp_path: Path) ->
         assert len(rods) >= 2 * film.INSTANTS
 
 
-@pytest.mark.parametrize("speed", [0.1, 0.3])
-def test_a_film_shows_the_path_of_its_last_two_seconds(
-    swing: SceneResult, speed: float, tmp_path: Path
+@pytest.mark.parametrize(("speed", "clock"), [
+    (0.1, ["0.100", "0.400", "0.850"]), (0.3, ["0.10", "0.40", "0.85"]),
+])  # fmt: skip
+def test_a_film_shows_its_time_and_the_path_of_its_last_two_seconds(
+    swing: SceneResult, speed: float, clock: list[str], tmp_path: Path
 ) -> None:
-    """Against the positions of the bob at the times of the samples and of each frame."""
+    """Against the positions of the bob at the times of the samples and of each frame.
+
+    A frame lasts 0.04 s of the film: its time has the digits in which the next one differs.
+    """
 
     class Frames:
-        """The longest line of each frame, instead of a file."""
+        """The time and the longest line of each frame, instead of a file."""
 
         def __init__(self) -> None:
             self.paths: list[np.ndarray] = []
+            self.clock: list[str] = []
 
         def setup(self, figure: Figure, *_: object) -> None:
-            self.axes = figure.axes[0]
+            self.axes, self.figure = figure.axes[0], figure
 
         def grab_frame(self) -> None:
+            self.clock.append(self.figure.get_supxlabel())
             self.paths.append(max((line.get_xydata() for line in self.axes.lines), key=len))
 
         def finish(self) -> None:
@@ -121,6 +128,7 @@ def test_a_film_shows_the_path_of_its_last_two_seconds(
 
     writer, times = Frames(), np.array([0.1, 0.4, 0.85])
     film._write_film(writer, tmp_path, swing.sampled_motions(), times, speed)  # type: ignore[arg-type]
+    assert writer.clock == [f"t = {time} s" for time in clock]
     for time, path in zip(times, writer.paths, strict=True):
         shown = (swing.t >= time - 2 * speed) & (swing.t <= time)
         angle = np.append(swing.y[0, shown], np.interp(time, swing.t, swing.y[0]))
