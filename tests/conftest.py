@@ -19,6 +19,7 @@ import cheap_compiler
 import pytest
 import sympy as sp
 from browser import Player
+from case_choice import chosen_cases
 from recording import RECORDS, Record
 from sharing import Shared
 
@@ -72,8 +73,9 @@ def long_part(items: list[pytest.Item]) -> set[pytest.Item]:
     for name, own in cases.items():
         marker = own[0].get_closest_marker("long")
         rng = Random(f"{os.environ[SEED]} {name}")
-        kept = rng.sample(own, min(marker.kwargs.get("keep", 0) if marker else 0, len(own)))
-        left_out |= {*own} - {*kept}
+        count = marker.kwargs.get("keep", 0) if marker else 0
+        arguments = [item.callspec.params if hasattr(item, "callspec") else {} for item in own]
+        left_out |= {*own} - {own[k] for k in chosen_cases(arguments, count, rng)}
     return left_out
 
 

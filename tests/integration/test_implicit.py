@@ -10,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from case_choice import planted
 from handwritten import handwritten
 from scipy.integrate import solve_ivp
 
@@ -297,8 +298,7 @@ MISTAKES = {
 }
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
-@pytest.mark.parametrize("mistake", MISTAKES)
+@pytest.mark.parametrize("mistake", planted(MISTAKES, keep=1))
 def test_mistakes_increase_the_work(
     mistake: str, van_der_pol: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -4,10 +4,13 @@ import re
 import subprocess
 import sys
 import tomllib
+from itertools import product
 from pathlib import Path
+from random import Random
 
 import pytest
 import yaml
+from case_choice import chosen_cases
 from folders import ROOT
 
 
@@ -71,3 +74,21 @@ def test_a_hang_in_compiled_code_fails(library: str, tmp_path: Path) -> None:
 def test_the_watchdog_ends_a_test_after_its_timeout(pytestconfig: pytest.Config) -> None:
     limits = [float(pytestconfig.getini(name)) for name in ("timeout", "faulthandler_timeout")]
     assert 0 < limits[0] < limits[1] <= 300
+
+
+def test_cases_that_the_short_part_keeps_have_all_values_of_their_arguments() -> None:
+    loops, forms, methods = ("python", "compiled"), ("q", "p", "z"), range(5)
+    cases = [dict(zip("abc", one, strict=True)) for one in product(loops, forms, methods)]
+    choices = set()
+    for seed in range(20):
+        kept = chosen_cases(cases, 5, Random(seed))
+        assert len({*kept}) == 5
+        assert [len({cases[k][name] for k in kept}) for name in "abc"] == [2, 3, 5]
+        choices.add(frozenset(kept))
+        # of fewer cases, too, no two agree as long as there is another value
+        first, second = chosen_cases(cases, 2, Random(seed))
+        assert all(cases[first][name] != cases[second][name] for name in "abc")
+    assert len(choices) > 10
+    assert {chosen_cases(cases, 1, Random(seed))[0] % 5 for seed in range(40)} == {*range(5)}
+    assert sorted(chosen_cases(cases[:3], 7, Random(0))) == [0, 1, 2]
+    assert chosen_cases(cases, 0, Random(0)) == []
