@@ -231,3 +231,18 @@ def test_a_pole_on_a_cart_that_moves() -> None:
 def test_invalid_velocities_are_refused(velocities: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         equilibria(module_of("spherical_pendulum"), {}, velocities=velocities)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_constraint_may_have_one_sign_in_the_whole_box(sign: int) -> None:
+    """A bead rests at the bottom of a parabola, below which the box is."""
+    y, g = sp.symbols("y g", real=True)
+    parabola = System(
+        "parabola", "", [Coordinate(s, "m", "position") for s in (x, y)],
+        [Parameter(g, "m/s^2", 9.81, "gravity")], [PointMass(1, (x, y))],
+        constraints=[sign * (y - 500 * x**2)], keep_coordinates=True,
+    )  # fmt: skip
+    (bottom,) = equilibria(build(parabola), {}, {"x": (-2e-3, 1e-3), "y": (-1e-3, 0.0)})
+    assert_allclose(bottom.y, 0.0, atol=1e-12)
+    frequency = math.sqrt(2 * 500 * 9.81) / (2 * math.pi)
+    assert bottom.modes[-1].frequency == pytest.approx(frequency, rel=1e-9)
