@@ -23,12 +23,26 @@ OPERATIONS = {
     "subtract": Fraction.__sub__,
     "multiply": Fraction.__mul__,
     "divide": Fraction.__truediv__,
+    "product_added": lambda a, b: a + b * Fraction(float(a)),
+    "lanes_added": lambda a, b: DoubleDouble.stages * a + b,
 }
+#: Those whose errors are in proportion to their larger term.
+SUMS = ("add", "subtract", "product_added", "lanes_added")
 PROGRAM = """
 #include <float.h>
 #include <math.h>
 enum {{ STAGES = {stages} }};
 {source}
+static double_double product_added(double_double a, double_double b)
+{{
+    return add(add_product(a, b, a.high), constant(0, 0));
+}}
+static double_double lanes_added(double_double a, double_double b)
+{{
+    double high = b.high[0], low = b.low[0];
+    add_lanes(a, &high, &low);
+    return constant(high, low);
+}}
 void compute(double (*x)[2], double (*result)[2]);
 void compute(double (*x)[2], double (*result)[2])
 {{
@@ -65,8 +79,9 @@ def test_operations_have_twice_the_digits(command: str, monkeypatch: pytest.Monk
         a, b = map(number, x)
         for (name, operation), pair in zip(OPERATIONS.items(), result, strict=True):
             exact = operation(a, b)
-            size = max(abs(a), abs(b)) if name in ("add", "subtract") else abs(exact)
-            assert abs(number(pair) - exact) <= size * Fraction(8, 2**106), name
+            size = max(abs(exact), abs(a), abs(b)) if name in SUMS else abs(exact)
+            terms = DoubleDouble.stages if name == "lanes_added" else 1
+            assert abs(number(pair) - exact) <= size * Fraction(8 * terms, 2**106), name
             assert abs(pair[1]) <= np.spacing(abs(pair[0]))
 
 
