@@ -60,6 +60,8 @@ void test_choose(const State *start, double contraction, double factor, State *e
 {
     choose_order(start, contraction, factor, end);
 }
+void test_lower(State *);
+void test_lower(State *start) { lower_order(start); }
 int64_t test_methods(const State *);
 int64_t test_methods(const State *start)
 {
@@ -166,4 +168,8 @@ def test_orders_are_chosen_as_by_the_reference() -> None:
         assert functions.test_methods(address(end)) == 10 * reference.index + reference.last
         changes.add((before, reference.index))
         state = end
+    for order, last in ((0.0, 2.0), (1.0, 0.0), (2.0, 1.0)):
+        rejected = np.array([order, last, 0.3])
+        functions.test_lower(address(rejected))
+        assert rejected.tolist() == [min(order + 1, 2), last, 0.3]
     assert changes == {(a, b) for a in range(3) for b in range(3) if abs(a - b) <= 1}
