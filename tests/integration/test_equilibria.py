@@ -1,6 +1,9 @@
 """Equilibria: all of them, in closed form or in a box, with their stability and frequencies."""
 
 import math
+from collections.abc import Callable
+from itertools import combinations_with_replacement
+from operator import add, mul, sub, truediv
 from typing import Any
 
 import numpy as np
@@ -13,7 +16,7 @@ from derive import Coordinate, Derivation, Parameter, PointMass, System, load, w
 from derive.system.parts import SystemDefinitionError
 from solvers import build, equilibria
 from solvers import load as module_of
-from solvers.equations.linearisation.intervals import FUNCTIONS, Interval
+from solvers.equations.linearisation.intervals import FUNCTIONS, Interval, select
 
 cart = build(cart_pole)
 hoop = module_of("rotating_hoop")
@@ -175,6 +178,79 @@ def test_intervals_of_arithmetic_contain_all_values() -> None:
             (2.0 - p, 2 - u), (1.0 / q, 1 / v), (p * 3.0 - 1.0, 3 * u - 1), (-p, -u),
         ):  # fmt: skip
             assert ((interval.low <= value) & (value <= interval.high)).all()
+
+
+#: Intervals between these numbers, and numbers within each of them.
+ENDS = (-math.inf, -7.0, -2.0, -0.5, 0.0, 0.5, 2.0, 7.0, math.inf)
+SPECIAL = np.array([(a, b) for a, b in combinations_with_replacement(ENDS, 2)
+                    if a < math.inf and b > -math.inf]).T  # fmt: skip
+WITHIN = np.clip([*np.linspace(-9, 9, 73), -300.0, 300.0], *SPECIAL[..., np.newaxis])
+
+
+def check_bounds(found: Interval, values: np.ndarray, is_tight: np.ndarray) -> None:
+    """Whether intervals contain the values in rows, and no others where they are tight."""
+    values = np.where(np.isfinite(values), values, np.nan)
+    low, high = np.nanmin(values, axis=1), np.nanmax(values, axis=1)
+    assert not ((found.low > low) | (found.high < high)).any()
+    assert not (np.isnan(found.low) | np.isnan(found.high)).any()
+    close = 1e-12 * (1 + np.abs(low) + np.abs(high))
+    assert (low - found.low <= close)[is_tight].all()
+    assert (found.high - high <= close)[is_tight].all()
+
+
+@pytest.mark.parametrize("operation", [add, sub, mul, truediv])
+def test_arithmetic_of_intervals_with_zeros_and_infinite_ends(
+    operation: Callable[[Any, Any], Any],
+) -> None:
+    n = len(SPECIAL[0])
+    first, second = np.repeat(np.arange(n), n), np.tile(np.arange(n), n)
+    with np.errstate(all="ignore"):
+        found = operation(Interval(*SPECIAL[:, first]), Interval(*SPECIAL[:, second]))
+        few = WITHIN[:, ::3]
+        values = operation(few[first][:, :, np.newaxis], few[second][:, np.newaxis])
+        both = np.isfinite(SPECIAL).all(axis=0)
+        divides = (SPECIAL > 0).all(axis=0) | (SPECIAL < 0).all(axis=0)
+        is_tight = both[first] & both[second]
+        if operation is truediv:
+            is_tight &= divides[second]
+        known = np.isfinite(values).any(axis=(1, 2))  # not those over 0 alone
+        check_bounds(Interval(found.low[known], found.high[known]),
+                     values.reshape(n * n, -1)[known], is_tight[known])  # fmt: skip
+        for number in (-3.0, 0.0, 2.5):
+            whole = Interval(*SPECIAL)
+            check_bounds(operation(whole, number or 1.0), operation(WITHIN, number or 1.0), both)
+            if operation is not truediv:
+                check_bounds(operation(number, whole), operation(number, WITHIN), both)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_functions_of_intervals_with_zeros_and_infinite_ends(name: str) -> None:
+    ordinary = np.vectorize(getattr(math, name))
+    low, high = SPECIAL
+    domain = {"log": high > 0, "sqrt": high >= 0}.get(name, high > -math.inf)
+    inner = {"log": low > 0, "sqrt": low >= 0, "tan": low == high}.get(name, low > -math.inf)
+    least = {"log": 1e-30, "sqrt": 0.0}.get(name, -200.0)
+    with np.errstate(all="ignore"):
+        found = FUNCTIONS[name](Interval(*SPECIAL))
+    values = ordinary(np.clip(WITHIN, least, 200.0)[domain])
+    is_exact = inner & np.isfinite(SPECIAL).all(axis=0)
+    if name in ("sin", "cos"):
+        is_exact &= low == high
+        assert found.low.min() >= -1 - 1e-12
+        assert found.high.max() <= 1 + 1e-12
+    check_bounds(Interval(found.low[domain], found.high[domain]), values, is_exact[domain])
+
+
+@pytest.mark.parametrize("pair", [((-1.0, 2.0), (1.0, 4.0)), ((1.0, 4.0), (-1.0, 2.0))])
+def test_a_choice_of_intervals_is_made_where_the_condition_has_one_sign(
+    pair: tuple[tuple[float, float], tuple[float, float]],
+) -> None:
+    (low, high), n = SPECIAL, len(SPECIAL[0])
+    chosen, other = (Interval(*np.tile(np.transpose([ends]), n)) for ends in pair)
+    found = select(Interval(low, high), chosen, other)
+    for k in range(n):
+        expected = pair[0] if low[k] > 0 else pair[1] if high[k] < 0 else (-1.0, 4.0)
+        assert (found.low[k], found.high[k]) == expected
 
 
 def test_a_denominator_of_several_coordinates_is_no_equation() -> None:
