@@ -405,6 +405,15 @@ def test_a_connection_that_breaks_between_chunks_is_reported(
     assert len(list(tmp_path.glob("chunks/*.npy"))) > 1
 
 
+def test_as_many_chunks_are_computed_at_once_as_there_are_threads() -> None:
+    """Of an executor whose threads change, at least one: it may get them later."""
+    counts = iter([3, 1, 0, 5])
+    pool = Pool(threads=lambda: next(counts))
+    assert [pool.size for _ in range(4)] == [3, 1, 1, 5]
+    assert Pool(workers=4, threads=lambda: 2).size == 4
+    assert Pool().size == len(os.sched_getaffinity(0))
+
+
 @pytest.mark.long("processes of a cluster")
 def test_a_cluster_without_workers_and_one_that_dies_are_reported(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
