@@ -319,6 +319,33 @@ def test_a_light_bob_has_no_effect_and_a_heavy_one_has() -> None:
         PendulumAndLightMasses.of(motion_from(dp, (1.5, 0.3, 0, 1), 3, params))
 
 
+@pytest.mark.parametrize(("model", "module", "params", "y0", "requested"), [
+    (Pendulum, sp, (1.0, 2.0, 9.81), (2.0, 0.5), None),
+    (PendulumAndLightMasses, dp, (1.0, 1e-9, 2.0, 2.0, 9.81), (1.5, 0.3, 0, 1), (0, 2)),
+    (NormalModes, dp, (1.0, 0.5, 2.0, 1.0, 9.81), (0.01, -0.02, 0, 0), None),
+    (Quadrature, ep, (1.0, 40.0, 1.0, 0.0), (1.4, 0.0, 0, 0.5), None),
+])  # fmt: skip
+def test_the_unit_of_mass_does_not_matter(model, module, params, y0, requested) -> None:
+    """Accelerations depend on ratios of masses, and of a stiffness to a mass."""
+    scaled = {"m", "m1", "m2", "k"}
+    times, found = np.linspace(0, 2, 9), []
+    for unit in (1.0, 1e-3, 1e3):  # kg, t and g
+        values = [p * unit if name in scaled else p
+                  for name, p in zip(module.PARAMETERS, params, strict=True)]  # fmt: skip
+        one = model.of(motion_from(module, y0, 2.0, values, requested))
+        found.append((one.states(times), one.error_estimate))
+    for states, estimate in found[1:]:
+        assert states == pytest.approx(found[0][0], abs=1e-9, nan_ok=True)
+        assert estimate == pytest.approx(found[0][1], rel=0.5)
+
+
+def test_a_light_bob_below_a_pendulum_without_weight_is_no_pendulum() -> None:
+    for gravity in (0.0, -9.81):
+        motion = motion_from(dp, (1.5, 0.3, 0, 1), 1, (1.0, 1e-9, 2.0, 2.0, gravity), (0, 2))
+        with pytest.raises(OutsideDomainError, match="does not move as a pendulum"):
+            PendulumAndLightMasses.of(motion)
+
+
 def test_accelerations_by_a_light_bob_add_up_although_their_signs_change() -> None:
     # the integral of the acceleration is a fifteenth of the integral of its magnitude
     params = (1.0, 1e-9, 2.0, 2.0, 9.81)
