@@ -54,6 +54,23 @@ def test_hostile_programs_are_read_or_refused(name: str) -> None:
         assert not read_program(HOSTILE_PROGRAMS[name], "Python").equations
 
 
+def test_calls_within_calls_are_followed_eight_deep() -> None:
+    def chain(count: int) -> str:
+        functions = ["def g0(x):\n    return -9.81*x"]
+        functions += [f"def g{i}(x):\n    return g{i - 1}(x)" for i in range(1, count)]
+        last = f"def f(t, y):\n    return [y[1], g{count - 1}(y[0])]"
+        return "\n".join([*functions, last, ""])
+
+    (equation,) = read_program(chain(8), "Python").equations
+    assert equation.text == "y_0_ddot = -9.81*y_0"
+    recursive = "def g0(x):\n    return -g0(x)\ndef f(t, y):\n    return [y[1], g0(y[0])]\n"
+    for text in (chain(9), recursive):
+        program = read_program(text, "Python")
+        assert program.equations == ()
+        (unread,) = program.unread
+        assert unread.reason.endswith("calls of g0 within calls are not followed")
+
+
 def test_nothing_is_executed(tmp_path: Path) -> None:
     mark = tmp_path / "mark"
     text = f"open({str(mark)!r}, 'w')\ndef f(t, y):\n    return [y[1], exec('raise SystemExit')]\n"

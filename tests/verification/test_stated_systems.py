@@ -337,3 +337,18 @@ def test_two_wrong_terms_are_corrected_together(tmp_path: Path) -> None:
     assert [text[slice(*one)] for one in wrong.wrong_spans] == wrong.wrong_term.split("; ")
     formulas = judged(tmp_path, text.replace(wrong.latex, wrong.correction), "single_pendulum")
     assert formulas[-1].verdict == "verified"
+
+
+@pytest.mark.parametrize("letter", ["d", r"\kappa"])
+def test_an_abbreviation_in_an_energy_may_be_any_letter(letter: str, tmp_path: Path) -> None:
+    """Also one that is no differential: equations with its value and with its letter hold."""
+    text = rf"""
+$$T = \frac12 J\dot\alpha^2, \quad {letter} = k a^2$$
+$$V = \frac12 {letter} \alpha^2 + \beta\alpha^4$$
+$$J\ddot\alpha = -k a^2\alpha - 4\beta\alpha^3$$
+$$J\ddot\alpha + {letter}\alpha + 4\beta\alpha^3 = 0$$
+$$J\ddot\alpha + {letter}\alpha + 2\beta\alpha^3 = 0$$
+"""
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    verdicts = [one.verdict for one in judge_document(read_document(tmp_path / "a.md")).formulas]
+    assert verdicts == [*["definition"] * 3, "verified", "verified", "wrong"]
