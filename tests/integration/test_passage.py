@@ -82,14 +82,27 @@ def test_square_loops_fold_and_open_as_a_pendulum(
     assert np.abs(run.y[5:8] - expected[1]).max() < 1e-6
 
 
-def test_a_single_constraint_without_gradient_is_passed() -> None:
-    """Crank and rod of equal lengths turn together about a slider at rest, uniformly."""
+def test_a_single_constraint_without_gradient_is_passed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Crank and rod of equal lengths turn together about a slider at rest, uniformly.
+
+    So the errors of the polynomials that continue the motion are known, which are estimated.
+    """
+    landed, errors = singular_passage._landed, []
+
+    def recorded(problem: Any, end: float, y: np.ndarray, error: np.ndarray) -> Any:
+        exact = np.array([0.3 + 4 * end, 0.3 - np.pi + 4 * end, 4.0, 4.0])
+        errors.append((error.max(), np.abs(y - exact).max()))
+        return landed(problem, end, y, error)
+
+    monkeypatch.setattr(singular_passage, "_landed", recorded)
     crank = build(replace(linkages.slider_crank(), name="folded", keep_coordinates=False))
     start = {"phi": 0.3, "psi": 0.3 - np.pi, "phi_dot": 4.0, "psi_dot": 4.0}
     params = {"b": 0.25, "g": 0.0}
     run = integrate(crank, (0, 1), start, params, method="radau5", backend="python")
     assert run.status is Status.FINISHED
     assert len(crank.MULTIPLIERS) == 2  # of which one eliminates the slider
+    assert len(errors) > 3
+    assert all(exact / 20 < estimated < 1e-8 for estimated, exact in errors)
     assert np.abs(run.y[0] - 0.3 - 4 * run.t).max() < 1e-7
     assert np.abs(run.y[1] - 0.3 + np.pi - 4 * run.t).max() < 1e-7
 
