@@ -5,7 +5,14 @@ from itertools import combinations
 import pytest
 import sympy as sp
 
-from derive.formulas.generic_values import STATES, is_small, sample
+from derive.formulas.generic_values import (
+    STATES,
+    changes_of_sign,
+    is_nonzero,
+    is_small,
+    near_zeros,
+    sample,
+)
 from derive.formulas.numeric import Evaluator, NoValueError, independent, solved
 
 x, y = sp.symbols("x y", real=True)
@@ -92,3 +99,50 @@ def test_every_two_symbols_have_all_pairs_of_signs() -> None:
     assert all(state[m] > 0 for state in states)
     for a, b in combinations(symbols, 2):
         assert len({(state[a] > 0, state[b] > 0) for state in states}) == 4
+
+
+@pytest.mark.parametrize(("number", "symbols", "changed", "zeros"), [
+    (x**2 - y * x - 6, (x, y), x, [-2, 3]),
+    (x**2 - y * x - 6, (y, x), y, [-5]),
+    (y - 4 + x / 2, (m, x), x, [6]),  # of the first symbol that it contains
+    (x**2 + 2 * x + 5, (x,), x, [-1]),  # complex zeros
+    (x * y - 1 + 1 / x, (m, y), y, [0]),
+    (m**2 - m - 6, (x, m), m, [3]),  # positive ones
+    (m**2 + 1, (m,), m, [0]),
+    (sp.exp(x) - 5, (x,), x, [sp.log(5)]),
+    (sp.exp(x) - sp.exp(-x), (x,), x, [0]),
+    (sp.exp(x) + m, (m,), m, []),
+    (sp.prod(x - k for k in range(2, 9)), (x,), x, [2, 3, 4, 5]),  # the smallest
+])  # fmt: skip
+def test_states_lie_on_both_sides_of_zeros_of_a_number(
+    number: sp.Expr, symbols: tuple[sp.Symbol, ...], changed: sp.Symbol, zeros: list[sp.Expr]
+) -> None:
+    """A hundredth and 1e-40 of their size away, beside closed forms; at 1 is all else."""
+    state = dict.fromkeys((x, y, m), sp.S.One)
+    found = [*near_zeros(number, state, symbols)]
+    assert all(one == {**state, changed: one[changed]} for one in found)
+    distances = [sign * sp.Rational(1, 10) ** k for k in (2, 40) for sign in (1, -1)]
+    expected = [zero + d * (1 + sp.Abs(zero)) for zero in zeros for d in distances]
+    if changed.is_positive:
+        expected = [value for value in expected if value > 0]
+    assert len(found) == len(expected)
+    for one, value in zip(found, expected, strict=True):
+        assert abs(sp.N(one[changed] - value, 60)) < 1e-50
+
+
+def test_changes_of_sign_are_found_and_jumps_are_none() -> None:
+    (zero,) = changes_of_sign(x**3 - x / 4 - 1, x)
+    assert abs(sp.N((x**3 - x / 4 - 1).subs(x, zero), 60)) < 1e-50
+    found = [*changes_of_sign(sp.cos(x), x)]
+    assert len(found) >= 2
+    assert all(abs(sp.N(sp.cos(one), 60)) < 1e-50 for one in found)
+    assert [float(one) for one in changes_of_sign(x, x)] == [0.0]
+    for number in (1 / (x - sp.Rational(1, 3)), sp.exp(x), sp.log(x) - 1):
+        assert [*changes_of_sign(number, x)] == []
+
+
+def test_a_number_that_is_zero_by_digits_is_not_nonzero() -> None:
+    assert is_nonzero(x)
+    assert is_nonzero(x + y / 10**25)
+    assert not is_nonzero(sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1)
+    assert not is_nonzero(sp.log(0 * x))  # it has no value
