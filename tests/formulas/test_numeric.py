@@ -131,8 +131,9 @@ def test_states_lie_on_both_sides_of_zeros_of_a_number(
 
 
 def test_changes_of_sign_are_found_and_jumps_are_none() -> None:
-    (zero,) = changes_of_sign(x**3 - x / 4 - 1, x)
-    assert abs(sp.N((x**3 - x / 4 - 1).subs(x, zero), 60)) < 1e-50
+    for number in (x**3 - x / 4 - 1, x**3 - x / 4 + 1, sp.exp(x) - sp.Rational(1, 5)):
+        (zero,) = changes_of_sign(number, x)
+        assert abs(sp.N(number.subs(x, zero), 60)) < 1e-50
     found = [*changes_of_sign(sp.cos(x), x)]
     assert len(found) >= 2
     assert all(abs(sp.N(sp.cos(one), 60)) < 1e-50 for one in found)
@@ -146,3 +147,17 @@ def test_a_number_that_is_zero_by_digits_is_not_nonzero() -> None:
     assert is_nonzero(x + y / 10**25)
     assert not is_nonzero(sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1)
     assert not is_nonzero(sp.log(0 * x))  # it has no value
+
+
+def test_values_of_symbols_have_moderate_sizes_and_the_signs_that_are_allowed() -> None:
+    symbols = (x, m, sp.Symbol("n", negative=True), y)
+    states = [sample(symbols, index) for index in range(STATES)]
+    for symbol in symbols:
+        values = [float(state[symbol]) for state in states]
+        assert all(1 < abs(value) <= 3 for value in values)
+        assert len({*values}) == STATES
+        assert max(map(abs, values)) > 2 > min(map(abs, values))
+        negative = sum(value < 0 for value in values)
+        assert negative == {True: 0, False: STATES}.get(symbol.is_positive, 6)
+    assert states[0][x] > 0 < states[0][y]  # negative ones are among the others
+    assert len({*map(abs, states[0].values())}) == len(symbols)
