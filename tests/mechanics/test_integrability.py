@@ -26,6 +26,7 @@ from differential_constraints import (
 
 from derive import TIME, Derivation, PointMass
 from derive.commands.regenerate import main
+from derive.mechanics.constraints import integrability
 from derive.system.parts import SystemDefinitionError
 from holonomic import build, integrate
 
@@ -83,6 +84,21 @@ def test_integrability_is_decided(
     result = constrained(*constraints).integrability
     assert (result.integrable, result.nonholonomic) == (integrable, nonholonomic)
     assert not result.note
+
+
+@pytest.mark.parametrize(
+    ("constraints", "count"),
+    [([dz - y * dx], 1), ([dx * s - dy * c], 1), ([x - y, dz - y * dtheta], 1)],
+)
+def test_one_point_shows_that_no_integral_exists(
+    constraints: list[sp.Expr], count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However long the constraints are; an integral is searched if they are short enough."""
+    monkeypatch.setattr(integrability, "LONGEST", 0)
+    result = constrained(*constraints).integrability
+    assert (result.integrable, result.nonholonomic, result.note) == (0, count, "")
+    undecided = constrained(dx - R * dphi).integrability
+    assert (undecided.integrable, undecided.note) == (0, "the constraints are too long")
 
 
 @pytest.mark.long("more cases of the same kind", keep=3)
