@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import generated.single_pendulum as single
-from solvers import integrate, run_scene
+from solvers import Measurement, integrate, run_scene
 from solvers.app.cli import main
-from solvers.app.commands.fit import _system
+from solvers.app.commands.fit import _divided, _system
 
 T = np.arange(0, 5, 1 / 30)
 
@@ -157,3 +157,13 @@ def test_the_new_scene_names_the_system_of_the_old_one(
     assert _system(arguments, fitted) == named
     arguments.scene = "single"
     assert _system(arguments, fitted) == "single_pendulum"
+
+
+def test_the_last_quarter_of_each_run_is_kept_back() -> None:
+    t = np.linspace(2, 10, 81)
+    runs = [Measurement(t, {"theta": t}), Measurement(2 * t, {"theta": t})]
+    first, kept = _divided(runs)
+    ends = [end for one in first for end in (one.t[0], one.t[-1])]
+    assert ends == pytest.approx([2, 7.9, 4, 15.8])  # the rest begins at 8 and 16 s
+    assert [begin for _, begin in kept] == pytest.approx([8, 16])
+    assert [run for run, _ in kept] == runs

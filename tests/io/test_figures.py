@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 from folders import ROOT
@@ -68,3 +69,12 @@ def test_a_dark_figure_has_light_text_and_no_paper() -> None:
 def test_microseconds_have_their_sign() -> None:
     for path in (ROOT / "solvers").rglob("*.py"):
         assert not re.search(r"[}/] ?us\b", path.read_text(encoding="utf-8")), path
+
+
+@pytest.mark.parametrize("given", [{"columns": 0}, {"rows": 101}, {"columns": 2.0}, {"rows": True}])
+def test_numbers_of_panels_are_whole_and_limited(given: dict[str, Any]) -> None:
+    ((name, number),) = given.items()
+    words = f"{name} = {number} must be a whole number from 1 to 100"
+    with pytest.raises(ValueError, match=words):
+        panels("", **given)
+    assert len(panels("", rows=2, columns=3)[1]) == 6
