@@ -1,9 +1,9 @@
 """The C compiler of the tests: less optimisation, and each library compiled once.
 
 Most of the time of a compilation is optimisation, which only tests of speed would notice. The short
-part of the tests compiles some 470 libraries, those of single motions without any. In the long
-part, ``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does, and an index outside an
-array ends the process.
+part of the tests compiles some 470 libraries, those of single motions without any; in these, and in
+all libraries of the long part, an index outside an array ends the process. In the long part,
+``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does.
 """
 
 import os
@@ -21,7 +21,7 @@ from solvers.integration.compiled.kernel import kernel
 PLACE = ROOT / "out" / "tests"
 CHECKS = "-fsanitize=bounds -fsanitize-undefined-trap-on-error"
 #: Flags of the two parts of the tests.
-SHORT, LONG = "-O0", f"-O1 -fexpensive-optimizations {CHECKS}"
+SHORT, LONG = f"-O0 {CHECKS}", f"-O1 -fexpensive-optimizations {CHECKS}"
 #: Flags of the short part for loops over many motions, which run longer than the compiler.
 LANES = "-Og"
 #: Libraries that no test has used for these seconds are removed.
