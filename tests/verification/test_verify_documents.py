@@ -181,6 +181,10 @@ def test_a_run_without_a_verdict_names_what_was_missing(
     output = " ".join(capsys.readouterr().out.split())
     assert "Nothing was judged. 1 formula: 1 not judged because: no system was found" in output
     assert "--system and --names" in output
+    assert main(["verify", str(path), "--system", "single_pendulum"]) == 3
+    output = " ".join(capsys.readouterr().out.split())
+    assert "no meaning of its letters was found" in output
+    assert "in single_pendulum" in output
 
 
 def test_witnesses_do_not_depend_on_the_hash_seed(tmp_path: Path) -> None:

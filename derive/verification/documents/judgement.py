@@ -23,7 +23,7 @@ from derive.verification.documents.letter_meanings import (
     unopposed,
 )
 from derive.verification.documents.letters.convention import convention
-from derive.verification.documents.letters.hints import Hints
+from derive.verification.documents.letters.hints import Hints, without_meaning
 from derive.verification.documents.letters.letter_forms import (
     VARIANTS,
     with_one_letter,
@@ -154,7 +154,7 @@ def _judge(
     left = {one for one in statements.formulas if one.occurrence not in understood}
     follow = *general_verdicts(statements), *Identities(statements.formulas, left).verdicts()
     results |= {one.occurrence: (one, result) for one, result in follow if one in left}
-    note = "no system was found for which its formulas hold"
+    note = without_meaning(hints)
     if work.left < 0:
         note = (
             f"its {len(statements.formulas)} formulas have too many letters to try all meanings: "

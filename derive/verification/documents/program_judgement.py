@@ -12,7 +12,7 @@ from derive.verification.documents.letter_meanings import (
     unopposed,
 )
 from derive.verification.documents.letters.convention import convention
-from derive.verification.documents.letters.hints import Hints
+from derive.verification.documents.letters.hints import Hints, without_meaning
 from derive.verification.documents.pages.verdicts_in_place import (
     METHOD,
     Alternative,
@@ -27,8 +27,6 @@ from derive.verification.judging.verdict import VerdictName
 
 #: Names, numbers and signs of an equation.
 WORD_OR_SIGN = re.compile(r"\w+|\S")
-#: The note on equations for which no system is found.
-NO_SYSTEM = "no system was found for which its equations hold"
 
 
 def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdicts:
@@ -40,7 +38,8 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         statements = Translated(tuple(formulas), (), {})
         found = interpretation(statements, hints)
         if found.match is None:
-            judged += [_plain(equation, NO_SYSTEM) for equation in function.equations]
+            note = without_meaning(hints)
+            judged += [_plain(equation, note) for equation in function.equations]
             continue
         candidate = found.match.candidate
         titles.append(candidate.system.title)

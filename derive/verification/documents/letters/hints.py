@@ -18,6 +18,13 @@ from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError
 
 
+def without_meaning(hints: "Hints | None") -> str:
+    """The reason why formulas are not judged: their letters have no meaning."""
+    if hints is None:
+        return "no system was found for which its formulas hold"
+    return f"no meaning of its letters was found for which its formulas hold in {hints.system.name}"
+
+
 @dataclass(frozen=True)
 class Hints:
     """The system of a document, and letters as formulas in the names of the system."""
