@@ -1,6 +1,6 @@
 """Forms of one letter, and letters with several meanings, in the statements of a document."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -68,12 +68,15 @@ def _with_any_coordinate(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
 
 #: The name of a letter L that is a length beside the Lagrangian.
 LENGTH = "length"
+#: The energies of which the Lagrangian is the difference.
+ENERGIES = {"kinetic_energy", "potential_energy"}
 
 
 def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     r"""The statements, with lengths for some letters L beside the Lagrangian.
 
-    They are plain where the Lagrangian is ``\mathcal L``, or factors where it is alone.
+    They are plain where the Lagrangian is ``\mathcal L``, or factors where it is alone. This is
+    differentiated, or a difference of energies.
     """
 
     def is_plain(place: Occurrence, letter: Letter) -> bool:
@@ -91,7 +94,8 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         for node in nodes(one.sides)
         if isinstance(node, Derivative) and isinstance(letter := node.operand, Letter)
     }
-    if len(found) < 2 and "L" not in differentiated:
+    is_lagrangian = "L" in differentiated or any(map(_is_difference_of_energies, occurrences))
+    if len(found) < 2 and not is_lagrangian:
         return [*occurrences]
 
     def change(place: Occurrence, alone: set[Span], letter: Letter) -> Letter:
@@ -101,19 +105,48 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         return replace(letter, name=LENGTH) if is_length else letter
 
     def changed(place: Occurrence) -> Occurrence:
-        alone = {one.span for one in (*place.sides, *_terms(place.sides))}
+        sides = () if _is_of_length(place) else place.sides
+        alone = {one.span for one in (*sides, *_terms(place.sides))}
         return _with_sides(place, with_letters(place.sides, partial(change, place, alone)))
 
     return [changed(one) for one in occurrences]
 
 
-def _terms(sides: object) -> Iterator[Node]:
-    """Terms of sums, and what derivatives apply to."""
+def _is_difference_of_energies(place: Occurrence) -> bool:
+    """Whether a statement is L = T - V, in any letters of energies."""
+    first, *others = place.sides or (None,)
+    return (
+        isinstance(first, Letter)
+        and first.identifier == "L"
+        and any(
+            isinstance(one, Sum) and {QUANTITIES.get(x.name) for x in letters(one)} >= ENERGIES
+            for one in others
+        )
+    )
+
+
+def _is_of_length(place: Occurrence) -> bool:
+    """Whether a statement defines a length L, as L = 2 l does: by letters without dots alone."""
+    others = [*letters(place.sides[1:])]
+    moving = any(one.dots or one.primes or one.name in QUANTITIES for one in others)
+    return len(others) == 1 and not moving
+
+
+def _terms(sides: Iterable[Node]) -> Iterator[Node]:
+    """Terms of sums that are no factors, and what derivatives apply to."""
     for node in nodes(sides):
-        if isinstance(node, Sum):
-            yield from (term for _, term in node.terms)
         if isinstance(node, Derivative | Application):
-            yield node.operand if isinstance(node, Derivative) else node.head
+            operand = node.operand if isinstance(node, Derivative) else node.head
+            yield from (operand, *_summands(operand))
+    for side in sides:
+        yield from _summands(side)
+
+
+def _summands(node: Node) -> Iterator[Node]:
+    """The terms of a sum, and those of sums among them."""
+    if isinstance(node, Sum):
+        for _, term in node.terms:
+            yield from (term, *_summands(term))
 
 
 def _with_sides(place: Occurrence, sides: tuple[Node, ...]) -> Occurrence:
