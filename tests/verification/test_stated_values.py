@@ -18,6 +18,28 @@ def verdicts(folder: Path, text: str) -> list[str]:
     return [one.verdict for one in judged(folder, text).formulas]
 
 
+def test_relations_of_parameters_contradict_no_motion(tmp_path: Path) -> None:
+    text = r"""A rod has the length $d$, and its centre the distance $b = d/2$ from the hinge. With
+$$I = \frac13 m d^2$$
+$$T = \frac12 I\dot\theta^2$$ $$V = -m g b\cos\theta$$
+$$I\ddot\theta + m g b\sin\theta = 0$$"""
+    assert verdicts(tmp_path, text) == ["definition"] * 2 + ["verified"] * 3
+
+
+def test_an_energy_at_a_place_is_a_value(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m l^2\dot\theta^2$$ With $V = 0$ at the hinge,
+$$V = -m g l\cos\theta$$ $$l\ddot\theta + g\sin\theta = 0$$"""
+    assert verdicts(tmp_path, text) == ["verified", "context", "verified", "verified"]
+
+
+def test_an_angle_at_a_place_defines_no_angle(tmp_path: Path) -> None:
+    text = r"""It hangs at $\phi = \pi$. With $$\phi = \beta + \pi$$
+$$T = \frac12 m a^2\dot\beta^2$$ $$V = m g a\cos\phi$$ $$a\ddot\beta = -g\sin\beta$$"""
+    assert verdicts(tmp_path, text) == ["context", "definition", *["verified"] * 3]
+    text = r"""It hangs at $\phi = \pi$. $$m\ddot\phi = m g\sin\phi$$ $$\ddot\phi = -g\sin\phi$$"""
+    assert verdicts(tmp_path, text).count("verified") < 2
+
+
 def test_a_length_l_beside_a_difference_of_energies(tmp_path: Path) -> None:
     text = r"""With $L = 2b$, $$I = \frac13 m L^2 = \frac43 m b^2$$
 $$T = \frac12 I\dot\theta^2$$ $$V = -m g b\cos\theta$$ $$L = T - V$$"""

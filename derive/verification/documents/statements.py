@@ -102,6 +102,11 @@ class DocumentFormula:
         return " ".join(pieces)
 
     @property
+    def is_value(self) -> bool:
+        """Whether its last side is a number, as in phi = pi."""
+        return {*WORD.findall(self.sides[-1].text)} <= {"pi"}
+
+    @property
     def is_update(self) -> bool:
         """Whether it is a step in time, such as x = x + h*x_dot, and no equation."""
         first, last = self.sides[0].text, self.sides[-1].text
@@ -234,6 +239,11 @@ def _is_matrix(node: Node, matrices: set[str]) -> bool:
             columns = [_is_matrix(one, matrices) for one in factors]
             return sum(columns) == 1
     return False
+
+
+def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
+    """The formulas with those behind the others that state numbers, as phi = pi at a place does."""
+    return sorted(formulas, key=lambda one: one.is_value)
 
 
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:

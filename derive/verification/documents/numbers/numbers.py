@@ -7,13 +7,18 @@ from numpy.typing import NDArray
 
 from derive.verification.documents.formula_translation import RATES, order, stem
 from derive.verification.documents.jets import Array, Jet, UnknownNameError, Value, evaluated
-from derive.verification.documents.letters.letters import MATRICES, Letters
+from derive.verification.documents.letters.letters import MATRICES, OPERATORS, Letters
 from derive.verification.documents.numbers.candidate_motions import (
     ArbitraryMotion,
     CandidateMotions,
 )
 from derive.verification.documents.numbers.single_mistakes import is_near
-from derive.verification.documents.statements import EQUALITIES, WORD, DocumentFormula, definitions
+from derive.verification.documents.statements import (
+    EQUALITIES,
+    DocumentFormula,
+    definitions,
+    values_last,
+)
 
 #: The largest difference of values of order 1 that counts as none, and digits that show one.
 CLOSE, DIGITS = 1e-7, 6
@@ -83,7 +88,7 @@ class Numbers:
             for ending in RATES[:3]:
                 self.values.pop(name + ending, None)
         for _ in range(ROUNDS):
-            for formula in formulas:
+            for formula in values_last(formulas):
                 for name, text in definitions(formula):
                     value = None if name in self.values else self._value(text)
                     if value is None:
@@ -159,10 +164,16 @@ class Numbers:
                 yield np.any(hits, axis=0)
 
     def _is_value(self, formula: DocumentFormula) -> bool:
-        """Whether it states a number for coordinates, velocities or parameters, as theta = 0."""
-        *names, last = (side.text for side in formula.sides)
-        moving = {q + ending for q in self._letters.coordinates for ending in RATES[:2]}
-        return {*names} <= {*moving, *self._letters.parameters} and not WORD.search(last)
+        """Whether it states a number for coordinates, velocities or parameters, as theta = 0.
+
+        So does a relation of parameters, as b = d/2, and the value of an energy at a place.
+        """
+        letters = self._letters
+        names = {side.text for side in formula.sides[:-1]}
+        moving = {q + ending for q in letters.coordinates for ending in RATES[:2]}
+        known = {*moving, *letters.parameters, *letters.quantities}
+        is_relation = {*formula.words} - OPERATORS <= {*letters.parameters}
+        return (names <= known and formula.is_value) or (bool(formula.subject) and is_relation)
 
     def _is_solution(self, formula: DocumentFormula) -> bool:
         """Whether it states a coordinate as a function of time alone, as x = A*cos(omega*t)."""

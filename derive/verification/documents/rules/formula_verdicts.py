@@ -111,6 +111,8 @@ class Judge:
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         if unknown and self._is_equation_without(formula, unknown):
             return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
+        if unknown and self._relates_parameters(formula):
+            return plain("definition", formula, "")
         if self._unknown(formula.sides[:1]):
             return self._not_understood(formula, unknown)
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
@@ -124,6 +126,8 @@ class Judge:
             if result.verdict.verdict not in CORRECT:
                 if (definition := self._positions.opposite(formula.subject)) is not None:
                     return plain("context", formula, opposed(definition.occurrence.line))
+                if self._relates_parameters(formula):
+                    return plain("definition", formula, "")
                 if self._is_place(formula):
                     return plain("context", formula, "it states a value")
                 return self._first_side(formula) or result
@@ -221,8 +225,19 @@ class Judge:
         entries = [one.text for side in sides for one in side.entries or (side,)]
         return not value.free_symbols and all(
             isinstance(names.get(one), sp.Symbol)
+            or (one in self._namespace.letters.quantities and names.get(one) != value)
             or (one in self._namespace.defining and depends_on(names[one], moving))
             for one in entries
+        )
+
+    def _relates_parameters(self, formula: DocumentFormula) -> bool:
+        """Whether a formula defines a parameter by others, as b = d/2 does: any value is right."""
+        names, known = self._namespace.all_names, {*self._namespace.derivation.system.params}
+        letters = self._namespace.letters
+        values = (names.get(word) for word in formula.words if word not in letters.parameters)
+        return names.get(formula.subject) in known and all(
+            callable(one) or (isinstance(one, sp.Expr) and one.free_symbols <= known)
+            for one in values
         )
 
     def _is_place(self, formula: DocumentFormula) -> bool:

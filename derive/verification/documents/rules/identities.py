@@ -79,7 +79,8 @@ class Identities:
             elif any(holds is False for holds, _ in results):
                 failed.append((formula, used))
             for name, text in definitions(formula):
-                if not order(name) and name not in WORD.findall(text):
+                is_place = formula.is_value and name in self._moving
+                if not order(name) and name not in WORD.findall(text) and not is_place:
                     self._texts[name] = text
                     own = defining.setdefault(name, [])
                     if formula not in own and (formula not in verified or not own):

@@ -18,7 +18,12 @@ from derive.verification.documents.formula_translation import RATES, stem
 from derive.verification.documents.letters.document_system import SystemLetters
 from derive.verification.documents.letters.letters import Letters, composed
 from derive.verification.documents.letters.stated_positions import AXES, COLUMN
-from derive.verification.documents.statements import WORD, DocumentFormula, definitions
+from derive.verification.documents.statements import (
+    WORD,
+    DocumentFormula,
+    definitions,
+    values_last,
+)
 from derive.verification.judging.reference_system import (
     ReferenceSystem,
     depends_on,
@@ -69,7 +74,7 @@ class DocumentNamespace:
         self.composed, self.displacements = set[str](), set[str]()
         for _ in range(ROUNDS):
             known = len(self.names)
-            for formula in formulas:
+            for formula in values_last(formulas):
                 self._define(formula)
             self._add_columns(formulas)
             self._add_derivatives()
