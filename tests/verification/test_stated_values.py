@@ -26,6 +26,31 @@ $$I\ddot\theta + m g b\sin\theta = 0$$"""
     assert verdicts(tmp_path, text) == ["definition"] * 2 + ["verified"] * 3
 
 
+CHARGE = r"""
+$$T = \frac{m}{2}(\dot x^2 + \dot y^2)$$ $$L = \frac{m}{2}(\dot x^2 + \dot y^2) + e B x\dot y$$
+$$p_y = m\dot y + e B x$$ $$H = \frac{p_x^2}{2 m} + \frac{(p_y - e B x)^2}{2 m}$$
+$$m\ddot x = e B\dot y$$
+"""
+
+
+def test_lagrangians_can_have_terms_linear_in_velocities(tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, CHARGE)} <= CORRECT
+    found = verdicts(tmp_path, CHARGE.replace(r"\dot y + e B", r"\dot y - e B"))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [2]
+
+
+SWUNG = r"""
+$$T = \frac12 m(l^2\dot\phi^2 + 2 a l\gamma\cos(\gamma t)\dot\phi\cos\phi)$$
+$$V = -m g l\cos\phi$$ $$p_\phi = m l^2\dot\phi + m a l\gamma\cos(\gamma t)\cos\phi$$
+$$l\ddot\phi = a\gamma^2\sin(\gamma t)\cos\phi - g\sin\phi$$
+"""
+
+
+def test_kinetic_energies_can_have_terms_linear_in_velocities(tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, SWUNG)} <= CORRECT
+    assert verdicts(tmp_path, SWUNG.replace("= a", "= -a"))[-1] == "wrong"
+
+
 def test_an_energy_at_a_place_is_a_value(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m l^2\dot\theta^2$$ With $V = 0$ at the hinge,
 $$V = -m g l\cos\theta$$ $$l\ddot\theta + g\sin\theta = 0$$"""

@@ -146,7 +146,8 @@ class Kinetics:
     def variables(self) -> tuple[sp.Symbol, ...]:
         """Coordinates, time if positions depend on it, and lengths with requested reactions."""
         positions = sp.Tuple(*(r for mass in self.system.masses for r in mass.placement))
-        time = (TIME,) if TIME in positions.free_symbols else ()
+        has_rows = any(one.rows > len(self.system.q) for one in self._given_matrices)
+        time = (TIME,) if has_rows or TIME in positions.free_symbols else ()
         return (*self.system.q, *time, *self.system.reactions)
 
     @cached_property
@@ -172,7 +173,7 @@ class Kinetics:
 
     @property
     def _given_matrices(self) -> list[Matrix]:
-        """Parts of the mass matrix that follow from no positions."""
+        """Parts of the mass matrix that follow from no positions; the last row can be of time."""
         matrices = (mass.inertia_matrix for mass in self.system.masses)
         return [one for one in matrices if one is not None]
 

@@ -17,8 +17,10 @@ from derive.verification.documents.statements import WORD
 from derive.verification.judging.system_names import FACTORS
 
 #: The names of systems that documents state by positions or energies, and by equations of motion:
-#: by those with a potential energy, and by others.
+#: by those with a potential energy, and by others; by a Lagrangian with terms linear in velocities,
+#: which belong to no kinetic energy.
 STATED, BY_POTENTIAL, BY_EQUATIONS = "stated", "stated_potential", "stated_equations"
+BY_LAGRANGIAN = "stated_lagrangian"
 #: Largest number of candidates of one system.
 MAX_CANDIDATES = 3000
 #: The same of one with constraints, before those of the signs of multipliers.

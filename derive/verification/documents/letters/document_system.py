@@ -14,7 +14,11 @@ from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
 from derive.verification.documents.formula_translation import RATES
-from derive.verification.documents.letters.candidates import Damped, SystemCandidate
+from derive.verification.documents.letters.candidates import (
+    BY_LAGRANGIAN,
+    Damped,
+    SystemCandidate,
+)
 from derive.verification.documents.letters.letters import KINDS
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.statements import WORD
@@ -161,6 +165,15 @@ def _damping(candidate: SystemCandidate, damped: Damped) -> sp.Matrix:
 def mass_matrix(template: System) -> sp.Matrix:
     """The mass matrix of a system."""
     return sp.Matrix(derivation(template).mass_matrix)
+
+
+def energies_of(derived: Derivation) -> tuple[sp.Expr, sp.Expr]:
+    """Kinetic and potential energy, to which velocities can belong in a stated Lagrangian."""
+    T, V = derived.kinetic_energy, derived.potential_energy
+    if derived.system.name == BY_LAGRANGIAN:
+        T = derived.energy - derived.effective_potential
+        V = T - derived.lagrangian
+    return T, V
 
 
 def drag(template: System) -> sp.Matrix:

@@ -1,6 +1,7 @@
 """The system of energies that a document states: T and V, its Lagrangian, or its energy.
 
-Kinetic energies are quadratic forms of velocities, whose coefficients may depend on coordinates.
+Kinetic energies are quadratic in velocities, with coefficients that may depend on coordinates and
+time. Terms that are linear are those of moving supports and of magnetic fields.
 """
 
 import re
@@ -17,7 +18,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.letters.candidates import STATED
+from derive.verification.documents.letters.candidates import BY_LAGRANGIAN, STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.implied_energies import (
     Energies,
@@ -38,7 +39,7 @@ LARGE = 10.0
 
 @dataclass(frozen=True)
 class StatedInertia(PointMass):
-    """Masses whose positions are not known, but whose mass matrix is."""
+    """Masses without known positions, but with a mass matrix, perhaps with a row of time."""
 
     matrix: sp.ImmutableDenseMatrix
 
@@ -62,16 +63,16 @@ def systems_of_energies(
     known: set[tuple[sp.Expr, sp.Expr]] = set()
     stated, values = stated_values(letters, formulas, symbols)
     damping = stated_dissipation(letters, formulas, values)
+    kinetic = stated.get("kinetic_energy", ())
     for T, V, numbers in stated_energies(letters, formulas, stated, values):
         moving = [one for one in q if T.has(velocity(one))]
-        form = _quadratic_form(T, moving)
+        matrix = _quadratic_form(T, moving)
         accelerated = {symbols[name] for name in letters.accelerated}
         if (
-            form is None
+            matrix is None
             or not {*moving} >= ({*q} & (V.free_symbols | T.free_symbols)) | accelerated
         ):
             continue
-        matrix, rest = form
         pair = (sp.expand(T), sp.expand(V))
         if pair in known:
             continue
@@ -81,7 +82,11 @@ def systems_of_energies(
         applied = stated_forces(formulas, values, moving)
         for loads in [applied, [sp.S.Zero] * len(moving)] if any(applied) else [applied]:
             forces = [sp.Add(*pair) for pair in zip(friction, loads, strict=True)]
-            if system := stated_system(STATED, title, letters, moving, matrix, V - rest, forces):
+            is_kinetic = all(matrix.shape[0] == len(moving) or one == T for one, _ in kinetic)
+            name = STATED if is_kinetic else BY_LAGRANGIAN
+            # also letters that cancel, as r of J = m*r**2/2 does in J/r**2
+            own = [symbols[w] for k in numbers for w in formulas[k].words if w in symbols]
+            if system := stated_system(name, title, letters, moving, matrix, V, forces, own):
                 yield system, numbers
 
 
@@ -153,18 +158,19 @@ def stated_system(
 
 def _quadratic_form(
     kinetic: sp.Expr, moving: Sequence[sp.Symbol]
-) -> tuple[sp.ImmutableDenseMatrix, sp.Expr] | None:
-    """The mass matrix of a kinetic energy, and its part without velocities; None without any."""
+) -> sp.ImmutableDenseMatrix | None:
+    """The mass matrix of a kinetic energy, with a row of time if it needs one; None without any."""
     rates = [velocity(one) for one in moving]
     matrix = sp.ImmutableDenseMatrix(sp.hessian(kinetic, rates)) if rates else None
     if matrix is None or matrix.free_symbols & {*rates} or not all(matrix.diagonal()):
         return None
     at_rest = dict.fromkeys(rates, sp.S.Zero)
-    if any(kinetic.diff(rate).xreplace(at_rest) != 0 for rate in rates):
-        return None
     if any(matrix[i, i].could_extract_minus_sign() for i in range(len(rates))):
         return None
-    return matrix.applyfunc(sp.factor_terms), kinetic.xreplace(at_rest)
+    row = sp.Matrix([[*(kinetic.diff(rate) for rate in rates), 2 * kinetic]]).xreplace(at_rest)
+    if any(row):
+        matrix = matrix.row_join(row[:, :-1].T).col_join(row)
+    return sp.ImmutableDenseMatrix(matrix.applyfunc(sp.factor_terms))
 
 
 def has_rotations(system: System, letters: Letters, formulas: Sequence[DocumentFormula]) -> bool:

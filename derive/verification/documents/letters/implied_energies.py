@@ -37,8 +37,11 @@ def energies_of_hamiltonians(
                 continue
             if max(map(sp.count_ops, inverse)) > MAX_OPERATIONS:
                 continue
-            T = (v.T * inverse.inv().applyfunc(sp.cancel) * v)[0, 0] / 2
-            yield T, H.xreplace(dict.fromkeys(columns, sp.S.Zero)), numbers
+            at_rest = dict.fromkeys(columns, sp.S.Zero)
+            drift = sp.Matrix([H.diff(p) for p in columns]).xreplace(at_rest)
+            mass = inverse.inv().applyfunc(sp.cancel)
+            T = (v.T * mass * (v / 2 - drift))[0, 0]
+            yield T, H.xreplace(at_rest) - (drift.T * mass * drift)[0, 0] / 2, numbers
 
 
 def _hamiltonians(

@@ -16,6 +16,7 @@ from derive.verification.documents.letters.candidates import Damped, SystemCandi
 from derive.verification.documents.letters.document_system import (
     derivation,
     drag,
+    energies_of,
     mass_matrix,
     multiplier,
 )
@@ -222,8 +223,7 @@ class CandidateMotions:
     @cached_property
     def energies(self) -> Mapping[str, Array]:
         """Kinetic and potential energy, Lagrangian and energy."""
-        d = self._derivation
-        T, V, E = map(self._numbers, (d.kinetic_energy, d.potential_energy, d.energy))
+        T, V, E = map(self._numbers, (*energies_of(self._derivation), self._derivation.energy))
         return {
             "kinetic_energy": T,
             "potential_energy": V,

@@ -15,7 +15,7 @@ from derive.mechanics.derivation import Derivation
 from derive.mechanics.routhian import Routhian
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.verification.documents.formula_translation import RATES, stem
-from derive.verification.documents.letters.document_system import SystemLetters
+from derive.verification.documents.letters.document_system import SystemLetters, energies_of
 from derive.verification.documents.letters.letters import Letters, composed
 from derive.verification.documents.letters.stated_positions import AXES, COLUMN
 from derive.verification.documents.statements import (
@@ -167,10 +167,11 @@ class DocumentNamespace:
 
     def _add_energies(self) -> None:
         d = self.derivation
+        T, V = energies_of(d)
         values = {
             "lagrangian": d.lagrangian,
-            "kinetic_energy": d.kinetic_energy,
-            "potential_energy": d.potential_energy,
+            "kinetic_energy": T,
+            "potential_energy": V,
             "hamiltonian": d.energy,
             "energy": d.energy,
         }
@@ -193,7 +194,7 @@ class DocumentNamespace:
     def _add_total_energies(self, formulas: Sequence[DocumentFormula]) -> None:
         """T + V for energies with which more formulas hold than with Jacobi's integral."""
         d = self.derivation
-        total = d.kinetic_energy + d.potential_energy
+        total = sp.Add(*energies_of(d))
         momenta = dict(zip(self._system.p, d.momenta, strict=True))
         energies = [n for n, kind in self.letters.quantities.items() if kind == "energy"]
         for name in energies if not is_small(total - d.energy) else ():

@@ -12,6 +12,7 @@ from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError, place, summands, syntax_tree
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText, order, stem
+from derive.verification.documents.letters.candidates import BY_LAGRANGIAN
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
@@ -51,6 +52,8 @@ class Roles:
         ):
             kind, name = "accelerations", stem(subject)
         if kind == "accelerations" and depends_on(right, system.qddot):
+            kind = ""
+        if kind in ("kinetic_energy", "potential_energy") and system.name == BY_LAGRANGIAN:
             kind = ""
         if kind in ("hamiltonian", "energy"):
             kind = "hamiltonian" if depends_on(right, system.p) else "energy"
