@@ -77,3 +77,16 @@ $$V = m g (L - r)\sin\alpha + \frac12 k r^2$$
 $$\frac{\partial L}{\partial r} = m g\sin\alpha - k r$$ $$m\ddot r = m g\sin\alpha - k r$$"""
     assert {*verdicts(tmp_path, text)} <= CORRECT
     assert verdicts(tmp_path, text.replace("= m g\\sin", "= -m g\\sin", 1))[3] == "wrong"
+
+
+DRIVEN = r"""$$J = \frac12 M r^2$$
+$$T = \frac12 (m + J/r^2)\dot x^2$$ $$V = \frac12 k x^2$$
+$$L = T - V = \frac12 (m + J/r^2)\dot x^2 - \frac12 k x^2$$
+$$(m + J/r^2)\ddot x + k x = \frac{\tau}{r}$$
+"""
+
+
+def test_a_slip_beside_a_load_is_found(tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, DRIVEN)} <= CORRECT
+    one = judged(tmp_path, DRIVEN.replace("+ k x", "- k x")).formulas[-1]
+    assert (one.verdict, one.wrong_term) == ("wrong", "- k x")

@@ -11,10 +11,10 @@ from derive.verification.documents.formula_translation import FormulaText, order
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import KINDS, OPERATORS, Letters
+from derive.verification.documents.letters.stated_equations import without_unknown_terms
 from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
-from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -67,7 +67,7 @@ class Judges:
         namespace = DocumentNamespace(
             system_letters(candidate), letters, formulas, statements.derivatives, meanings
         )
-        return Judge(namespace, given, stating)
+        return Judge(namespace, given, stating, candidate.basis in ("positions", "energies"))
 
     def verdicts(self, candidate: SystemCandidate) -> Results:
         """The verdicts on all formulas."""

@@ -4,19 +4,21 @@ All candidates of a system are evaluated at once: only accelerations, momenta an
 between them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.verification.documents.formula_translation import order
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.stated_equations import without_unknown_terms
 from derive.verification.documents.numbers.candidate_motions import (
     ArbitraryMotion,
     CandidateMotions,
 )
-from derive.verification.documents.numbers.numbers import Derivatives, Numbers
+from derive.verification.documents.numbers.numbers import Derivatives, Numbers, Votes
 from derive.verification.documents.statements import DocumentFormula
 
 #: The worth of a formula that holds but for one term.
@@ -104,10 +106,13 @@ def best_matches(
         return []
     numbers = Numbers(CandidateMotions(tried, letters), letters, derivatives)
     numbers.define(formulas)
+    others = {w for one in formulas if not (_is_equation(one) or one.is_value) for w in one.words}
+    loads = {*letters.of_kind("force")} - others
+    free = {k: _without_loads(tried, loads, one) for k, one in enumerate(formulas)}
     votes = [
         (index, side, vote)
         for index, formula in enumerate(formulas)
-        for side, vote in numbers.comparisons(formula)
+        for side, vote in _comparisons(numbers, formula, *free[index])
         if (index, side) not in trivial and index not in tried[0].given
     ]
     if not votes:
@@ -118,8 +123,11 @@ def best_matches(
         own = [one.letters for one in tried]
         for row, (index, side, vote) in enumerate(votes):
             possible = ~vote & _uses_letters(own, letters, formulas[index])
-            first = formulas[index].sides[0].text
-            if possible.any() and (hits := numbers.is_near(first, side)) is not None:
+            sides = formulas[index].sides[0].text, side
+            rest, lacking = free[index]
+            if lacking.all():
+                possible, sides = ~vote, (rest.sides[0].text, rest.sides[1].text)
+            if possible.any() and (hits := numbers.is_near(*sides)) is not None:
                 near[row] = hits & possible
     holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
     usual = np.array([one.is_usual for one in tried])
@@ -137,6 +145,36 @@ def best_matches(
               bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows))
         for signature, k in [*chosen.items()][:MAX_RIVALS]
     ]  # fmt: skip
+
+
+def _comparisons(
+    numbers: Numbers, formula: DocumentFormula, rest: DocumentFormula, lacking: Votes
+) -> Iterator[tuple[str, Votes]]:
+    """Yield the comparisons of a formula; for some candidates those of what is left of it."""
+    others = iter(() if rest is formula else numbers.comparisons(rest))
+    for side, vote in numbers.comparisons(formula):
+        _, other = next(others, (side, vote))
+        yield side, np.where(lacking, other, vote)
+
+
+def _is_equation(formula: DocumentFormula) -> bool:
+    """Whether a formula is an equation of motion."""
+    return len(formula.sides) == 2 and any(order(word) == 2 for word in formula.words)
+
+
+def _without_loads(
+    tried: Sequence[SystemCandidate], loads: set[str], formula: DocumentFormula
+) -> tuple[DocumentFormula, Votes]:
+    """An equation of motion without the forces of which energies of a document state nothing.
+
+    With it, the candidates of stated energies without these letters.
+    """
+    own = loads & {*formula.words}
+    if own and _is_equation(formula) and tried[0].basis == "energies":
+        rest = without_unknown_terms(formula, own)
+        if rest is not None:
+            return rest, np.array([own.isdisjoint(one.letters) for one in tried])
+    return formula, np.zeros(len(tried), bool)
 
 
 def _uses_letters(

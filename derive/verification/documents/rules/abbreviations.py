@@ -38,7 +38,8 @@ class Abbreviations:
                 is_slip = is_alone and _differs_by_one_factor(own, shortest)
                 is_shown = len(values) >= AGREEING or is_slip
                 is_agreed = is_shown and self._are_equal([shortest, *values])
-                if is_agreed and not self._are_equal([own, shortest]):
+                # a name that must be 0 is one that a known system has not
+                if is_agreed and shortest != 0 and not self._are_equal([own, shortest]):
                     self._required[name] = shortest
         if self._required:
             namespace.correct(self._required)

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Collection, Sequence
 from contextlib import suppress
+from copy import copy
 from dataclasses import replace
 
 import sympy as sp
@@ -14,8 +15,8 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText, order
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
+from derive.verification.documents.letters.stated_equations import without_unknown_terms
 from derive.verification.documents.rules.abbreviations import Abbreviations
-from derive.verification.documents.rules.applied_forces import without_unknown_terms
 from derive.verification.documents.rules.consequences import Consequences, opposed
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -56,8 +57,9 @@ class Judge:
         namespace: DocumentNamespace,
         given: Collection[Occurrence] = (),
         stating: Collection[Occurrence] = (),
+        is_stated: bool = False,
     ) -> None:
-        self._given, self._stating = given, stating
+        self._given, self._stating, self._is_stated = given, stating, is_stated
         self._abbreviations = Abbreviations(namespace, namespace.formulas)
         linear = SmallMotions(namespace.derivation)
         # these give names their correct values, and the scope another model
@@ -111,6 +113,8 @@ class Judge:
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         if unknown and self._is_equation_without(formula, unknown):
             return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
+        if unknown and (result := self._beside_loads(formula, unknown)) is not None:
+            return result
         if unknown and self._relates_parameters(formula):
             return plain("definition", formula, "")
         if self._unknown(formula.sides[:1]):
@@ -183,6 +187,27 @@ class Judge:
                 free = replace(self._model, derivation=Derivation(replace(system, forces=forces)))
                 return free.agreement(left - right) is not None
         return False
+
+    def _beside_loads(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
+        """The verdict on an equation of motion in which a term beside unknown loads is wrong."""
+        has_reactions = {*unknown} & {*self._namespace.letters.multipliers}
+        if not self._is_stated or len(formula.sides) != 2 or has_reactions:
+            return None
+        if without_unknown_terms(formula, unknown) is None:
+            return None
+        namespace = copy(self._namespace)
+        namespace.correct(dict.fromkeys(unknown, sp.S.Zero))
+        roles = Roles(namespace, self._linear)
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            left, right = (namespace.value(one.text) for one in formula.sides)
+            if depends_on(left - right, self._namespace.derivation.system.qddot):
+                result = SideComparison(namespace, self._linear, roles).compared(
+                    formula, *formula.sides, left, right
+                )
+                changes = [f"{one.wrong} {one.correct}" for one in result.verdict.corrections]
+                if len(changes) == 1 and {*WORD.findall(changes[0])}.isdisjoint(unknown):
+                    return result
+        return None
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
         """The verdict on the first side if all others agree, so that it is the wrong one.

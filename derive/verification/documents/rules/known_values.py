@@ -101,6 +101,7 @@ class DocumentNamespace:
 
     def correct(self, values: Mapping[str, Value]) -> None:
         """Give names the values that they must have, whatever the document defines them to be."""
+        self.names = dict(self.names)
         for name, value in values.items():
             self._set(name, value)
         self.model = ReferenceSystem(self.derivation, self.names)
