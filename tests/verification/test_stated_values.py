@@ -79,6 +79,22 @@ $$\frac{\partial L}{\partial r} = m g\sin\alpha - k r$$ $$m\ddot r = m g\sin\alp
     assert verdicts(tmp_path, text.replace("= m g\\sin", "= -m g\\sin", 1))[3] == "wrong"
 
 
+HOIST = r"""## First
+$$T = \frac12 m l^2\dot\theta^2$$ $$U = -m g l\cos\theta$$ $$l\ddot\theta = -g\sin\theta$$
+## Second
+### Choice
+The rope is $y_2 = c - y_1$ with $y_1 + y_2 = c$.
+### Energies
+$$T = \frac12 (m_1 + m_2)\dot y_1^2$$ $$U = -m_1 g y_1 - m_2 g y_2 = -m_1 g y_1 - m_2 g (c - y_1)$$
+$$(m_1 + m_2)\ddot y_1 = (m_1 - m_2) g$$
+"""
+
+
+def test_an_example_begins_with_the_relations_before_its_energies(tmp_path: Path) -> None:
+    found = judged(tmp_path, HOIST).formulas
+    assert [one.verdict for one in found if one.line == 5] == ["definition", "verified"]
+
+
 DRIVEN = r"""$$J = \frac12 M r^2$$
 $$T = \frac12 (m + J/r^2)\dot x^2$$ $$V = \frac12 k x^2$$
 $$L = T - V = \frac12 (m + J/r^2)\dot x^2 - \frac12 k x^2$$
@@ -90,3 +106,17 @@ def test_a_slip_beside_a_load_is_found(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, DRIVEN)} <= CORRECT
     one = judged(tmp_path, DRIVEN.replace("+ k x", "- k x")).formulas[-1]
     assert (one.verdict, one.wrong_term) == ("wrong", "- k x")
+
+
+PULLEY = r"""$$x_1 + x_2 = c$$ $$\omega = \frac{\dot x_1}{R}$$
+$$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2 + \frac12 I\omega^2$$
+$$V = -m_1 g x_1 - m_2 g x_2$$
+$$L = \frac12 (m_1 + m_2 + \frac{I}{R^2})\dot x_1^2 + (m_1 - m_2) g x_1$$
+$$(m_1 + m_2 + \frac{I}{R^2})\ddot x_1 = (m_1 - m_2) g$$
+"""
+
+
+def test_a_relation_of_coordinates_gives_one_of_them(tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, PULLEY)} <= {*CORRECT, "equivalent"}
+    found = verdicts(tmp_path, PULLEY.replace("(m_1 - m_2) g$$", "(m_1 + m_2) g$$"))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [5]

@@ -8,7 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import takewhile
+from itertools import chain, takewhile
 
 from derive.reading.document import below_each
 from derive.reading.latex.tree import Statement
@@ -28,6 +28,8 @@ from derive.verification.documents.statements import (
 MAX_CASES = 6
 #: Letters of accelerations and of velocities, of velocities along a line, and of places.
 ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
+#: A relation of two coordinates.
+RELATION = re.compile(r"(\w+) \+ (\w+) = (\w+)")
 SPEEDS, PLACES = ("v", "u"), ("s", "x", "y", "z", "X", "Y")
 
 Formulas = tuple[DocumentFormula, ...]
@@ -61,10 +63,11 @@ def _examples(text: str, statements: Translated) -> Iterator[Formulas]:
     """Yield the formulas of examples below headings of their own.
 
     An example begins below a heading with an energy that has been stated before, but has no
-    coordinate in common with the energies since, but for places that it states by others.
+    coordinate in common with the energies since, but for places that it states by others. Relations
+    of its coordinates alone just before belong to it.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
-    example, seen = list[DocumentFormula](), dict[str, set[str]]()
+    example, seen = list[Formulas](), dict[str, set[str]]()
     for part in below_each(text, statements.formulas, lambda one: one.occurrence.start):
         own: dict[str, set[str]] = {}
         places = {one.subject: _moving(one, letters) for one in part if POINT.match(one.subject)}
@@ -77,12 +80,15 @@ def _examples(text: str, statements: Translated) -> Iterator[Formulas]:
                     own.setdefault(formula.subject, set()).update(moving)
         before, after = (set[str]().union(*one.values()) for one in (seen, own))
         if {*own} & {*seen} and before.isdisjoint(after):
-            yield tuple(example)
-            example, seen = [], {}
-        example += part
+            named = ({stem(word) for one in each for word in one.words} for each in example[::-1])
+            are_new = [bool(one & after) and not one & before for one in named]
+            count = len(example) - len([*takewhile(bool, are_new)])
+            yield tuple(chain.from_iterable(example[:count]))
+            example, seen = example[count:], {}
+        example.append(tuple(part))
         for name, moving in own.items():
             seen.setdefault(name, set()).update(moving)
-    yield tuple(example)
+    yield tuple(chain.from_iterable(example))
 
 
 def _moving(formula: DocumentFormula, letters: Letters) -> set[str]:
@@ -122,7 +128,8 @@ def implied_rates(statements: Translated) -> Translated:
     """
     letters = letters_of(statements.formulas, statements.derivatives)
     if "kinetic_energy" in letters.quantities.values():
-        return _with_rates(statements, _unnamed(letters, statements.formulas))
+        places = _implied_places(letters, statements.formulas)
+        return _with_rates(statements, (*_unnamed(letters, statements.formulas), *places))
     if letters.quantities or letters.momenta or statements.derivatives:
         return statements
     words = Counter(word for one in statements.formulas for word in one.words)
@@ -136,6 +143,25 @@ def implied_rates(statements: Translated) -> Translated:
         names = [name for name in letters.coordinates if VELOCITY.match(name) and is_first]
         ending = "_dot"
     return _with_rates(statements, ((f"place_{one}{ending}", one) for one in names))
+
+
+def _implied_places(
+    letters: Letters, formulas: Sequence[DocumentFormula]
+) -> Iterator[tuple[str, str]]:
+    """Yield coordinates that relations such as x_1 + x_2 = c give, and their formulas.
+
+    They have no acceleration and no definition, unlike the other one.
+    """
+    subjects = {one.subject for one in formulas}
+    for formula in formulas:
+        match = RELATION.fullmatch(formula.text)
+        names = match and {match[1], match[2]}
+        others = {*letters.coordinates} - {*letters.accelerated} - subjects
+        if match and names and names <= {*letters.coordinates} and len(names & others) == 1:
+            (name,) = names & others
+            (other,) = names - {name}
+            if match[3] in letters.parameters and other in letters.accelerated:
+                yield name, f"{match[3]} - {other}"
 
 
 def _with_rates(statements: Translated, pairs: Iterable[tuple[str, str]]) -> Translated:
