@@ -88,3 +88,24 @@ $$ \theta(t) = \theta_{max}\cos(\omega t + \phi) $$"""
     assert verdicts == ["verified", "verified", "context"]
     slip = text.replace(r"{g}{L}\theta", r"{2g}{L}\theta")
     assert judged(tmp_path, slip)[1].verdict != "verified"
+
+
+SWINGS = r"""$$m\ddot x = -k x - c (x - y)$$ $$m\ddot y = -k y - c (y - x)$$
+With $$x = A\cos(\omega t + \alpha), \quad y = B\cos(\omega t + \beta)$$ these are
+$$-m\omega^2 A\cos(\omega t + \alpha) + (k + c) A\cos(\omega t + \alpha)
+ = c B\cos(\omega t + \beta)$$
+$$(k + c - m\omega^2) B\cos(\omega t + \beta) = c A\cos(\omega t + \alpha)$$"""
+
+
+def test_equations_of_amplitudes_follow_from_stated_functions(tmp_path: Path) -> None:
+    assert [one.verdict for one in judged(tmp_path, SWINGS)][4:] == ["verified"] * 2
+    found = judged(tmp_path, SWINGS.replace("(k + c - m", "(k - c - m"))
+    assert found[-1].verdict == "context"
+
+
+MATRICES = r"""$$M = \begin{bmatrix} m & 0 \\ 0 & m \end{bmatrix}$$
+$$K = \begin{bmatrix} k + c & -c \\ -c & k + c \end{bmatrix}$$ $$(K - \omega^2 M)\mathbf{A} = 0$$"""
+
+
+def test_columns_of_amplitudes_are_not_compared(tmp_path: Path) -> None:
+    assert judged(tmp_path, SWINGS + MATRICES)[-1].verdict == "context"

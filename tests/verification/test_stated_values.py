@@ -79,6 +79,14 @@ $$\frac{\partial L}{\partial r} = m g\sin\alpha - k r$$ $$m\ddot r = m g\sin\alp
     assert verdicts(tmp_path, text.replace("= m g\\sin", "= -m g\\sin", 1))[3] == "wrong"
 
 
+MODES = r"""$$T = \frac12 m(\dot x^2 + \dot y^2)$$ $$V = \frac12 k(x^2 + y^2) + \frac12 c(x - y)^2$$
+Modes have $\omega = \sqrt{(k + 2 c)/m}$ or $\omega = \sqrt{k/m}$."""
+
+
+def test_one_letter_can_be_the_frequency_of_several_modes(tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, MODES)} <= CORRECT
+
+
 HOIST = r"""## First
 $$T = \frac12 m l^2\dot\theta^2$$ $$U = -m g l\cos\theta$$ $$l\ddot\theta = -g\sin\theta$$
 ## Second

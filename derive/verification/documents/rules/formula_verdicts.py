@@ -17,6 +17,7 @@ from derive.verification.documents.formula_translation import FormulaText, order
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.stated_equations import without_unknown_terms
 from derive.verification.documents.rules.abbreviations import Abbreviations
+from derive.verification.documents.rules.amplitudes import Amplitudes
 from derive.verification.documents.rules.consequences import Consequences, opposed
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -70,7 +71,7 @@ class Judge:
             PartialEnergies(namespace),
         )
         self._namespace, self._model = namespace, namespace.model
-        self._roles = Roles(namespace, linear)
+        self._roles, self._amplitudes = Roles(namespace, linear), Amplitudes(namespace)
         self._comparison = SideComparison(namespace, linear, self._roles)
         self._frequencies = Frequencies(namespace, linear, self._roles)
 
@@ -113,6 +114,8 @@ class Judge:
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         if unknown and self._is_equation_without(formula, unknown):
             return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
+        if unknown and self._amplitudes.holds(formula):
+            return plain("verified", formula, "with the stated functions of time")
         if unknown and (result := self._beside_loads(formula, unknown)) is not None:
             return result
         if unknown and self._relates_parameters(formula):
@@ -134,6 +137,8 @@ class Judge:
                     return plain("definition", formula, "")
                 if self._is_place(formula):
                     return plain("context", formula, "it states a value")
+                if (frequency := self._frequency(formula)) is not None:
+                    return frequency
                 return self._first_side(formula) or result
         inner = {*self._unknown([formula.sides[0], formula.sides[-1]])}
         if unknown and ({*unknown} & inner or len(known) < 1 or "~" in formula.relations):
@@ -280,6 +285,15 @@ class Judge:
         is_relation = not all(side.text.isidentifier() for side in formula.sides)
         has_place = all(k for k, _ in values) and any(v in system.q for _, v in values)
         return is_relation and has_place and not system.conditions
+
+    def _frequency(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on a frequency of another mode, whose letter the document uses before."""
+        square = SQUARE.fullmatch(formula.sides[0].text)
+        name, power = (square[1], 2) if square else (formula.subject, 1)
+        with suppress(ExpressionError, NotImplementedError):
+            result = self._frequencies.verdict(formula, name, formula.sides[-1], power)
+            return result if result and result.verdict.verdict in CORRECT else None
+        return None
 
     def _has_numbers(self, side: FormulaText) -> bool:
         """Whether a side has the numbers of an example, perhaps with units, in place of letters."""
