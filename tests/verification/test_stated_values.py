@@ -116,6 +116,19 @@ def test_a_slip_beside_a_load_is_found(tmp_path: Path) -> None:
     assert (one.verdict, one.wrong_term) == ("wrong", "- k x")
 
 
+ORBIT = r"""$$L = \frac12 m(\dot r^2 + r^2\dot\phi^2) + \frac{k}{r}$$ $$l = m r^2\dot\phi$$
+$$E = \frac12 m\dot r^2 + \frac{l^2}{2 m r^2} - \frac{k}{r}$$
+$$V_{eff} = \frac{l^2}{2 m r^2} - \frac{k}{r}$$
+$$\dot r = \sqrt{\frac{2}{m}\left(E - V_{eff}\right)}$$
+"""
+
+
+def test_an_effective_potential_has_the_energy_of_conserved_momenta(tmp_path: Path) -> None:
+    assert {*verdicts(tmp_path, ORBIT)} <= CORRECT
+    found = verdicts(tmp_path, ORBIT.replace(r"eff} = \frac{l^2}{2 m", r"eff} = \frac{l^2}{m"))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [3]
+
+
 PULLEY = r"""$$x_1 + x_2 = c$$ $$\omega = \frac{\dot x_1}{R}$$
 $$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2 + \frac12 I\omega^2$$
 $$V = -m_1 g x_1 - m_2 g x_2$$

@@ -14,7 +14,7 @@ from derive.verification.documents.statements import DocumentFormula
 AGREEING = 2
 
 
-def _differs_by_one_factor(own: sp.Expr, value: sp.Expr) -> bool:
+def differs_by_one_factor(own: sp.Expr, value: sp.Expr) -> bool:
     """Whether two sums have the same terms, one of them with another factor, as of a slip."""
     terms = [sp.expand(one).as_coefficients_dict() for one in (own, value)]
     same = [terms[0][key] == terms[1][key] for key in terms[0]]
@@ -35,7 +35,7 @@ class Abbreviations:
                 shortest = min(values, key=sp.count_ops, default=own)
                 others = {*namespace.defining} - {name}
                 is_alone = not any(name in one.words and others & {*one.words} for one in formulas)
-                is_slip = is_alone and _differs_by_one_factor(own, shortest)
+                is_slip = is_alone and differs_by_one_factor(own, shortest)
                 is_shown = len(values) >= AGREEING or is_slip
                 is_agreed = is_shown and self._are_equal([shortest, *values])
                 # a name that must be 0 is one that a known system has not

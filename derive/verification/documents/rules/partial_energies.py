@@ -1,5 +1,6 @@
 """Energies of single bodies or forces, such as T_1 and V_spring, which have a sum."""
 
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -10,8 +11,13 @@ import sympy as sp
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Kinetics
 from derive.verification.documents.letters.letters import energy_of_part
+from derive.verification.documents.rules.abbreviations import differs_by_one_factor
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
+from derive.verification.judging.reference_system import depends_on
+
+#: Names of effective potentials, which contain the energies of conserved momenta.
+EFFECTIVE = re.compile(r"_eff?(?:ective)?\Z")
 
 
 class PartialEnergies:
@@ -41,12 +47,23 @@ class PartialEnergies:
         own = self._namespace.names[name]
         if kind is None or isinstance(own, sp.MatrixBase) or self._is_part(kind, own):
             return None
+        if EFFECTIVE.search(name):
+            return self._effective(own)
         for side in formula.sides[1:]:
             with suppress(ExpressionError):
                 value = self._namespace.value(side.text)
                 if not isinstance(value, sp.MatrixBase) and self._is_part(kind, value):
                     return value
         return self._required.get(name)
+
+    def _effective(self, own: sp.Expr) -> sp.Expr | None:
+        """The energy at rest but for the rates of conserved momenta, if one factor differs."""
+        d = self._namespace.derivation
+        own = own.xreplace(dict(self._model.momenta))
+        resting = {v: sp.S.Zero for v in d.system.qdot if not own.has(v)}
+        value = d.energy.xreplace(resting)
+        is_moving = depends_on(own, d.system.q) and not depends_on(own, d.system.qddot)
+        return value if is_moving and differs_by_one_factor(own, value) else None
 
     @cached_property
     def _required(self) -> Mapping[str, sp.Expr]:
@@ -70,7 +87,8 @@ class PartialEnergies:
         groups: dict[str, list[str]] = {}
         for name in self._namespace.defining:
             kind = energy_of_part(name)
-            if kind and not isinstance(self._namespace.names[name], sp.MatrixBase):
+            is_number = not isinstance(self._namespace.names[name], sp.MatrixBase)
+            if kind and is_number and not EFFECTIVE.search(name):
                 groups.setdefault(kind, []).append(name)
         masses = len(self._namespace.derivation.system.masses)
         return {
