@@ -79,6 +79,12 @@ $$\frac{\partial L}{\partial r} = m g\sin\alpha - k r$$ $$m\ddot r = m g\sin\alp
     assert verdicts(tmp_path, text.replace("= m g\\sin", "= -m g\\sin", 1))[3] == "wrong"
 
 
+def test_terms_can_be_neglected(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m\dot r^2$$ $$V = \frac12 k r^2 - 2 m g r$$ $$L = T - V$$
+$$m\ddot r = 2 m g - k r$$ Without the spring this simplifies to $$\ddot r = 2 g$$"""
+    assert verdicts(tmp_path, text)[-1] == "context"
+
+
 MODES = r"""$$T = \frac12 m(\dot x^2 + \dot y^2)$$ $$V = \frac12 k(x^2 + y^2) + \frac12 c(x - y)^2$$
 Modes have $\omega = \sqrt{(k + 2 c)/m}$ or $\omega = \sqrt{k/m}$."""
 

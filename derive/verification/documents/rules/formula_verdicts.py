@@ -46,6 +46,11 @@ from derive.verification.judging.verdict import Correction
 
 #: A number with a decimal point.
 DECIMAL = re.compile(r"\d\.\d")
+#: Words of sentences about formulas that leave out terms.
+SIMPLIFIED = re.compile(
+    "simplif|neglect|ignor|vereinfach|vernachl|despreci|négli|忽略|無視",
+    re.IGNORECASE,
+)
 #: The note on formulas of which the system follows.
 STATES = "it states the system"
 
@@ -139,6 +144,8 @@ class Judge:
                     return plain("context", formula, "it states a value")
                 if (frequency := self._frequency(formula)) is not None:
                     return frequency
+                if _lacks_terms(formula, result) and SIMPLIFIED.search(formula.occurrence.prose):
+                    return plain("context", formula, "it lacks terms that it can neglect")
                 return self._first_side(formula) or result
         inner = {*self._unknown([formula.sides[0], formula.sides[-1]])}
         if unknown and ({*unknown} & inner or len(known) < 1 or "~" in formula.relations):
@@ -418,3 +425,9 @@ class Judge:
             result, key=lambda one: len(one.verdict.corrections[0].correct), default=None
         )
         return shortest or plain("wrong", formula, "it has not the forces of this system")
+
+
+def _lacks_terms(formula: DocumentFormula, result: SideVerdict) -> bool:
+    """Whether no term of an equation of motion is wrong, so that it lacks others."""
+    is_equation = any(order(word) == 2 for word in formula.words)
+    return is_equation and not any(one.wrong for one in result.verdict.corrections)
