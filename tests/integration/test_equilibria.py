@@ -322,3 +322,19 @@ def test_a_constraint_may_have_one_sign_in_the_whole_box(sign: int) -> None:
     assert_allclose(bottom.y, 0.0, atol=1e-12)
     frequency = math.sqrt(2 * 500 * 9.81) / (2 * math.pi)
     assert bottom.modes[-1].frequency == pytest.approx(frequency, rel=1e-9)
+
+
+@pytest.mark.parametrize("length", [1.3e-9, 1.3, 1.3e6])
+def test_all_accelerations_can_vanish_in_the_box(length: float) -> None:
+    """A pendulum in Cartesian coordinates, on the vertical through its pivot."""
+    y, pivot, g, rod = sp.symbols("y pivot g rod", real=True)
+    pendulum = System(
+        "pendulum", "", [Coordinate(s, "m", "position") for s in (x, y)],
+        [Parameter(g, "m/s^2", 9.81, "gravity"), Parameter(rod, "m", length, "length"),
+         Parameter(pivot, "m", 0.37 * length, "place of the pivot")],
+        [PointMass(0.7, (x, y))], constraints=[(x - pivot) ** 2 + y**2 - rod**2],
+        keep_coordinates=True,
+    )  # fmt: skip
+    box = {"x": 0.37 * length, "y": (-2 * length, 2 * length)}
+    heights = sorted(float(one.y[1]) for one in equilibria(build(pendulum), {}, box))
+    assert_allclose(heights, [-length, length], rtol=1e-12)

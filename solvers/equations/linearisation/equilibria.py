@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 HALVINGS, MOST_BOXES = 18, 50_000
 #: Most steps of Newton's method; its last step, and accelerations, relative to the box.
 MOST_STEPS, CONVERGED = 60, 1e-9
+#: Accelerations that count as small, relative to their derivatives times the width of the box.
+SMALL = 1e-6
 #: Equilibria that are closer, relative to the box, count as one.
 CLOSE = 1e-4
 
@@ -134,12 +136,22 @@ class _Search:
         """The size of accelerations in the box, and of each residual of constraints."""
         arguments = 0.0, self._some_states, self.params
         with np.errstate(all="ignore"):
-            accelerations = self.module.rhs_many(*arguments)[self.n :]
-            sizes = [np.full(self.n, np.nanmax(np.abs(accelerations), initial=1e-300))]
+            accelerations = np.abs(self.module.rhs_many(*arguments)[self.n :])
+            # those that vanish in the whole box, but for rounding errors
+            derivatives = np.abs(self.module.jacobian_many(*arguments)[self.n :, : self.n])
+            small = SMALL * np.nanmax(derivatives * self._lengths[:, np.newaxis], initial=1e-300)
+            sizes = [np.full(self.n, np.nanmax(accelerations, initial=small))]
             if has_constraints(self.module):
                 residuals = function(self.module, "constraints_many")(*arguments)
                 sizes.append(np.nanmax(np.abs(residuals), axis=1, initial=1e-300))
         return np.concatenate(sizes)
+
+    @property
+    def _lengths(self) -> Array:
+        """The width of the box in each coordinate; where it is fixed, in those of its unit."""
+        units = np.array([self.module.UNITS[name] for name in self.module.COORDINATES])
+        widths = np.where(self.free, self.high - self.low, 0.0)[: self.n]
+        return np.array([widths[units == one].max() for one in units])
 
     def residuals(self, state: list[float]) -> tuple[Array, Array]:
         """Accelerations and residuals of constraints, and their derivatives by the state."""
