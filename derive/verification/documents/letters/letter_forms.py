@@ -76,7 +76,8 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     r"""The statements, with lengths for some letters L beside the Lagrangian.
 
     They are plain where the Lagrangian is ``\mathcal L``, or factors where it is alone. This is
-    differentiated, or a difference of energies.
+    differentiated, or a difference of energies. A plain letter is no length if it is given by
+    velocities.
     """
 
     def is_plain(place: Occurrence, letter: Letter) -> bool:
@@ -95,7 +96,7 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         if isinstance(node, Derivative) and isinstance(letter := node.operand, Letter)
     }
     is_lagrangian = "L" in differentiated or any(map(_is_difference_of_energies, occurrences))
-    if len(found) < 2 and not is_lagrangian:
+    if any(map(_is_of_motion, occurrences)) if len(found) > 1 else not is_lagrangian:
         return [*occurrences]
 
     def change(place: Occurrence, alone: set[Span], letter: Letter) -> Letter:
@@ -123,6 +124,13 @@ def _is_difference_of_energies(place: Occurrence) -> bool:
             for one in others
         )
     )
+
+
+def _is_of_motion(place: Occurrence) -> bool:
+    """Whether a statement gives a plain L by velocities."""
+    first, *others = place.sides or (None,)
+    is_plain = isinstance(first, Letter) and place.latex[slice(*first.span)] == "L"
+    return is_plain and any(one.dots for one in letters(tuple(others)))
 
 
 def _is_of_length(place: Occurrence) -> bool:
