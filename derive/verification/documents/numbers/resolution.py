@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
-from derive.verification.documents.formula_translation import RATES
+from derive.verification.documents.formula_translation import RATES, stem
 from derive.verification.documents.jets import UnknownNameError, evaluated
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import OPERATORS, Letters
@@ -70,17 +70,24 @@ def _aliases(names: Sequence[str], candidate: SystemCandidate) -> Iterator[dict[
 def _accepted(
     result: Mapping[str, str], formulas: Sequence[DocumentFormula], numbers: Numbers
 ) -> Mapping[str, str]:
-    """The meanings if several formulas hold with them, which no other meaning would achieve."""
+    """The meanings if several formulas hold with them, which no other meaning would achieve.
+
+    Two letters that a formula relates in another way are no names of one coordinate.
+    """
     for name, q in result.items():
         numbers.set_rates(name, numbers.values[q])
     words = {name + ending for name in result for ending in RATES}
     votes = [
-        bool(vote.all())
+        (bool(vote.all()), {*map(stem, one.words)})
         for one in formulas
         if words & {*one.words}
         for _, vote in numbers.comparisons(one)
     ]
-    if votes.count(True) >= max(SUPPORT, len(votes) // 4):
+    holding = sum(holds for holds, _ in votes)
+    related = any(
+        {*pair} <= letters for holds, letters in votes if not holds for pair in result.items()
+    )
+    if holding >= max(SUPPORT, len(votes) // 4) and not related:
         return result
     for name in (n + ending for n in result for ending in RATES[:3]):
         numbers.values.pop(name, None)
