@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from derive.reading.latex.tree import (
@@ -27,6 +27,7 @@ from derive.verification.documents.formula_translation import (
     FormulaTranslator,
     LetterNotation,
     UntranslatableError,
+    order,
     stem,
 )
 
@@ -86,6 +87,8 @@ class DocumentFormula:
     sides: tuple[FormulaText, ...]
     relations: tuple[str, ...]
     index: int = 0
+    #: Whether it is a special case of a parameter, such as the critical speed omega**2 = g/R.
+    is_special: bool = False
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -139,7 +142,18 @@ def translated(occurrences: Sequence[Occurrence]) -> Translated:
             formulas += _formulas(occurrence, translator)
         except (UntranslatableError, RecursionError) as error:
             failures.append((occurrence, str(error)))
-    return Translated(tuple(formulas), tuple(failures), translator.derivatives)
+    special = tuple(_with_special_cases(formulas))
+    return Translated(special, tuple(failures), translator.derivatives)
+
+
+def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[DocumentFormula]:
+    """Yield the formulas; those of squares define no letters of energies above."""
+    moving = set[str]()
+    for formula in formulas:
+        square = SQUARE.fullmatch(formula.sides[0].text)
+        yield replace(formula, is_special=bool(square and square[1] in moving))
+        if {*map(order, formula.words)} == {0, 1} and not order(formula.subject):
+            moving.update(formula.words)
 
 
 def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
@@ -248,6 +262,8 @@ def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
 
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
+    if formula.is_special:
+        return
     first, *others = formula.sides
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)

@@ -82,7 +82,9 @@ def systems_of_energies(
         applied = stated_forces(formulas, values, moving)
         for loads in [applied, [sp.S.Zero] * len(moving)] if any(applied) else [applied]:
             forces = [sp.Add(*pair) for pair in zip(friction, loads, strict=True)]
-            is_kinetic = all(matrix.shape[0] == len(moving) or one == T for one, _ in kinetic)
+            is_kinetic = matrix.shape[0] == len(moving) or all(
+                sp.expand(one - T) == 0 for one, _ in kinetic
+            )
             name = STATED if is_kinetic else BY_LAGRANGIAN
             # also letters that cancel, as r of J = m*r**2/2 does in J/r**2
             own = [symbols[w] for k in numbers for w in formulas[k].words if w in symbols]

@@ -101,7 +101,7 @@ class Judge:
             return plain("context", formula, "it is no equation")
         if formula.is_update:
             return plain("context", formula, "it is a step in time")
-        if formula.subject in INDICES or self._is_special(formula):
+        if formula.subject in INDICES or formula.is_special or self._is_special(formula):
             return plain("context", formula, "it states a value")
         if values := self._prescribed(formula):
             if all(map(self._linear.is_solution, values)):
