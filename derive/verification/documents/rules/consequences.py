@@ -29,6 +29,8 @@ from derive.verification.judging.verdict import Correction
 OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
 #: The note on a formula that follows correctly from a wrong one.
 FOLLOWS = "it follows from line"
+#: The note on a Lagrangian of fewer coordinates, from which others can follow.
+SUBSTITUTED = "with the constraints substituted"
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
 
@@ -74,18 +76,27 @@ class _Source:
 
 
 class Consequences:
-    """The formulas of a document that follow from its own wrong energies."""
+    """The formulas of a document that follow from its own energies, which can be wrong."""
 
     def __init__(self, namespace: DocumentNamespace) -> None:
         self._namespace, self._context = namespace, namespace.model.context
 
     def marked(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
-        """The verdicts, with a note on wrong formulas that follow from a wrong one before them."""
+        """The verdicts, with a note on wrong formulas that follow from a wrong one before them.
+
+        Those that follow from a Lagrangian with the constraints substituted are right.
+        """
+        reduced: _Source | None = None
         values = {kind: getattr(self._namespace.derivation, kind) for kind in ENERGIES}
         source: _Source | None = None
         result: list[WithVerdict] = []
         for formula, verdict in verdicts:
-            if verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
+            if verdict.verdict.note == SUBSTITUTED:
+                value = self._written(formula)
+                reduced = None if value is None else _Source(formula.occurrence.line, value)
+            if verdict.verdict.verdict == "wrong" and reduced and self._follows(formula, reduced):
+                verdict = plain("verified", formula, f"{FOLLOWS} {reduced.line}")
+            elif verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
                 note = joined(verdict.verdict.note, f"{FOLLOWS} {source.line}")
                 verdict = replace(verdict, verdict=replace(verdict.verdict, note=note))
             elif verdict.verdict.verdict == "wrong" and verdict.kind in ENERGIES:

@@ -11,6 +11,7 @@ from derive.formulas.expression import Value
 from derive.formulas.syntax import place, syntax_tree
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.rules.consequences import SUBSTITUTED
 from derive.verification.documents.rules.derived_matrices import has_scaled_rows
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.matrix_terms import MatrixTerms
@@ -85,6 +86,8 @@ class SideComparison:
             left += self._reactions
         if (note := model.agreement(left - right)) is not None:
             return plain("context" if note == UNDECIDED else "verified", formula, note)
+        if is_lagrangian and self._is_substituted(left - right):
+            return plain("verified", formula, SUBSTITUTED)
         if has_reactions:
             result = self._roles.value(side, first.text, left)
             if result.verdict.verdict not in CORRECT:
@@ -112,6 +115,13 @@ class SideComparison:
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
         return result
+
+    def _is_substituted(self, difference: sp.Expr) -> bool:
+        """Whether a difference vanishes by constraints that are integrable."""
+        derivation = self._namespace.derivation
+        if not derivation.system.conditions or derivation.integrability.nonholonomic:
+            return False
+        return self._model.about(difference).agreement(difference) not in (None, UNDECIDED)
 
     def _witness(
         self, formula: DocumentFormula, value: sp.Expr, derived: sp.Expr
