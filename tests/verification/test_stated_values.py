@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import pytest
+
 from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
-from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
+from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 
 CORRECT = {"verified", "definition"}
 
@@ -16,6 +18,10 @@ def judged(folder: Path, text: str) -> DocumentVerdicts:
 
 def verdicts(folder: Path, text: str) -> list[str]:
     return [one.verdict for one in judged(folder, text).formulas]
+
+
+def wrong(folder: Path, text: str) -> list[FormulaVerdict]:
+    return [one for one in judged(folder, text).formulas if one.verdict == "wrong"]
 
 
 def test_relations_of_parameters_contradict_no_motion(tmp_path: Path) -> None:
@@ -147,3 +153,82 @@ def test_a_relation_of_coordinates_gives_one_of_them(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, PULLEY)} <= {*CORRECT, "equivalent"}
     found = verdicts(tmp_path, PULLEY.replace("(m_1 - m_2) g$$", "(m_1 + m_2) g$$"))
     assert [k for k, one in enumerate(found) if one == "wrong"] == [5]
+
+
+MOVING_SUPPORT = r"""
+$$x = b\cos(\nu t) + l\sin\phi, \qquad y = -l\cos\phi$$
+$$\mathcal{L} = T - V$$
+$$T = \frac12 m(\dot x^2 + \dot y^2), \qquad V = m g y$$
+$$L = \frac12 m l^2\dot\phi^2 + m b l\nu^2\cos(\nu t)\sin\phi + m g l\cos\phi$$
+"""
+
+
+@pytest.mark.parametrize(("new", "verdict"), [("+ m b l", "equivalent"), ("- m b l", "wrong")])
+def test_a_plain_letter_of_velocities_is_a_lagrangian_too(
+    new: str, verdict: str, tmp_path: Path
+) -> None:
+    text = MOVING_SUPPORT.replace("+ m b l", new)
+    assert judged(tmp_path, text).formulas[-1].verdict == verdict
+
+
+THREAD = r"""
+A pendulum has $$x = l\sin\phi, \qquad y = -l\cos\phi$$
+Two masses on a thread have $$x + y = \text{const}, \qquad \dot y = -\dot x$$
+$$T = \frac12 m_1\dot x^2 + \frac12 m_2\dot y^2 = \frac12 (m_1 + m_2)\dot x^2$$
+$$V = -m_1 g x - m_2 g y = -(m_1 - m_2) g x + \text{const}$$
+$$L = \frac12 (m_1 + m_2)\dot x^2 + (m_1 - m_2) g x$$
+$$(m_1 + m_2)\ddot x = (m_1 - m_2) g$$
+$$\ddot x = \frac{m_1 - m_2}{m_1 + m_2} g$$
+"""
+
+
+def test_two_letters_of_one_relation_are_no_names_of_one_coordinate(tmp_path: Path) -> None:
+    assert wrong(tmp_path, THREAD) == []
+
+
+WIRE = r"""
+On a wire $z = \frac12 a r^2$ that turns at $\Omega$,
+$$T = \frac12 m\left((1 + a^2 r^2)\dot r^2 + r^2\Omega^2\right), \qquad V = \frac12 m g a r^2$$
+$$(1 + a^2 r^2)\ddot r + a^2 r\dot r^2 - r\Omega^2 + a g r = 0$$
+At the speed $\Omega^2 = a g$ it rests anywhere.
+"""
+
+
+def test_a_critical_speed_does_not_define_the_speed(tmp_path: Path) -> None:
+    assert wrong(tmp_path, WIRE) == []
+    (one,) = wrong(tmp_path, WIRE.replace("+ a g r", "+ 2 a g r"))
+    assert one.correction.endswith("+ a g r = 0")
+
+
+SUBSTITUTED = r"""
+$$T = \frac12 m (b - a)^2\dot\theta^2 + \frac14 m a^2\dot\psi^2, \qquad V = -m g (b - a)\cos\theta$$
+It rolls: $$(b - a)\dot\theta - a\dot\psi = 0$$
+With a multiplier,
+$$m (b - a)^2\ddot\theta + m g (b - a)\sin\theta = (b - a)\lambda$$
+$$\frac12 m a^2\ddot\psi = -a\lambda$$
+Without $\psi$,
+$$L = \frac34 m (b - a)^2\dot\theta^2 + m g (b - a)\cos\theta$$
+$$\frac{\partial L}{\partial\dot\theta} = \frac32 m (b - a)^2\dot\theta$$
+$$\frac32 (b - a)\ddot\theta = -g\sin\theta$$
+"""
+
+
+def test_constraints_of_positions_can_be_substituted_into_a_lagrangian(tmp_path: Path) -> None:
+    right = judged(tmp_path, SUBSTITUTED).formulas
+    assert [one.verdict for one in right][-3:] == ["verified"] * 3
+    first, *_ = wrong(tmp_path, SUBSTITUTED.replace(r"\frac34", r"\frac54"))
+    assert first.latex.startswith("L =")
+
+
+SCALED = r"""
+Measured from the other side, the angle is $\beta = \pi - \theta$.
+$$\tilde L = \frac12(\dot\beta^2 + \dot\varphi^2\sin^2\beta) + \frac gl\cos\beta$$
+$$p_\varphi = \dot\varphi\sin^2\beta$$
+It rests for $\beta = 0,\pi,\,\dot\beta = 0$, and swings in a plane if $p_\varphi = 0$.
+$$h = \frac12\dot\beta^2 + U(\beta)$$
+$$U(\beta) = \frac{p_\varphi^2}{2\sin^2\beta} - \frac gl\cos\beta$$
+"""
+
+
+def test_a_momentum_can_be_that_of_a_scaled_lagrangian(tmp_path: Path) -> None:
+    assert wrong(tmp_path, SCALED) == []

@@ -91,7 +91,7 @@ class Judges:
         return result
 
     def _in_own_units(self, candidate: SystemCandidate, formula: DocumentFormula) -> Meanings:
-        """Yield an equation with 1 for what it does not contain.
+        """Yield an equation, or a momentum, with 1 for what it does not contain.
 
         It has no parameter that other formulas contain, as one without dimensions has not.
         """
@@ -100,7 +100,7 @@ class Judges:
         is_alone = all(self._used[w] == 1 or stem(w) in common for w in formula.words)
         # an equation of motion, or a canonical one
         is_equation = order(formula.subject) or any(order(word) == 2 for word in formula.words)
-        if is_alone and is_equation:
+        if is_alone and (is_equation or formula.subject in letters.momenta):
             own = {p: one for p, one in candidate.parameters.items() if one in formula.words}
             names = (one.symbol.name for one in candidate.system.parameters)
             ones = {name: "1" for name in names if name not in own}
