@@ -232,3 +232,13 @@ $$U(\beta) = \frac{p_\varphi^2}{2\sin^2\beta} - \frac gl\cos\beta$$
 
 def test_a_momentum_can_be_that_of_a_scaled_lagrangian(tmp_path: Path) -> None:
     assert wrong(tmp_path, SCALED) == []
+
+
+def test_of_two_equal_components_of_a_position_either_can_be_wrong(tmp_path: Path) -> None:
+    text = r"""$$x = l\cos\theta, \qquad y = -l\cos\theta$$
+$$T = \frac12 m l^2\dot\theta^2, \qquad V = -m g l\cos\theta$$
+$$l\ddot\theta + g\sin\theta = 0$$"""
+    first, second, *others = judged(tmp_path, text).formulas
+    assert {one.verdict for one in others} == {"verified"}
+    assert {one.verdict for one in (first, second)} == {"context"}
+    assert "contradicts another component of the position" in first.note

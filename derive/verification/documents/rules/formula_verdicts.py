@@ -18,7 +18,7 @@ from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.stated_equations import without_unknown_terms
 from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.amplitudes import Amplitudes
-from derive.verification.documents.rules.consequences import Consequences, opposed
+from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
@@ -51,6 +51,8 @@ SIMPLIFIED = re.compile(
     "simplif|neglect|ignor|vereinfach|vernachl|despreci|négli|忽略|無視",
     re.IGNORECASE,
 )
+#: The note on components of a position of which one is wrong.
+EITHER = f"it contradicts another component of the position: {UNDECIDED}"
 #: The note on formulas of which the system follows.
 STATES = "it states the system"
 
@@ -399,9 +401,11 @@ class Judge:
         first = formula.sides[0]
         names = [one.text for one in first.entries] or [first.text] * max(1, len(side.entries))
         for index, (name, entry) in enumerate(zip(names, side.entries or (side,), strict=False)):
-            value = self._positions.required(name, 0 if first.entries else index)
-            if value is not None:
+            place = name, 0 if first.entries else index
+            if (value := self._positions.required(*place)) is not None:
                 return self._roles.value(entry, "position", value)
+            if self._positions.is_undecided(*place):
+                return plain("context", formula, EITHER)
         return None
 
     def _definition(self, formula: DocumentFormula, side: FormulaText) -> SideVerdict:

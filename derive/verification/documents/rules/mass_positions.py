@@ -25,6 +25,8 @@ class MassPositions:
         self._rates = _rates(namespace)
         #: Correct values of wrong components, by name and index in a column.
         self._required: dict[tuple[str, int], sp.Expr] = {}
+        #: Components of which one is wrong, but either can be.
+        self._undecided: set[tuple[str, int]] = set()
         for point in _points(namespace):
             for mass in namespace.derivation.system.masses:
                 result = self._of_mass(point, mass.position)
@@ -38,6 +40,10 @@ class MassPositions:
     def required(self, name: str, index: int = 0) -> sp.Expr | None:
         """The value of a wrong component; None if it is correct, or not known."""
         return self._required.get((name, index))
+
+    def is_undecided(self, name: str, index: int = 0) -> bool:
+        """Whether this component or another one is wrong."""
+        return (name, index) in self._undecided
 
     def opposite(self, rate: str) -> DocumentFormula | None:
         """The definition of a component whose stated `rate` has the opposite sign.
@@ -91,9 +97,10 @@ class MassPositions:
             return len(wrong), -sum(self._contradicts_rate(name) for name, *_ in wrong)
 
         first = min(possible, key=rank)
-        names = {name for name, *_ in first}
-        if any({n for n, *_ in one} != names for one in possible if rank(one) == rank(first)):
-            return {}  # of two equal components, either can be wrong
+        best = [{(name, k) for name, k, _ in one} for one in possible if rank(one) == rank(first)]
+        if any(names != best[0] for names in best):  # of two equal components, either can be wrong
+            self._undecided |= set().union(*best)
+            return {}
         return {(name, k): value for name, k, value in first}
 
     def _contradicts_rate(self, name: str) -> bool:
