@@ -32,6 +32,8 @@ from derive.verification.documents.formula_translation import (
 )
 
 WORD = re.compile(r"[A-Za-z_]\w*")
+#: Components of positions.
+COMPONENT = re.compile(r"[xyzXYZ](?:_\w+)?\Z")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
@@ -262,9 +264,10 @@ def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
 
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
-    if formula.is_special:
-        return
     first, *others = formula.sides
+    is_zero = others and others[-1].text == "0" and not COMPONENT.match(formula.subject)
+    if formula.is_special or is_zero:  # such as a height h = 0 where V vanishes
+        return
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
     if square := SQUARE.fullmatch(first.text):  # a frequency, usually
