@@ -207,6 +207,17 @@ def weighed(
     is_weak = is_known and (is_partial or not has_all or has_none or slips > few)
     is_guess = is_known and holding < 2 and candidate.is_turned
     independent = sum(FOLLOWS not in one.note for one in wrong)
+    # an energy that is stated again, with other equations: those of another case
+    held = {
+        formula.subject
+        for k, (formula, one) in enumerate(results)
+        if k in candidate.stating or one.verdict.verdict in ("verified", "equivalent")
+    }
+    has_cases = independent > 1 and candidate.basis in ("energies", "catalogue") and any(
+        one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES and formula.subject in held
+        for k, (formula, one) in enumerate(results)
+        if k not in candidate.stating and formula.subject
+    )  # fmt: skip
     is_tie = candidate.is_of_equations and (independent != 1 or holding < 2 or misfits > 0)
     given = _lines(lines[k] for k in candidate.stating)
     undecided = {*_of_friction(results, candidate)}
@@ -251,6 +262,8 @@ def weighed(
             result = plain("context", formula, opposed(unused[formula.subject]))
         elif verdict.verdict == "wrong" and number in undecided:
             result = plain("context", formula, f"it contradicts the stated friction: {UNDECIDED}")
+        elif verdict.verdict == "wrong" and has_cases:
+            result = plain("context", formula, f"it differs from {given or 'others'}: {OTHER_CASE}")
         elif verdict.verdict == "wrong" and is_weak:
             result = plain("context", formula, UNSUPPORTED)
         elif verdict.verdict == "wrong" and (
