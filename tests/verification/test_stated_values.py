@@ -242,3 +242,60 @@ $$l\ddot\theta + g\sin\theta = 0$$"""
     assert {one.verdict for one in others} == {"verified"}
     assert {one.verdict for one in (first, second)} == {"context"}
     assert "contradicts another component of the position" in first.note
+
+
+ROD = r"""
+$$K = \frac12 m l^2\dot\theta^2$$
+$$P = m g l\sin\theta$$
+"""
+
+
+def test_numbers_of_products_of_parameters_are_values(tmp_path: Path) -> None:
+    text = ROD + r"The rod has $m l = 0.025$ and $\frac{g}{l} = 39.2$."
+    assert wrong(tmp_path, text) == []
+
+
+def test_a_height_of_zero_at_one_place_is_no_definition(tmp_path: Path) -> None:
+    text = ROD + r"With $P_g = m g h = m g l\sin\theta$, and $h = 0$ at the pivot."
+    assert wrong(tmp_path, text) == []
+
+
+FORCED = r"""
+$$T = \frac12 m\dot x^2 + \frac12 M\dot y^2$$ $$V = \frac12 k (x - y)^2$$
+$$\frac{d}{dt}\frac{\partial L}{\partial\dot x} - \frac{\partial L}{\partial x} = Q_x$$
+$$\frac{d}{dt}\frac{\partial L}{\partial\dot y} - \frac{\partial L}{\partial y} = Q_y$$
+$$Q_x = F$$ $$Q_y = -F R$$
+"""
+
+
+def test_a_generalized_force_is_stated(tmp_path: Path) -> None:
+    assert wrong(tmp_path, FORCED) == []
+
+
+PHASE_CURVE = r"""
+$$\mathcal{L} = \frac12 m l^2\dot\theta^2 - m g l(1 - \cos\theta)$$
+$$\ddot\theta + \frac gl\sin\theta = 0$$
+$$E = \frac12 m l^2\dot\theta^2 + m g l(1 - \cos\theta)$$
+$$\dot\theta = \sqrt{\frac{2}{m l^2}\left[E - m g l(1 - \cos\theta)\right]}$$
+"""
+
+
+def test_the_constant_of_an_energy_is_that_of_the_document(tmp_path: Path) -> None:
+    assert wrong(tmp_path, PHASE_CURVE) == []
+    (one,) = wrong(tmp_path, PHASE_CURVE.replace(r"E = \frac12", "E = "))
+    assert one.latex.startswith("E =")
+
+
+TWO_CASES = r"""
+With a rigid rod, $r = L$,
+$$K = \frac12 m L^2\dot\theta^2$$
+$$L\ddot\theta + g\sin\theta = 0$$
+With an elastic one,
+$$K = \frac12 m(\dot r^2 + r^2\dot\theta^2), \qquad U = -m g r\cos\theta + \frac12 k (r - L)^2$$
+$$\ddot r - r\dot\theta^2 - g\cos\theta + \frac km (r - L) = 0$$
+$$r\ddot\theta + 2\dot r\dot\theta + g\sin\theta = 0$$
+"""
+
+
+def test_an_energy_that_is_stated_again_is_that_of_another_case(tmp_path: Path) -> None:
+    assert wrong(tmp_path, TWO_CASES) == []

@@ -51,6 +51,8 @@ SIMPLIFIED = re.compile(
     "simplif|neglect|ignor|vereinfach|vernachl|despreci|négli|忽略|無視",
     re.IGNORECASE,
 )
+#: Names of generalized forces, which nothing else in a document may state.
+GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
 #: The note on components of a position of which one is wrong.
 EITHER = f"it contradicts another component of the position: {UNDECIDED}"
 #: The note on formulas of which the system follows.
@@ -142,6 +144,10 @@ class Judge:
                     return plain("context", formula, opposed(definition.occurrence.line))
                 if self._relates_parameters(formula):
                     return plain("definition", formula, "")
+                if GENERALIZED_FORCE.fullmatch(formula.subject):
+                    return plain("context", formula, "it states a generalized force")
+                if (other := self._with_an_energy(formula)) is not None:
+                    return other
                 if self._is_place(formula):
                     return plain("context", formula, "it states a value")
                 if (frequency := self._frequency(formula)) is not None:
@@ -270,14 +276,34 @@ class Judge:
         )
 
     def _relates_parameters(self, formula: DocumentFormula) -> bool:
-        """Whether a formula defines a parameter by others, as b = d/2 does: any value is right."""
+        """Whether a formula defines a parameter by others, as b = d/2 does: any value is right.
+
+        So is the number of a formula of parameters, as in m*l = 0.025.
+        """
         names, known = self._namespace.all_names, {*self._namespace.derivation.system.params}
         letters = self._namespace.letters
         values = (names.get(word) for word in formula.words if word not in letters.parameters)
-        return names.get(formula.subject) in known and all(
+        is_relation = formula.is_value or names.get(formula.subject) in known
+        return is_relation and all(
             callable(one) or (isinstance(one, sp.Expr) and one.free_symbols <= known)
             for one in values
         )
+
+    def _with_an_energy(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on a formula that contains an energy, which can have another constant."""
+        named = {name: text for name, (_, text) in self._namespace.defining.items()}
+        kinds = {w: self._namespace.letters.quantities.get(named.get(w, w)) for w in formula.words}
+        energies = {word for word, kind in kinds.items() if kind in ("energy", "hamiltonian")}
+        if not energies - {formula.subject}:
+            return None
+        if len(formula.sides) == 2 and formula.sides[1].text in energies:
+            left, right = (self._namespace.value(one.text) for one in formula.sides)
+            difference = (left - right).xreplace(self._model.momenta)
+            system = self._namespace.derivation.system
+            slopes = [difference.diff(one) for one in (*system.q, *system.qdot, TIME)]
+            is_constant = all(map(self._model.context.is_zero, slopes))
+            return plain("verified", formula, "it differs by a constant") if is_constant else None
+        return plain("context", formula, "it contains an energy, which can have another constant")
 
     def _is_place(self, formula: DocumentFormula) -> bool:
         """Whether a formula can state a place, as cos θ = g/(ω² a): it has no other quantities.
