@@ -92,10 +92,10 @@ class MatrixTerms:
             row = next((k for k, one in enumerate(slope) if not self._vanishes(one)), None)
             if row is None:
                 continue
-            value = sp.factor(sp.cancel(-rest[row] / slope[row]))
             with suppress(ExpressionError, NotImplementedError):
-                if all(map(self._vanishes, rest + value * slope)):
-                    return value
+                # products of rows show more quickly whether a value fits all of them
+                if all(map(self._vanishes, rest * slope[row] - rest[row] * slope)):
+                    return sp.factor(sp.cancel(-rest[row] / slope[row]))
         return None
 
     def _vanishes(self, value: sp.Expr) -> bool:
