@@ -16,7 +16,7 @@ from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
-from derive.verification.documents.rules.formula_verdicts import Judge
+from derive.verification.documents.rules.formula_verdicts import GENERALIZED_FORCE, Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula, Translated
@@ -108,14 +108,21 @@ class Judges:
             yield OWN_UNITS, self._judge(units), formula
 
     def _without_forces(self, candidate: SystemCandidate, formula: DocumentFormula) -> Meanings:
-        """Yield an equation without the forces of which a document states values."""
+        """Yield an equation without the forces of which a document states values.
+
+        These can be those of generalized forces.
+        """
         subjects = {one.subject for one in self.statements.formulas} - {formula.subject}
         forces = {name for name in subjects if name.partition("_")[0] in KINDS["force"]}
+        if any(map(GENERALIZED_FORCE.fullmatch, subjects)):
+            forces |= {name for name, _ in candidate.forces}
         if own := sorted(forces & {*formula.words}):
             rest = without_unknown_terms(formula, own)
             if rest is not None:
                 note = f"it holds but for {', '.join(own)}, which the system does not contain"
-                yield note, self.judge(candidate), rest
+                loads = tuple(one for one in candidate.forces if one[0] not in own)
+                free = candidate if loads == candidate.forces else replace(candidate, forces=loads)
+                yield note, self.judge(free), rest
 
     def _with_angular_velocities(
         self, candidate: SystemCandidate, formula: DocumentFormula

@@ -213,7 +213,7 @@ def weighed(
         for k, (formula, one) in enumerate(results)
         if k in candidate.stating or one.verdict.verdict in ("verified", "equivalent")
     }
-    has_cases = independent > 1 and candidate.basis in ("energies", "catalogue") and any(
+    has_cases = len(wrong) > 1 and candidate.basis in ("energies", "catalogue") and any(
         one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES and formula.subject in held
         for k, (formula, one) in enumerate(results)
         if k not in candidate.stating and formula.subject
