@@ -119,6 +119,9 @@ class Judge:
                 return plain("verified", formula, f"{name} is a constant of the motion")
             return plain("definition", formula, f"{name} is its value along the motion")
         unknown = self._unknown(formula.sides)
+        load = formula.sides[-1].text  # a letter that this equation of motion alone gives a value
+        if self._namespace.defining.get(load, (None, ""))[0] is formula:
+            unknown = unknown or [load] * bool(self._is_equation_without(formula, [load]))
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         if unknown and self._is_equation_without(formula, unknown):
