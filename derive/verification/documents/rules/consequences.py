@@ -213,7 +213,8 @@ def weighed(
         for k, (formula, one) in enumerate(results)
         if k in candidate.stating or one.verdict.verdict in ("verified", "equivalent")
     }
-    has_cases = len(wrong) > 1 and candidate.basis in ("energies", "catalogue") and any(
+    is_open = not is_stated and candidate.basis in ("energies", "catalogue")
+    has_cases = is_open and len(wrong) > 1 and any(
         one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES and formula.subject in held
         for k, (formula, one) in enumerate(results)
         if k not in candidate.stating and formula.subject
