@@ -265,9 +265,9 @@ def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
     first, *others = formula.sides
-    is_zero = others and others[-1].text == "0" and not COMPONENT.match(formula.subject)
-    if formula.is_special or is_zero:  # such as a height h = 0 where V vanishes
-        return
+    is_place = not order(formula.subject) and not COMPONENT.match(formula.subject)
+    if formula.is_special or (is_place and formula.sides[-1].text == "0"):
+        return  # such as a height h = 0 where V vanishes
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
     if square := SQUARE.fullmatch(first.text):  # a frequency, usually

@@ -294,10 +294,11 @@ class Judge:
 
     def _with_an_energy(self, formula: DocumentFormula) -> SideVerdict | None:
         """The verdict on a formula that contains an energy, which can have another constant."""
+        quantities = self._namespace.letters.quantities
         named = {name: text for name, (_, text) in self._namespace.defining.items()}
-        kinds = {w: self._namespace.letters.quantities.get(named.get(w, w)) for w in formula.words}
+        kinds = {word: quantities.get(named.get(word, word)) for word in formula.words}
         energies = {word for word, kind in kinds.items() if kind in ("energy", "hamiltonian")}
-        if not energies - {formula.subject}:
+        if formula.subject in quantities or not energies - {formula.subject}:
             return None
         if len(formula.sides) == 2 and formula.sides[1].text in energies:
             left, right = (self._namespace.value(one.text) for one in formula.sides)
