@@ -266,7 +266,7 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
     first, *others = formula.sides
     is_place = not order(formula.subject) and not COMPONENT.match(formula.subject)
-    if formula.is_special or (is_place and formula.sides[-1].text == "0"):
+    if formula.is_special or (is_place and [one.text for one in others] == ["0"]):
         return  # such as a height h = 0 where V vanishes
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
