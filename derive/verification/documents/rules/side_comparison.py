@@ -86,7 +86,7 @@ class SideComparison:
             left += self._reactions
         if (note := model.agreement(left - right)) is not None:
             return plain("context" if note == UNDECIDED else "verified", formula, note)
-        if is_lagrangian and self._is_substituted(left - right):
+        if is_lagrangian and not has_reactions and self._is_substituted(left - right):
             return plain("verified", formula, SUBSTITUTED)
         if has_reactions:
             result = self._roles.value(side, first.text, left)
