@@ -45,8 +45,12 @@ class Approximation:
         return bool(abs(self.number) <= self.error)
 
     def rounded(self) -> sp.Expr:
-        """The value as a SymPy number."""
-        parts = [sp.Float(str(part), DIGITS) for part in (self.number.real, self.number.imag)]
+        """The value as a SymPy number, with as many digits as its error leaves."""
+        digits = DIGITS
+        if self.number and self.error:
+            known = -mp.log10(self.error / abs(self.number))
+            digits = max(1, min(DIGITS, int(mp.floor(known)) - 1))
+        parts = [sp.Float(str(part), digits) for part in (self.number.real, self.number.imag)]
         return parts[0] + sp.I * parts[1] if parts[1] else parts[0]
 
 
@@ -122,11 +126,25 @@ class Evaluator:
 def solved(
     matrix: sp.MatrixBase, column: sp.MatrixBase, evaluator: Evaluator
 ) -> tuple[sp.Expr, ...]:
-    """Solve linear equations at a state; the coefficients are expressions."""
-    rows = [[evaluator(entry).number for entry in matrix.row(i)] for i in range(matrix.rows)]
-    right = [evaluator(entry).number for entry in column]
-    solution = mp.lu_solve(mp.matrix(rows), mp.matrix(right))
-    return tuple(Approximation(entry).rounded() for entry in solution)
+    """Solve linear equations at a state; the coefficients are expressions.
+
+    The errors are those of the coefficients, carried through the inverse (Higham, § 7.1). Values
+    that do not exceed their errors are zero.
+    """
+    rows = [[evaluator(entry) for entry in matrix.row(i)] for i in range(matrix.rows)]
+    right = [evaluator(entry) for entry in column]
+    coefficients = mp.matrix([[entry.number for entry in row] for row in rows])
+    solution = mp.lu_solve(coefficients, mp.matrix([entry.number for entry in right]))
+    residuals = [
+        _sum([side, *(_product([a, Approximation(x)]) for a, x in zip(row, solution, strict=True))])
+        for row, side in zip(rows, right, strict=True)
+    ]
+    inverse = coefficients**-1
+    values = []
+    for k, entry in enumerate(solution):
+        errors = (abs(inverse[k, i]) * one.error for i, one in enumerate(residuals))
+        values.append(Approximation(entry, 2 * mp.fsum(errors)))
+    return tuple(sp.S.Zero if one.is_zero else one.rounded() for one in values)
 
 
 def independent(rows: Sequence[Sequence[sp.Expr]]) -> list[int]:

@@ -13,7 +13,7 @@ from derive.formulas.generic_values import (
     near_zeros,
     sample,
 )
-from derive.formulas.numeric import Evaluator, NoValueError, independent, solved
+from derive.formulas.numeric import Approximation, Evaluator, NoValueError, independent, solved
 
 x, y = sp.symbols("x y", real=True)
 m = sp.Symbol("m", positive=True)
@@ -60,7 +60,7 @@ def test_values_agree_with_those_of_sympy() -> None:
 
 def test_inverse_functions_may_have_complex_values() -> None:
     expected = sp.pi - sp.acos(sp.Rational(3, 7))  # of cosh(i a) = cos(a)
-    value = EVALUATOR(sp.acosh(x)).rounded()
+    value = Approximation(EVALUATOR(sp.acosh(x)).number).rounded()
     assert abs(value - sp.I * expected.evalf(80)) < sp.Float("1e-78")
 
 
@@ -91,6 +91,16 @@ def test_linear_equations_are_solved_and_dependent_rows_are_recognised() -> None
     third = sp.Rational(1, 3)
     rows = sp.Matrix([(1, 2, third), (3, 6, 1), (1, 2, 3 * third / 2), (0, 0, 1)])
     assert independent(rows.tolist()) == [0, 2]
+
+
+def test_solutions_of_linear_equations_have_the_digits_that_cancellation_leaves() -> None:
+    values = {x: sp.Integer(3), y: 3 + sp.Rational(1, 10**40)}
+    (solution,) = solved(
+        sp.Matrix([[x**2 - 2 * x * y + y**2]]), sp.Matrix([sp.pi]), Evaluator(values)
+    )
+    exact = Evaluator({**values, m: solution})(m * (x - y) ** 2 - sp.pi)
+    assert exact.is_zero
+    assert 0 < exact.error < sp.Float("1e-30")
 
 
 def test_every_two_symbols_have_all_pairs_of_signs() -> None:

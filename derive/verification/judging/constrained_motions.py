@@ -5,7 +5,7 @@ from contextlib import suppress
 
 import sympy as sp
 
-from derive.formulas.numeric import Approximation, Evaluator, mp
+from derive.formulas.numeric import Approximation, Evaluator, mp, solved
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.verification.judging.engine import State
@@ -16,8 +16,6 @@ MOST_STEPS, MOST_STATES, TINY = 60, 20, mp.mpf("1e-60")
 LONGEST, SHIFT = mp.mpf("0.5"), sp.Rational(7, 5)
 #: Least value of a coordinate that is declared positive.
 SMALLEST = sp.Rational(1, 100)
-#: Largest ratio of accelerations that is rounding.
-ZERO = mp.mpf("1e-80")
 
 
 def motion(derivation: Derivation, state: State) -> State:
@@ -40,12 +38,7 @@ def _moving(derivation: Derivation, values: dict[sp.Symbol, sp.Expr]) -> State:
     unknown = (*system.qddot, *system.multipliers)
     right = sp.Matrix([*derivation.forcing, *derivation.constraint_forcing])
     evaluator = Evaluator({s: value for s, value in values.items() if s not in unknown})
-    solution = mp.lu_solve(*(_numbers(evaluator, one) for one in (equations(derivation), right)))
-    least = ZERO * max(map(abs, solution))
-    values |= {
-        s: Approximation(x).rounded() if abs(x) > least else sp.S.Zero
-        for s, x in zip(unknown, solution, strict=True)
-    }
+    values |= dict(zip(unknown, solved(equations(derivation), right, evaluator), strict=True))
     momenta = zip(system.p, derivation.momenta, strict=True)
     return values | {p: evaluator(value).rounded() for p, value in momenta}
 
