@@ -596,11 +596,11 @@ def test_rk3_and_rk4_are_studied_on_both_sides_of_their_limits(
 def test_parts_of_the_study_of_chaos_have_its_durations_and_methods(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def said(name: str) -> Callable[..., object]:
+    def recorder(name: str) -> Callable[..., object]:
         return lambda _, *arguments: (name, *arguments)
 
     for name in ("statistics", "separation", "horizon"):
-        monkeypatch.setattr(chaos, name, said(name))
+        monkeypatch.setattr(chaos, name, recorder(name))
     monkeypatch.setattr(chaos, "lyapunov", lambda _, *arguments: Mean(0.5, arguments[2]))
     monkeypatch.setattr(chaos, "reference_motion", lambda _, *arguments: arguments)
     found = Chaos(100.0, 20.0, 300.0, ("dp54", "bs32")).run(load)

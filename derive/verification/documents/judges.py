@@ -11,15 +11,19 @@ from derive.verification.documents.formula_translation import FormulaText, order
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import KINDS, OPERATORS, Letters
-from derive.verification.documents.letters.stated_equations import without_unknown_terms
-from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
-from derive.verification.documents.rules.formula_verdicts import GENERALIZED_FORCE, Judge
+from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
+from derive.verification.documents.rules.other_statements import GENERALIZED_FORCE
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
-from derive.verification.documents.statements import DocumentFormula, Translated
+from derive.verification.documents.statements import (
+    POINT,
+    DocumentFormula,
+    Translated,
+    without_unknown_terms,
+)
 from derive.verification.judging.verdict import Verdict
 
 #: Verdicts on formulas that are no definitions and hold.

@@ -1,10 +1,12 @@
 """The statements of a document: formulas with their place, translated."""
 
+import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.reading.latex.tree import (
     Application,
     Derivative,
@@ -32,8 +34,8 @@ from derive.verification.documents.formula_translation import (
 )
 
 WORD = re.compile(r"[A-Za-z_]\w*")
-#: Components of positions.
-COMPONENT = re.compile(r"[xyzXYZ](?:_\w+)?\Z")
+#: Names of Cartesian components.
+POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
@@ -90,7 +92,7 @@ class DocumentFormula:
     relations: tuple[str, ...]
     index: int = 0
     #: Whether it is a special case of a parameter, such as the critical speed omega**2 = g/R.
-    is_special: bool = False
+    is_special_case: bool = False
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -144,16 +146,16 @@ def translated(occurrences: Sequence[Occurrence]) -> Translated:
             formulas += _formulas(occurrence, translator)
         except (UntranslatableError, RecursionError) as error:
             failures.append((occurrence, str(error)))
-    special = tuple(_with_special_cases(formulas))
-    return Translated(special, tuple(failures), translator.derivatives)
+    return Translated(tuple(_with_special_cases(formulas)), tuple(failures), translator.derivatives)
 
 
 def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[DocumentFormula]:
-    """Yield the formulas; those of squares define no letters of energies above."""
+    """Yield the formulas; squares of letters of energies above are special cases."""
     moving = set[str]()
     for formula in formulas:
         square = SQUARE.fullmatch(formula.sides[0].text)
-        yield replace(formula, is_special=bool(square and square[1] in moving))
+        is_special_case = square and square[1] in moving
+        yield replace(formula, is_special_case=True) if is_special_case else formula
         if {*map(order, formula.words)} == {0, 1} and not order(formula.subject):
             moving.update(formula.words)
 
@@ -265,9 +267,10 @@ def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
     first, *others = formula.sides
-    is_place = not order(formula.subject) and not COMPONENT.match(formula.subject)
-    if formula.is_special or (is_place and [one.text for one in others] == ["0"]):
-        return  # such as a height h = 0 where V vanishes
+    is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
+    is_letter = not order(formula.subject) and not POINT.match(formula.subject)
+    if formula.is_special_case or (is_zero and is_letter):
+        return
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
     if square := SQUARE.fullmatch(first.text):  # a frequency, usually
@@ -279,3 +282,63 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     last = formula.sides[-1].text
     if {*formula.relations} == {"="} and last.isidentifier():
         yield last, formula.sides[0].text
+
+
+def without_unknown_terms(
+    formula: DocumentFormula, unknown: Collection[str]
+) -> DocumentFormula | None:
+    """The formula without all terms with unknown letters; None if other parts have some."""
+    try:
+        trees = [_reduced(syntax_tree(one.text), unknown) for one in formula.sides]
+    except ExpressionError:
+        return None
+    # in x' = f(x, u) = ..., f is another name of the last side
+    known = [one for one in trees if one is not None]
+    texts = [*map(ast.unparse, known), *["0"] * (2 - len(known))]
+    if any(name in WORD.findall(text) for text in texts for name in unknown):
+        return None
+    relations = formula.relations[: len(texts) - 1]
+    return replace(formula, sides=tuple(map(FormulaText, texts)), relations=relations)
+
+
+def _reduced(node: ast.expr, unknown: Collection[str]) -> ast.expr | None:
+    """The tree without the terms with unknown names in sums; None if nothing is left."""
+    terms = summands(node)
+    if terms == [(node, 1)]:
+        return _inside(node, unknown)
+    known = [(one, sign) for term, sign in terms if (one := _reduced(term, unknown)) is not None]
+    if not known:
+        return None
+    (first, sign), *others = reversed(known)
+    result = first if sign > 0 else ast.UnaryOp(ast.USub(), first)
+    for one, sign in others:
+        result = ast.BinOp(result, ast.Add() if sign > 0 else ast.Sub(), one)
+    return result
+
+
+def _inside(node: ast.expr, unknown: Collection[str]) -> ast.expr | None:
+    """A term with its sums reduced; None if it contains an unknown name elsewhere."""
+    match node:
+        case ast.Name(id=name):
+            return None if name in unknown else node
+        case ast.Constant():
+            return node
+        case ast.BinOp(left=left, op=op, right=right):
+            a, b = _reduced(left, unknown), _reduced(right, unknown)
+            return ast.BinOp(a, op, b) if a is not None and b is not None else None
+        case ast.UnaryOp(op=op, operand=operand):
+            inner = _reduced(operand, unknown)
+            return ast.UnaryOp(op, inner) if inner is not None else None
+        case ast.Call(func=function, args=arguments, keywords=[]):
+            inner_arguments = [_reduced(one, unknown) for one in arguments]
+            if all(one is not None for one in inner_arguments):
+                return ast.Call(function, inner_arguments, [])  # type: ignore[arg-type]
+            return None
+        case ast.Tuple(elts=items, ctx=ctx):
+            entries = [_reduced(one, unknown) or ast.Constant(0) for one in items]
+            return ast.Tuple(entries, ctx)
+    return (
+        None
+        if {one.id for one in ast.walk(node) if isinstance(one, ast.Name)} & {*unknown}
+        else node
+    )

@@ -95,8 +95,10 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         for node in nodes(one.sides)
         if isinstance(node, Derivative) and isinstance(letter := node.operand, Letter)
     }
-    is_lagrangian = "L" in differentiated or any(map(_is_difference_of_energies, occurrences))
-    if any(map(_is_of_motion, occurrences)) if len(found) > 1 else not is_lagrangian:
+    has_lengths = "L" in differentiated or any(map(_is_difference_of_energies, occurrences))
+    if len(found) > 1:
+        has_lengths = not any(map(_is_of_motion, occurrences))
+    if not has_lengths:
         return [*occurrences]
 
     def change(place: Occurrence, alone: set[Span], letter: Letter) -> Letter:

@@ -365,7 +365,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         # v_1**2 = x_dot**2 + y_dot**2 defines a speed, omega**2 = g/l a frequency
         square = SQUARE.fullmatch(formula.sides[0].text)
         is_new = square and not orders.get(square[1]) and square[1] not in others
-        if square and others and is_new and not formula.is_special:
+        if square and others and is_new and not formula.is_special_case:
             defined.add(square[1])
     return defined
 

@@ -26,11 +26,10 @@ from derive.verification.documents.letters.energies import (
     stated_values,
 )
 from derive.verification.documents.letters.letters import KINDS, Letters
-from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.statements import POINT, DocumentFormula, definitions
 
 #: Names of Cartesian components.
 AXES = ("x", "y", "z")
-POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 COLUMN = re.compile(r"(?:vec)?[rRxXpq](?:_(\w+?))?(?:_column)?\Z")
 
 

@@ -15,9 +15,9 @@ from derive.reading.latex.tree import Statement
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.letter_roles import equal_letters, letters_of
 from derive.verification.documents.letters.letters import ANGLES, QUANTITIES, Letters
-from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.statements import (
     IMPLIED,
+    POINT,
     WORD,
     DocumentFormula,
     Occurrence,

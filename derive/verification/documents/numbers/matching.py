@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 from derive.verification.documents.formula_translation import order
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.documents.letters.stated_equations import without_unknown_terms
 from derive.verification.documents.numbers.candidate_motions import (
     ArbitraryMotion,
     CandidateMotions,
 )
 from derive.verification.documents.numbers.numbers import Derivatives, Numbers, Votes
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import DocumentFormula, without_unknown_terms
 
 #: The worth of a formula that holds but for one term.
 NEARLY = 0.5

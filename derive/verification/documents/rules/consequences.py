@@ -17,10 +17,9 @@ from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import derivation
-from derive.verification.documents.letters.stated_positions import POINT
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
-from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.statements import POINT, WORD, DocumentFormula
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import time_derivative
 from derive.verification.judging.verdict import Correction
@@ -177,14 +176,15 @@ def weighed(
 
     A formula is wrong by a system that the user states, or that follows from positions or energies
     in the document. It is not if other formulas of the document fit the rest as well and agree with
-    it, in which case neither these nor what holds with them alone is verified; nor if it is the
-    rate of a position that a system of energies or equations does not contain. A system that is
-    known from elsewhere must have a letter for each of its parameters, unless that is a factor of
-    the Lagrangian, such as the mass of a single body, and the accelerations as written have no
-    potential of their own; and no more formulas with more than one wrong term, or slips if one is
-    in an energy, than half of those that hold, of which there must be one. With a partial search
-    for it, none is wrong. A formula whose dimensions contradict those of all others needs no more
-    evidence if one term is wrong.
+    it, in which case neither these nor what holds with them alone is verified; nor if one of
+    several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
+    it is the rate of a position that a system of energies or equations does not contain. A system
+    that is known from elsewhere must have a letter for each of its parameters, unless that is a
+    factor of the Lagrangian, such as the mass of a single body, and the accelerations as written
+    have no potential of their own; and no more formulas with more than one wrong term, or slips if
+    one is in an energy, than half of those that hold, of which there must be one. With a partial
+    search for it, none is wrong. A formula whose dimensions contradict those of all others needs no
+    more evidence if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]

@@ -13,16 +13,15 @@ from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
-from derive.verification.documents.formula_translation import FormulaText, order
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.letters.stated_equations import without_unknown_terms
-from derive.verification.documents.rules.abbreviations import Abbreviations
 from derive.verification.documents.rules.amplitudes import Amplitudes
 from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
+from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
-from derive.verification.documents.rules.partial_energies import PartialEnergies
+from derive.verification.documents.rules.other_statements import OtherStatements
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
 from derive.verification.documents.rules.side_verdict import (
@@ -39,6 +38,7 @@ from derive.verification.documents.statements import (
     WORD,
     DocumentFormula,
     Occurrence,
+    without_unknown_terms,
 )
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
@@ -46,13 +46,6 @@ from derive.verification.judging.verdict import Correction
 
 #: A number with a decimal point.
 DECIMAL = re.compile(r"\d\.\d")
-#: Words of sentences about formulas that leave out terms.
-SIMPLIFIED = re.compile(
-    "simplif|neglect|ignor|vereinfach|vernachl|despreci|négli|忽略|無視",
-    re.IGNORECASE,
-)
-#: Names of generalized forces, which nothing else in a document may state.
-GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
 #: The note on components of a position of which one is wrong.
 EITHER = f"it contradicts another component of the position: {UNDECIDED}"
 #: The note on formulas of which the system follows.
@@ -83,6 +76,7 @@ class Judge:
         self._roles, self._amplitudes = Roles(namespace, linear), Amplitudes(namespace)
         self._comparison = SideComparison(namespace, linear, self._roles)
         self._frequencies = Frequencies(namespace, linear, self._roles)
+        self._others = OtherStatements(namespace, self._frequencies)
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
@@ -105,7 +99,7 @@ class Judge:
             return plain("context", formula, "it is no equation")
         if formula.is_update:
             return plain("context", formula, "it is a step in time")
-        if formula.subject in INDICES or formula.is_special or self._is_special(formula):
+        if formula.subject in INDICES or self._others.states_value(formula):
             return plain("context", formula, "it states a value")
         if values := self._prescribed(formula):
             if all(map(self._linear.is_solution, values)):
@@ -119,18 +113,18 @@ class Judge:
                 return plain("verified", formula, f"{name} is a constant of the motion")
             return plain("definition", formula, f"{name} is its value along the motion")
         unknown = self._unknown(formula.sides)
-        load = formula.sides[-1].text  # a letter that this equation of motion alone gives a value
-        if self._namespace.defining.get(load, (None, ""))[0] is formula:
-            unknown = unknown or [load] * bool(self._is_equation_without(formula, [load]))
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
-        if unknown and self._is_equation_without(formula, unknown):
-            return plain("verified", formula, f"with {', '.join(unknown)} as applied forces")
+        last = formula.sides[-1].text  # can be a load to which this equation alone gives a value
+        is_own = self._namespace.defining.get(last, (None, ""))[0] is formula
+        loads = unknown or [last] * is_own
+        if loads and self._is_equation_without(formula, loads):
+            return plain("verified", formula, f"with {', '.join(loads)} as applied forces")
         if unknown and self._amplitudes.holds(formula):
             return plain("verified", formula, "with the stated functions of time")
         if unknown and (result := self._beside_loads(formula, unknown)) is not None:
             return result
-        if unknown and self._relates_parameters(formula):
+        if unknown and self._others.relates_parameters(formula):
             return plain("definition", formula, "")
         if self._unknown(formula.sides[:1]):
             return self._not_understood(formula, unknown)
@@ -145,19 +139,8 @@ class Judge:
             if result.verdict.verdict not in CORRECT:
                 if (definition := self._positions.opposite(formula.subject)) is not None:
                     return plain("context", formula, opposed(definition.occurrence.line))
-                if self._relates_parameters(formula):
-                    return plain("definition", formula, "")
-                if GENERALIZED_FORCE.fullmatch(formula.subject):
-                    return plain("context", formula, "it states a generalized force")
-                if (other := self._with_an_energy(formula)) is not None:
-                    return other
-                if self._is_place(formula):
-                    return plain("context", formula, "it states a value")
-                if (frequency := self._frequency(formula)) is not None:
-                    return frequency
-                if _lacks_terms(formula, result) and SIMPLIFIED.search(formula.occurrence.prose):
-                    return plain("context", formula, "it lacks terms that it can neglect")
-                return self._first_side(formula) or result
+                other = self._others.verdict(formula, result)
+                return other or self._first_side(formula) or result
         inner = {*self._unknown([formula.sides[0], formula.sides[-1]])}
         if unknown and ({*unknown} & inner or len(known) < 1 or "~" in formula.relations):
             return self._not_understood(formula, unknown)
@@ -255,88 +238,6 @@ class Judge:
             ):
                 result = self._roles.value(first, "first_side", required)
                 return result if result.verdict.corrections else None
-        return None
-
-    def _is_special(self, formula: DocumentFormula) -> bool:
-        """Whether a formula states the value of a coordinate, of its rate or of a parameter.
-
-        That of a name which the document defines by these is one at a place: θ = 0 beside ωt.
-        """
-        names, last = self._namespace.all_names, formula.sides[-1].text
-        system = self._namespace.derivation.system
-        moving = {TIME, *system.q, *system.qdot}
-        try:
-            value = self._namespace.value(last)
-        except ExpressionError:
-            return False
-        sides = formula.sides[:-1]
-        entries = [one.text for side in sides for one in side.entries or (side,)]
-        return not value.free_symbols and all(
-            isinstance(names.get(one), sp.Symbol)
-            or (one in self._namespace.letters.quantities and names.get(one) != value)
-            or (one in self._namespace.defining and depends_on(names[one], moving))
-            for one in entries
-        )
-
-    def _relates_parameters(self, formula: DocumentFormula) -> bool:
-        """Whether a formula defines a parameter by others, as b = d/2 does: any value is right.
-
-        So is the number of a formula of parameters, as in m*l = 0.025.
-        """
-        names, known = self._namespace.all_names, {*self._namespace.derivation.system.params}
-        letters = self._namespace.letters
-        values = (names.get(word) for word in formula.words if word not in letters.parameters)
-        is_relation = formula.is_value or names.get(formula.subject) in known
-        return is_relation and all(
-            callable(one) or (isinstance(one, sp.Expr) and one.free_symbols <= known)
-            for one in values
-        )
-
-    def _with_an_energy(self, formula: DocumentFormula) -> SideVerdict | None:
-        """The verdict on a formula that contains an energy, which can have another constant."""
-        quantities = self._namespace.letters.quantities
-        named = {name: text for name, (_, text) in self._namespace.defining.items()}
-        kinds = {word: quantities.get(named.get(word, word)) for word in formula.words}
-        energies = {word for word, kind in kinds.items() if kind in ("energy", "hamiltonian")}
-        if formula.subject in quantities or not energies - {formula.subject}:
-            return None
-        if len(formula.sides) == 2 and formula.sides[1].text in energies:
-            left, right = (self._namespace.value(one.text) for one in formula.sides)
-            difference = (left - right).xreplace(self._model.momenta)
-            system = self._namespace.derivation.system
-            slopes = [difference.diff(one) for one in (*system.q, *system.qdot, TIME)]
-            is_constant = all(map(self._model.context.is_zero, slopes))
-            return plain("verified", formula, "it differs by a constant") if is_constant else None
-        # that of a potential with another value at the origin, where many documents take 0
-        potential = self._namespace.derivation.potential_energy
-        offset = potential.subs(dict.fromkeys(self._namespace.derivation.system.q, sp.S.Zero))
-        if not offset.is_finite or offset == 0:
-            return None
-        return plain("context", formula, "it contains an energy, which can have another constant")
-
-    def _is_place(self, formula: DocumentFormula) -> bool:
-        """Whether a formula can state a place, as cos θ = g/(ω² a): it has no other quantities.
-
-        Coordinates with constraints have such relations everywhere.
-        """
-        system, names = self._namespace.derivation.system, self._namespace.all_names
-        known = {*system.q, *system.params}
-        values = [
-            (value in known or (value in system.qdot and not order(word)), value)
-            for word in formula.words  # a constant rate can have a letter
-            if isinstance(value := names.get(word), sp.Expr)
-        ]
-        is_relation = not all(side.text.isidentifier() for side in formula.sides)
-        has_place = all(k for k, _ in values) and any(v in system.q for _, v in values)
-        return is_relation and has_place and not system.conditions
-
-    def _frequency(self, formula: DocumentFormula) -> SideVerdict | None:
-        """The verdict on a frequency of another mode, whose letter the document uses before."""
-        square = SQUARE.fullmatch(formula.sides[0].text)
-        name, power = (square[1], 2) if square else (formula.subject, 1)
-        with suppress(ExpressionError, NotImplementedError):
-            result = self._frequencies.verdict(formula, name, formula.sides[-1], power)
-            return result if result and result.verdict.verdict in CORRECT else None
         return None
 
     def _has_numbers(self, side: FormulaText) -> bool:
@@ -464,9 +365,3 @@ class Judge:
             result, key=lambda one: len(one.verdict.corrections[0].correct), default=None
         )
         return shortest or plain("wrong", formula, "it has not the forces of this system")
-
-
-def _lacks_terms(formula: DocumentFormula, result: SideVerdict) -> bool:
-    """Whether no term of an equation of motion is wrong, so that it lacks others."""
-    is_equation = any(order(word) == 2 for word in formula.words)
-    return is_equation and not any(one.wrong for one in result.verdict.corrections)

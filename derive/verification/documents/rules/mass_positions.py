@@ -8,9 +8,9 @@ import sympy as sp
 
 from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.letters.stated_positions import COLUMN, POINT
+from derive.verification.documents.letters.stated_positions import COLUMN
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import POINT, DocumentFormula
 from derive.verification.judging.reference_system import time_derivative
 
 #: The components of a point: names and values. An entry of a column has that column's name.
