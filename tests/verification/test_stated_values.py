@@ -202,6 +202,17 @@ def test_a_critical_speed_does_not_define_the_speed(tmp_path: Path) -> None:
     assert one.correction.endswith("+ a g r = 0")
 
 
+def test_a_square_of_an_abbreviation_is_no_special_case(tmp_path: Path) -> None:
+    # the equation is compared near x = l as well, where most digits cancel
+    text = r"""
+$$u = \sqrt{l^2 - x^2}$$ $$T = \frac12 m(\dot x^2 + \frac{x^2\dot x^2}{u^2}), \quad V = m g u$$
+$$u^2 = l^2 + x^2$$
+$$\frac{l^2\ddot x}{u^2} + \frac{l^2 x\dot x^2}{u^4} - \frac{g x}{u} = 0$$"""
+    assert verdicts(tmp_path, text) == [*["definition"] * 3, "wrong", "verified"]
+    (one,) = wrong(tmp_path, text)
+    assert one.correction == "u^2 = l^2 - x^2"
+
+
 SUBSTITUTED = r"""
 $$T = \frac12 m (b - a)^2\dot\theta^2 + \frac14 m a^2\dot\psi^2, \qquad V = -m g (b - a)\cos\theta$$
 It rolls: $$(b - a)\dot\theta - a\dot\psi = 0$$

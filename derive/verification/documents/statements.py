@@ -150,11 +150,16 @@ def translated(occurrences: Sequence[Occurrence]) -> Translated:
 
 
 def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[DocumentFormula]:
-    """Yield the formulas; squares of letters of energies above are special cases."""
+    """Yield the formulas; squares of letters of energies above are special cases.
+
+    These letters are parameters: no formula states their values or rates.
+    """
+    stated = {stem(one.subject) for one in formulas}
+    stated.update(stem(word) for one in formulas for word in one.words if order(word))
     moving = set[str]()
     for formula in formulas:
         square = SQUARE.fullmatch(formula.sides[0].text)
-        is_special_case = square and square[1] in moving
+        is_special_case = square and square[1] in moving - stated
         yield replace(formula, is_special_case=True) if is_special_case else formula
         if {*map(order, formula.words)} == {0, 1} and not order(formula.subject):
             moving.update(formula.words)
