@@ -65,9 +65,12 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
                 for name in letters.parameters
                 if symbols[name] in used
             ]
+            title = "The system that the document states"
+            if sign < 0 and weight:  # which formulas alone show, and a sentence can contradict
+                title += ", with its vertical axis downwards"
             try:
                 system = System(
-                    STATED, "The system that the document states", coordinates, parameters,
+                    STATED, title, coordinates, parameters,
                     masses, potential=potential, gravity=(sp.S.Zero,) * len(masses[0].position),
                     forces=friction if damping else (),
                 )  # fmt: skip
