@@ -238,6 +238,8 @@ class FormulaTranslator:
             if getattr(exponent, "digits", "") != "2":
                 raise UntranslatableError("a power of a matrix")
             return joined_text(ATOM, "square(", self.text(base), ")")
+        if isinstance(base, Letter) and self.name(base) == "e" and _is_formula(exponent):
+            return self._call("exp", exponent)
         return joined_text(POWER, self.text(base, ATOM), "**", self.text(exponent, ATOM))
 
     def _call(self, name: str, argument: Node) -> FormulaText:
@@ -328,6 +330,12 @@ def _is_of_time(argument: Node) -> bool:
         return True
     names = [one.identifier for one in letters(argument)]
     return "t" in names and not any(isinstance(one, Call) for one in nodes(argument))
+
+
+def _is_formula(exponent: Node) -> bool:
+    """Whether an exponent is one of e = 2.718...: no number, and no index."""
+    names = {one.name for one in letters(exponent)}
+    return bool(names) and not (isinstance(exponent, Letter) and names <= {*"ijkmn"})
 
 
 def _in_brackets(node: Application) -> Node:

@@ -225,18 +225,23 @@ def _resting(formulas: Iterable[DocumentFormula]) -> set[str]:
 def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
     """Whether all definitions of a name contain parameters alone, as that of K = m l**2.
 
-    They may contain coordinates if another kinetic energy is stated by it: T = m K x_dot**2/2.
+    They may contain coordinates if another kinetic energy is stated by it, T = m K x_dot**2/2, or
+    by velocities.
     """
     own = [one for one in formulas if one.subject == name]
     words = {word for one in own for side in one.sides[1:] for word in _words(side.text)}
     moving = {stem(word) for one in formulas for word in one.words if order(word)}
     is_used = any(name in one.words and one.subject != name for one in formulas)
-    by_it = (one.subject for one in formulas if name in one.words and one.subject != name)
-    is_factor = any(_quantity(subject) == "kinetic_energy" for subject in by_it if subject)
-    excluded = set() if is_factor else moving
+    has_other = any(
+        _quantity(one.subject) == "kinetic_energy"
+        and (name in one.words or any(map(order, one.words)))
+        for one in formulas
+        if one.subject not in ("", name)
+    )
+    excluded = set() if has_other else moving
     return (
         bool(words)
-        and is_used
+        and (is_used or has_other)
         and not any(
             order(word) or word in excluded or _quantity(word) or word[0] in "pv" for word in words
         )

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 from derive.verification.documents.formula_translation import RATES, stem
-from derive.verification.documents.jets import UnknownNameError, evaluated
+from derive.verification.documents.jets import UnknownNameError, Value, evaluated
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import OPERATORS, Letters
 from derive.verification.documents.numbers.candidate_motions import CandidateMotions
@@ -25,13 +25,17 @@ def resolved(
     """Formulas in known letters for letters without a meaning.
 
     A meaning is accepted if at least two comparisons and more than half of them hold with it, so
-    that a mistake in a single letter is not taken for another letter.
+    that a mistake in a single letter is not taken for another letter. A letter with which all
+    formulas hold, whatever its value, is a constant, as l of a potential energy m*g*(l - x): it
+    stands for itself.
     """
     numbers = Numbers(CandidateMotions([candidate], letters), letters, derivatives)
     meanings: dict[str, str] = {}
-    for name in letters.parameters:
-        if name not in candidate.letters:  # a random number until now
-            numbers.values.pop(name, None)
+    constants = {
+        name: numbers.values.pop(name)  # random numbers
+        for name in letters.parameters
+        if name not in candidate.letters and name in numbers.values
+    }
     others = [q for q in letters.coordinates if q not in candidate.coordinates]
     for name in (q + ending for q in others for ending in RATES[:3]):
         numbers.values.pop(name, None)
@@ -48,12 +52,13 @@ def resolved(
         }  # which would hold with any reaction
         result = next((m for u in dict.fromkeys(unknown.values())
                       if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],
-                                        candidate, numbers))), None)  # fmt: skip
+                                        candidate, numbers, constants))), None)  # fmt: skip
         if not result:
             return meanings
         for name, text in [*result.items(), *_rates(result, letters)]:
             meanings[name] = text
-            numbers.set_rates(name, evaluated(text, numbers.values))
+            value = constants[name] if text == name else evaluated(text, numbers.values)
+            numbers.set_rates(name, value)
         numbers.define(formulas)
 
 
@@ -117,7 +122,12 @@ def _meaning(
     formulas: Sequence[DocumentFormula],
     candidate: SystemCandidate,
     numbers: Numbers,
+    constants: Mapping[str, Value],
 ) -> dict[str, str] | None:
+    if {*names} <= {*constants}:
+        votes = _votes({name: constants[name] for name in names}, formulas, numbers)
+        if votes and all(votes):
+            return {name: name for name in names}
     pool = [*_pool(candidate)]
     if len(names) == 1:
         pool += _reactions(candidate, numbers)
@@ -129,21 +139,29 @@ def _meaning(
             }
         except UnknownNameError:
             continue
-        numbers.values.update(jets)
-        votes = [
-            bool(vote.all())
-            for one in formulas
-            for side, vote in numbers.comparisons(one)
-            if set(names) & {*WORD.findall(f"{side} {one.sides[0].text}")}
-        ]
-        for name in names:
-            del numbers.values[name]
+        votes = _votes(jets, formulas, numbers)
         # no mistake in a letter makes a sum of it
         is_sum = all("+" in text for text in texts)
         least = max(1, len(votes) // 2) if is_sum else max(SUPPORT, len(votes) // 2 + 1)
         if votes.count(True) >= least:
             return dict(zip(names, texts, strict=True))
     return None
+
+
+def _votes(
+    values: Mapping[str, Value], formulas: Sequence[DocumentFormula], numbers: Numbers
+) -> list[bool]:
+    """Whether each comparison in which these names stand holds with their values."""
+    numbers.values.update(values)
+    votes = [
+        bool(vote.all())
+        for one in formulas
+        for side, vote in numbers.comparisons(one)
+        if {*values} & {*WORD.findall(f"{side} {one.sides[0].text}")}
+    ]
+    for name in values:
+        del numbers.values[name]
+    return votes
 
 
 def _pool(candidate: SystemCandidate) -> Iterator[str]:

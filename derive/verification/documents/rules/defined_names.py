@@ -11,6 +11,7 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Kinetics
+from derive.system.symbols import TIME
 from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
@@ -45,7 +46,7 @@ class Abbreviations:
                 is_shown = len(values) >= AGREEING or is_slip
                 is_agreed = is_shown and self._are_equal([shortest, *values])
                 # a name that must be 0 is one that a known system has not
-                if is_agreed and shortest != 0 and not self._are_equal([own, shortest]):
+                if is_agreed and shortest != 0 and not self._are_equivalent(own, shortest):
                     self._required[name] = shortest
         if self._required:
             namespace.correct(self._required)
@@ -80,6 +81,13 @@ class Abbreviations:
     def _are_equal(self, values: Sequence[sp.Expr]) -> bool:
         first, *others = values
         return all(self._namespace.model.context.is_zero(one - first) for one in others)
+
+    def _are_equivalent(self, own: sp.Expr, value: sp.Expr) -> bool:
+        """Whether values are equal, or differ by a constant, as lengths in an energy can."""
+        system = self._namespace.derivation.system
+        rates = [(own - value).diff(one) for one in (*system.q, *system.qdot, TIME)]
+        is_moving = depends_on(own, (*system.q, *system.qdot, TIME))
+        return self._are_equal([own, value]) or (is_moving and self._are_equal([*rates, sp.S.Zero]))
 
 
 #: Names of effective potentials, which contain the energies of conserved momenta.

@@ -1,8 +1,9 @@
 """The names of a document as values of its system: letters, energies, definitions, derivatives."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -13,9 +14,15 @@ from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.routhian import Routhian
+from derive.system.parts import Parameter
 from derive.system.symbols import TIME, acceleration, velocity
+from derive.system.system import System
 from derive.verification.documents.formula_translation import RATES, stem
-from derive.verification.documents.letters.document_system import SystemLetters, energies_of
+from derive.verification.documents.letters.document_system import (
+    SystemLetters,
+    energies_of,
+    valid_name,
+)
 from derive.verification.documents.letters.letters import Letters, composed
 from derive.verification.documents.letters.stated_positions import AXES, COLUMN
 from derive.verification.documents.statements import (
@@ -49,9 +56,14 @@ class DocumentNamespace:
         derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
         meanings: Mapping[str, str],
     ) -> None:
-        self.derivation = Derivation(system_letters.system)
+        constants = {
+            name: sp.Symbol(valid_name(name), real=True)
+            for name, text in meanings.items()
+            if text == name
+        }
+        self._system = _with_constants(system_letters.system, constants.values())
+        self.derivation = Derivation(self._system)
         self.letters, self.derivatives, self.formulas = letters, derivatives, formulas
-        self._system = system_letters.system
         #: Names with their values.
         self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))
         #: Formulas that define a name, with the text that does.
@@ -68,7 +80,7 @@ class DocumentNamespace:
         for name, text in meanings.items():
             operand, _ = derivatives.get(name, ("", ()))
             if name not in own and operand not in defined - {""}:
-                self._add(name, self.value(text))
+                self._add(name, constants[name] if name in constants else self.value(text))
         #: Names of matrices and columns whose entries are defined one by one, and of columns of
         #: small displacements.
         self.composed, self.displacements = set[str](), set[str]()
@@ -180,6 +192,18 @@ class DocumentNamespace:
         for name, kind in self.letters.quantities.items():
             if kind in values:
                 self.names[name] = values[kind]
+        # a potential energy can leave terms of velocities to the Lagrangian
+        for name, kind in self.letters.quantities.items():
+            if kind == "potential_energy" and not self._has_rates(name):
+                self.names[name] = V.xreplace(dict.fromkeys(self._system.qdot, sp.S.Zero))
+
+    def _has_rates(self, name: str) -> bool:
+        """Whether a formula states a name by velocities, or by names that others state by them."""
+        rates = {
+            one.subject for one in self.formulas if any(word != stem(word) for word in one.words)
+        }
+        own = {word for one in self.formulas if one.subject == name for word in one.words}
+        return any(word != stem(word) for word in own) or bool(own & rates - {name})
 
     def _add_routhians(self, formulas: Sequence[DocumentFormula]) -> None:
         """Routhians of the coordinates whose momenta their formulas contain, with their sign."""
@@ -331,6 +355,12 @@ class DocumentNamespace:
                 break
             value = rate
             yield name + ending, value
+
+
+def _with_constants(system: System, symbols: Collection[sp.Symbol]) -> System:
+    """The system with further parameters, on which nothing in it depends."""
+    constants = (Parameter(symbol, "1", 1.0, "a constant") for symbol in symbols)
+    return replace(system, parameters=(*system.parameters, *constants)) if symbols else system
 
 
 def _rate(system: Any, value: Value) -> Value | None:

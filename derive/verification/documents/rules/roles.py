@@ -61,6 +61,9 @@ class Roles:
             small = self._linear.acceleration(self._namespace.all_names[subject], right)
             if small is not None:
                 return self.value(side, "linearised", small)
+        is_static = kind == "potential_energy" and not depends_on(left, system.qdot)
+        if is_static and depends_on(self._namespace.derivation.potential_energy, system.qdot):
+            return self._energy(side, subject, left, right)
         if kind == "energy" and self._relates_energies(subject, side):
             return self._energy(side, subject, left, right)
         if kind:
