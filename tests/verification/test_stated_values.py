@@ -57,6 +57,20 @@ def test_a_potential_can_leave_terms_of_velocities_to_the_lagrangian(tmp_path: P
     assert verdicts(tmp_path, STATIC.replace("V = ", "V = 2"))[2] == "wrong"
 
 
+def test_a_lagrangian_leaves_terms_of_its_energies_open(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m(\dot x^2 + 2 v\dot x + v^2)$$
+    $$L = \frac12 m\dot x^2 + m v\dot x - \frac12 k x^2$$ $$m\ddot x + k x = 0$$"""
+    assert verdicts(tmp_path, text) == ["context", "definition", "verified"]
+    assert verdicts(tmp_path, text.replace("m(", "m(2"))[0] == "wrong"
+
+
+def test_logarithms_of_lengths_can_be_subtracted(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m(\dot r^2 + r^2\dot\phi^2)$$ $$V = k\ln r - k\ln a$$
+    $$m\ddot r - m r\dot\phi^2 = -\frac{k}{r}$$ $$V = k\ln\frac{r}{a}$$"""
+    assert not wrong(tmp_path, text)
+    assert "dimensions" not in " ".join(one.note for one in judged(tmp_path, text).formulas)
+
+
 SWUNG = r"""
 $$T = \frac12 m(l^2\dot\phi^2 + 2 a l\gamma\cos(\gamma t)\dot\phi\cos\phi)$$
 $$V = -m g l\cos\phi$$ $$p_\phi = m l^2\dot\phi + m a l\gamma\cos(\gamma t)\cos\phi$$

@@ -30,7 +30,7 @@ ONE: Dimension = {}
 GRAVITY: Dimension = {LENGTH: Fraction(1), TIME: Fraction(-2)}
 ENERGY: Dimension = {MASS: Fraction(1), LENGTH: Fraction(2), TIME: Fraction(-2)}
 #: Functions of numbers without a dimension.
-FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sinh", "cosh", "tanh", "asin", "acos", "atan")
+FUNCTIONS = ("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh", "asin", "acos", "atan")
 #: Letters of coordinates and of parameters that are lengths.
 COORDINATES, PARAMETERS = ("x", "y", "z", "r", "s"), ("l", "ell")
 #: The fewest formulas with dimensions.
@@ -179,6 +179,9 @@ class _Equations:
                 return _product(self._dimension(argument) or ONE, {TIME: Fraction(-1)})
             case ast.Call(func=ast.Name(id="diff"), args=[one, other]):
                 return _product(self._dimension(one) or ONE, self._dimension(other) or ONE, -1)
+            case ast.Call(func=ast.Name(id="log"), args=[argument]):
+                self._dimension(argument)  # log(x/a) can stand as log(x) - log(a)
+                return ONE
             case ast.Call(func=ast.Name(id=name), args=[argument]) if name in FUNCTIONS:
                 self._number(argument)
                 return ONE

@@ -28,6 +28,8 @@ from derive.verification.quantity_verdicts import judge_formula
 
 #: The index of a name with one, and the ending of its rate behind it.
 INDEX = re.compile(r"_\d+(?=_d+ot\Z|\Z)")
+#: The note on terms that the kinetic or the potential energy can have.
+OPEN = "the stated Lagrangian leaves open which energy has the other terms"
 
 
 class Roles:
@@ -54,6 +56,9 @@ class Roles:
         if kind == "accelerations" and depends_on(right, system.qddot):
             kind = ""
         if kind in ("kinetic_energy", "potential_energy") and system.name == BY_LAGRANGIAN:
+            if self._is_open(left, right):
+                verdict = Verdict("", "context", side.text, note=OPEN)
+                return SideVerdict(verdict, ((0, side),), kind)
             kind = ""
         if kind in ("hamiltonian", "energy"):
             kind = "hamiltonian" if depends_on(right, system.p) else "energy"
@@ -92,6 +97,18 @@ class Roles:
             if result.verdict.corrections:
                 return result
         return self.equation(first, side)
+
+    def _is_open(self, left: sp.Expr, right: sp.Expr) -> bool:
+        """Whether energies differ in terms that a Lagrangian can have from either of them.
+
+        These contain the time, or are linear in velocities.
+        """
+        system = self._namespace.derivation.system
+        difference = (right - left).xreplace(self._model.momenta)
+        slopes = [difference.diff(v) for v in system.qdot]
+        curvatures = [slope.diff(v) for slope in slopes for v in system.qdot]
+        is_moving = depends_on(difference, (*system.qdot, TIME))
+        return is_moving and all(map(self._model.context.is_zero, curvatures))
 
     def _relates_energies(self, subject: str, side: FormulaText) -> bool:
         """Whether a side states H, or another energy by H, where this is not T + V."""
