@@ -237,8 +237,9 @@ def _is_at_one_time(side: Node) -> bool:
     if not isinstance(side, Application) or len(side.arguments) != 1:
         return False
     (argument,) = side.arguments
-    is_start = isinstance(argument, Letter) and (argument.name, argument.index) == ("t", "0")
-    return isinstance(argument, Number) or is_start
+    names = [("t", "0"), ("infty", "")]
+    is_named = isinstance(argument, Letter) and (argument.name, argument.index) in names
+    return isinstance(argument, Number) or is_named
 
 
 def _is_time(arguments: Sequence[Node]) -> bool:

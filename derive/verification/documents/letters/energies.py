@@ -18,6 +18,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
+from derive.verification.documents.formula_translation import order
 from derive.verification.documents.letters.candidates import BY_LAGRANGIAN, STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.implied_energies import (
@@ -80,8 +81,11 @@ def systems_of_energies(
         title = "The system of the stated energies"
         friction = [-damping.diff(velocity(one)) for one in moving]
         applied = stated_forces(formulas, values, moving)
-        for loads in [applied, [sp.S.Zero] * len(moving)] if any(applied) else [applied]:
-            forces = [sp.Add(*pair) for pair in zip(friction, loads, strict=True)]
+        sums = [sp.Add(*pair) for pair in zip(friction, applied, strict=True)]
+        # stated forces can contain the friction, or be those of another case
+        for forces in dict.fromkeys(
+            map(tuple, (sums, applied if any(applied) else sums, friction))
+        ):
             is_kinetic = matrix.shape[0] == len(moving) or all(
                 sp.expand(one - T) == 0 for one, _ in kinetic
             )
@@ -110,14 +114,20 @@ def stated_dissipation(
 ) -> sp.Expr:
     """Rayleigh's function of a document, 0 if there is none: a quadratic form of velocities.
 
-    Its sentence names it, or an equation contains its derivative by a velocity.
+    Its sentence names it, or an equation contains its derivative by a velocity, or its letter is
+    usual and its factors are those of no kinetic energy.
     """
     rates = [velocity(values[q]) for q in letters.coordinates if q in values]
     words = {word for formula in formulas for word in formula.words}
+    kinetic = {name for name, kind in letters.quantities.items() if kind == "kinetic_energy"}
+    inertial = {word for one in formulas if one.subject in kinetic for word in one.words}
     for formula in formulas:
         name, value = formula.subject, values.get(formula.subject)
         is_derived = any(re.fullmatch(rf"d{name}_d\w+_dot", word) for word in words)
-        is_named = is_derived or RAYLEIGH.search(formula.occurrence.prose)
+        is_usual = name in ("D", "R", "F") and inertial.isdisjoint(
+            word for word in formula.words if not order(word) and word != name
+        )
+        is_named = is_derived or is_usual or RAYLEIGH.search(formula.occurrence.prose)
         if not name or not is_named or name in letters.quantities or not isinstance(value, sp.Expr):
             continue
         forms = (value.diff(a).diff(b) * a * b / 2 for a in rates for b in rates)
