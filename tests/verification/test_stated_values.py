@@ -64,6 +64,18 @@ def test_a_lagrangian_leaves_terms_of_its_energies_open(tmp_path: Path) -> None:
     assert verdicts(tmp_path, text.replace("m(", "m(2"))[0] == "wrong"
 
 
+DAMPED = r"""
+$$T = \frac12 m\dot x^2$$ $$V = \frac12 k x^2 + \frac14 b x^4$$
+With Rayleigh's function $$D = \frac12 c\dot x^2$$
+$$Q_x = F - c\dot x$$ $$m\ddot x + c\dot x + k x + b x^3 = F$$
+"""
+
+
+@pytest.mark.parametrize("text", [DAMPED, DAMPED.replace(" - c\\dot x$", "$")])
+def test_a_stated_force_can_contain_the_friction_of_a_function(tmp_path: Path, text: str) -> None:
+    assert verdicts(tmp_path, text) == [*["definition"] * 4, "verified"]
+
+
 def test_logarithms_of_lengths_can_be_subtracted(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m(\dot r^2 + r^2\dot\phi^2)$$ $$V = k\ln r - k\ln a$$
     $$m\ddot r - m r\dot\phi^2 = -\frac{k}{r}$$ $$V = k\ln\frac{r}{a}$$"""
