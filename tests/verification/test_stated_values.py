@@ -67,13 +67,26 @@ def test_a_lagrangian_leaves_terms_of_its_energies_open(tmp_path: Path) -> None:
 DAMPED = r"""
 $$T = \frac12 m\dot x^2$$ $$V = \frac12 k x^2 + \frac14 b x^4$$
 With Rayleigh's function $$D = \frac12 c\dot x^2$$
-$$Q_x = F - c\dot x$$ $$m\ddot x + c\dot x + k x + b x^3 = F$$
+$$\frac{d}{dt}\frac{\partial L}{\partial\dot x} - \frac{\partial L}{\partial x}
+  + \frac{\partial D}{\partial\dot x} = M$$
+$$Q_x = M - c\dot x$$ $$m\ddot x + c\dot x + k x + b x^3 = M$$
 """
 
 
 @pytest.mark.parametrize("text", [DAMPED, DAMPED.replace(" - c\\dot x$", "$")])
 def test_a_stated_force_can_contain_the_friction_of_a_function(tmp_path: Path, text: str) -> None:
-    assert verdicts(tmp_path, text) == [*["definition"] * 4, "verified"]
+    assert verdicts(tmp_path, text) == [*["definition"] * 3, "verified", "definition", "verified"]
+
+
+def test_a_function_of_friction_can_be_known_by_its_letter(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2$$
+    $$V = \frac12 k_1 x_1^2 + \frac12 k_2 (x_2 - x_1)^2$$
+    $$D = \frac12 b_1\dot x_1^2 + \frac12 b_2 (\dot x_2 - \dot x_1)^2$$
+    $$m_2\ddot x_2 + b_2\dot x_2 - b_2\dot x_1 + k_2 x_2 - k_2 x_1 = 0$$
+    $$m_1\ddot x_1 + (b_1 + b_2)\dot x_1 - b_2\dot x_2 + (k_1 + k_2) x_1 - k_2 x_2 = 0$$"""
+    found = judged(tmp_path, text).formulas
+    assert [one.verdict for one in found] == [*["definition"] * 3, *["verified"] * 2]
+    assert not found[-1].note  # such as that these are forces without a meaning
 
 
 def test_logarithms_of_lengths_can_be_subtracted(tmp_path: Path) -> None:
