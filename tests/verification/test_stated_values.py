@@ -89,6 +89,12 @@ def test_a_function_of_friction_can_be_known_by_its_letter(tmp_path: Path) -> No
     assert not found[-1].note  # such as that these are forces without a meaning
 
 
+def test_any_kinetic_energy_can_stand_beside_a_potential_energy_pi(tmp_path: Path) -> None:
+    text = r"""$$E_k = \frac12 m\dot x^2$$ $$\Pi = \frac12 k x^2$$
+    $$L = \frac12 m\dot x^2 - \frac12 k x^2$$ $$m\ddot x = -k x$$"""
+    assert {*verdicts(tmp_path, text)} <= CORRECT
+
+
 def test_logarithms_of_lengths_can_be_subtracted(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m(\dot r^2 + r^2\dot\phi^2)$$ $$V = k\ln r - k\ln a$$
     $$m\ddot r - m r\dot\phi^2 = -\frac{k}{r}$$ $$V = k\ln\frac{r}{a}$$"""

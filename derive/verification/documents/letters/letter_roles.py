@@ -38,7 +38,7 @@ INDEXED = re.compile(r"[A-Za-z]+_\d+")
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
 #: Letters of potential energies beside those of kinetic ones; alone they can be momenta.
-PARTNERS = {"K": "P", "T": "Pi"}
+PARTNERS = {"K": ("P", "Pi")}
 #: A multiple of a quantity on the left, such as that in 2 T = m v**2.
 MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: A number, perhaps with a unit.
@@ -318,11 +318,11 @@ def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
 def _partners(
     formulas: Iterable[DocumentFormula], quantities: Mapping[str, str], moving: Sequence[str]
 ) -> dict[str, str]:
-    """Potential energies P beside kinetic ones K: functions of coordinates without velocities."""
+    """Potential energies P or Pi beside kinetic ones: functions of coordinates alone."""
     if "potential_energy" in quantities.values():
         return {}
-    names = {PARTNERS[name] for name, kind in quantities.items()
-             if kind == "kinetic_energy" and name in PARTNERS}  # fmt: skip
+    names = {partner for name, kind in quantities.items() if kind == "kinetic_energy"
+             for partner in PARTNERS.get(name, ("Pi",))}  # fmt: skip
     words = {name: {word for one in formulas if one.subject == name
                     for side in one.sides[1:] for word in _words(side.text)}
              for name in names}  # fmt: skip
