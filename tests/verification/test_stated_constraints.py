@@ -9,10 +9,14 @@ from derive import Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.handout.derivation_document import write_document
 from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import _read, judge_document
+from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.energies import has_rotations
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.letters.letter_roles import letters_of
+from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
+from derive.verification.documents.rules.consequences import Contradictions, weighed
+from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import translated
 
 PENDULUM = r"""
@@ -222,3 +226,19 @@ $$ V = m g a\sin\theta $$
     statements = translated(_read(read_document(path))[0])
     letters = letters_of(statements.formulas, statements.derivatives)
     assert has_rotations(CENTRE, letters, statements.formulas) == is_rotation
+
+
+@pytest.mark.parametrize(("constraint", "verdict"), [
+    ((), "wrong"), ((StatedConstraint("x", frozenset("x"), 0),), "context"),
+])  # fmt: skip
+def test_a_known_system_with_a_stated_constraint_contradicts_no_single_formula(
+    constraint: tuple[StatedConstraint, ...], verdict: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.md").write_text(r"$$x\dot x = 1$$", encoding="utf-8")
+    (formula,) = translated(_read(read_document(tmp_path / "a.md"))[0]).formulas
+    candidate = SystemCandidate(
+        load("henon_heiles"), ("x", "y"), ((1, 0), (0, 1)), (0, 0), {}, constraints=constraint
+    )
+    judged = [(formula, plain("wrong", formula, ""))]
+    ((_, result),) = weighed(judged, candidate, Contradictions(), is_stated=False)
+    assert result.verdict.verdict == verdict

@@ -203,7 +203,8 @@ def weighed(
     )
     slips = max(misfits, len(terms) if has_energy else 0)
     few = max(1, min(holding, max(2, holding // 2)))
-    has_none = has_energy and holding == 0 and len(wrong) > 1
+    is_several = has_energy and len(wrong) > 1
+    has_none = holding == 0 and (is_several or bool(candidate.constraints))
     is_weak = is_known and (is_partial or not has_all or has_none or slips > few)
     is_guess = is_known and holding < 2 and candidate.is_turned
     independent = sum(FOLLOWS not in one.note for one in wrong)
