@@ -95,6 +95,15 @@ def test_any_kinetic_energy_can_stand_beside_a_potential_energy_pi(tmp_path: Pat
     assert {*verdicts(tmp_path, text)} <= CORRECT
 
 
+def test_components_in_two_frames_are_no_positions(tmp_path: Path) -> None:
+    text = r"""$$x' = x\cos\omega t + y\sin\omega t$$ $$y' = -x\sin\omega t + y\cos\omega t$$
+    $$x = x'\cos\omega t - y'\sin\omega t$$ $$y = x'\sin\omega t + y'\cos\omega t$$
+    Without the primes, $$\frac{\partial L}{\partial\dot x} = m(\dot x - \omega y)$$
+    $$m\ddot x = 2 m\omega\dot y + m\omega^2 x - \frac{\partial V}{\partial x}$$
+    $$m\ddot y = -2 m\omega\dot x + m\omega^2 y - \frac{\partial V}{\partial y}$$"""
+    assert not wrong(tmp_path, text)
+
+
 def test_logarithms_of_lengths_can_be_subtracted(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m(\dot r^2 + r^2\dot\phi^2)$$ $$V = k\ln r - k\ln a$$
     $$m\ddot r - m r\dot\phi^2 = -\frac{k}{r}$$ $$V = k\ln\frac{r}{a}$$"""

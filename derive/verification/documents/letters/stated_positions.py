@@ -26,7 +26,7 @@ from derive.verification.documents.letters.energies import (
     stated_values,
 )
 from derive.verification.documents.letters.letters import KINDS, Letters
-from derive.verification.documents.statements import POINT, DocumentFormula, definitions
+from derive.verification.documents.statements import POINT, WORD, DocumentFormula, definitions
 
 #: Names of Cartesian components.
 AXES = ("x", "y", "z")
@@ -108,9 +108,13 @@ def _points(
     columns: dict[str, tuple[sp.Expr, ...]] = {}
     namespace = {**FUNCTIONS, **symbols, "t": TIME}
     moving = {symbols[q] for q in letters.coordinates}
+    stated = {one.subject: one.words for one in formulas}
     for formula in formulas:
         for name, text in definitions(formula):
             if name in known or name in columns or order(name):
+                continue
+            # components in another frame, if the document gives both by each other
+            if any(name in stated.get(one, ()) for one in WORD.findall(text) if one in AXES):
                 continue
             try:
                 value = parse(text, {**namespace, **known})
