@@ -271,3 +271,16 @@ def test_irrational_factors_cancel() -> None:
     assert lowered(pi * a / (pi * b)).cost[0] == 1
     assert lowered(pi * a - pi * a + b).cost[0] == 0
     assert evaluated(lowered(pi * a + pi * b), {"a": 1.5, "b": 2.5}) == [4 * math.pi]
+
+
+@pytest.mark.parametrize("rows", range(1, 6))
+def test_the_cost_of_a_factorisation_is_that_of_its_loops(rows: int) -> None:
+    # L D Lᵀ without square roots: G. H. Golub, C. F. Van Loan, Matrix Computations, § 4.1
+    operations = 0
+    for pivot in range(rows):
+        operations += 1  # its reciprocal
+        for i in range(pivot + 1, rows):
+            operations += 1  # the multiple of the row of the pivot
+            operations += 2 * len(range(i, rows))  # a product and a difference for each entry
+    entries = tuple(range(rows * (rows + 1) // 2))
+    assert op.cost(op.FactorisedOperation(entries, constant=False)) == operations

@@ -1,10 +1,10 @@
-"""Derivatives are those of SymPy, in the same form."""
+"""Derivatives are those of SymPy, in the same form; numbers decide between branches in order."""
 
 import pytest
 import sympy as sp
 
 from derive import load
-from derive.formulas.functions import derivative
+from derive.formulas.functions import decisive_numbers, derivative
 from derive.system.symbols import TIME
 
 x, y = sp.symbols("x y", real=True)
@@ -32,3 +32,8 @@ def test_derivatives_of_systems(name: str) -> None:
     for formula in formulas:
         for symbol in variables:
             assert derivative(formula, symbol) == formula.diff(symbol), (formula, symbol)
+
+
+def test_decisive_numbers_come_after_those_in_their_own_formula() -> None:
+    a, x = sp.symbols("a x", real=True)
+    assert decisive_numbers([sp.Abs(a + sp.sign(x))], {a, x}) == (x, a + sp.sign(x))
