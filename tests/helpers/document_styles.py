@@ -66,6 +66,7 @@ class Style:
     is_chained: bool = False  # L = T - V = ...
     is_aligned: bool = False  # all formulas of a step in one display
     moves_right: bool = False  # the equations have terms on both sides
+    is_rearranged: bool = False  # each formula in an equal form, drawn at random
     language: str = "en"
     is_held_out: bool = False  # not used in development
 
@@ -160,6 +161,11 @@ STYLES: dict[str, Style] = {
         ("positions", "velocities", "kinetic", "potential", "equations", "accelerations"), "rst",
         {"theta": "q", "theta1": "q_1", "theta2": "q_2", "l": "L", "l1": "L_1", "l2": "L_2"},
         energies=("K", "P", r"\mathcal{L}", "H"),
+    ),
+    "rearranged": Style((*BY_STEPS, "accelerations", "energy"), is_rearranged=True),
+    "rearranged_hamilton": Style(
+        ("kinetic", "potential", "momenta", "hamiltonian", "canonical"), "tex", ANGLES_PHI,
+        energies=("K", "U", "L", "H"), is_rearranged=True,
     ),
     "french": Style(
         (*BY_STEPS, "energy"), "tex", {"theta": r"\alpha", "alpha": r"\beta", "l": r"\ell"},

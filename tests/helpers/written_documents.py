@@ -36,6 +36,8 @@ ABBREVIATIONS = {
     "total": ("M", "m1 + m2"),
     "difference": (r"\Delta", "theta1 - theta2"),
 }
+#: Equal forms of a formula.
+FORMS = (sp.expand, sp.factor, sp.together, sp.trigsimp, sp.simplify, lambda one: one)
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,7 @@ def written_document(style: Style, seed: int) -> WrittenDocument | None:
     """A document in a style about a random system; None if the style does not suit it."""
     pick = Random(seed)
     family = FAMILIES[seed % len(FAMILIES)]
-    writer = _Writer(style, Derivation(treated_system(family, pick, style.shift)))
+    writer = _Writer(style, Derivation(treated_system(family, pick, style.shift)), seed)
     letters = [*writer.letters.values(), *style.energies]
     steps = [(step, tuple(getattr(writer, step)())) for step in style.steps]
     steps = [(step, found) for step, found in steps if found]
@@ -127,8 +129,9 @@ def written_document(style: Style, seed: int) -> WrittenDocument | None:
 class _Writer:
     """The formulas of each step."""
 
-    def __init__(self, style: Style, derivation: Derivation) -> None:
+    def __init__(self, style: Style, derivation: Derivation, seed: int) -> None:
         self._style, self.d, self._system = style, derivation, derivation.system
+        self._forms = Random(seed)
         table = {**COMMON, **style.letters}
         own = (*self._system.q, *self._system.params)
         self.letters = {one: table.get(one.name, one.name) for one in own}
@@ -250,6 +253,9 @@ class _Writer:
         return rf"\dot{{{letter}}}"
 
     def _latex(self, value: sp.Expr, short: bool = True) -> str:
+        if self._style.is_rearranged:
+            form = self._forms.choice(FORMS)(value)
+            value = form if sp.count_ops(form) <= 2 * sp.count_ops(value) else value
         if short:
             for whole, letter in self._short.items():
                 value = value.subs(whole, letter)
