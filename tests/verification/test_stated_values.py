@@ -270,6 +270,19 @@ def test_a_plain_letter_of_velocities_is_a_lagrangian_too(
     assert judged(tmp_path, text).formulas[-1].verdict == verdict
 
 
+TURNING_FRAME = r"""
+In a frame that turns at $\omega$,
+$$x' = x\cos\omega t + y\sin\omega t, \qquad y' = -x\sin\omega t + y\cos\omega t$$
+and we leave the primes out:
+$$m\ddot x = 2 m\omega\dot y + m\omega^2 x$$
+$$m\ddot y = -2 m\omega\dot x + m\omega^2 y$$
+"""
+
+
+def test_coordinates_of_another_frame_are_no_positions(tmp_path: Path) -> None:
+    assert wrong(tmp_path, TURNING_FRAME) == []
+
+
 THREAD = r"""
 A pendulum has $$x = l\sin\phi, \qquad y = -l\cos\phi$$
 Two masses on a thread have $$x + y = \text{const}, \qquad \dot y = -\dot x$$

@@ -113,8 +113,9 @@ def _points(
         for name, text in definitions(formula):
             if name in known or name in columns or order(name):
                 continue
-            # components in another frame, if the document gives both by each other
-            if any(name in stated.get(one, ()) for one in WORD.findall(text) if one in AXES):
+            # components in another frame, by a prime or if the document gives both by each other
+            axes = [one for one in WORD.findall(text) if one in AXES]
+            if any(name == f"{one}_prime" or name in stated.get(one, ()) for one in axes):
                 continue
             try:
                 value = parse(text, {**namespace, **known})
