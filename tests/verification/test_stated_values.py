@@ -409,6 +409,22 @@ def test_the_constant_of_an_energy_is_that_of_the_document(tmp_path: Path) -> No
     assert one.latex.startswith("E =")
 
 
+ONE_SPRING_LESS = r"""
+$$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2$$
+$$V = \frac12 k_1 x_1^2 + \frac12 k_2 (x_2 - x_1)^2$$
+$$m_1\ddot x_1 + (b_1 + b_2)\dot x_1 - b_2\dot x_2 + (k_1 + k_2) x_1 - k_2 x_2 = 0$$
+$$m_2\ddot x_2 + b_2\dot x_2 - b_2\dot x_1 + k_2 x_2 - k_2 x_1 = 0$$
+$$M = \begin{bmatrix} m_1 & 0 \\ 0 & m_2 \end{bmatrix}$$
+$$K = \begin{bmatrix} k_1 + k_2 & -k_2 \\ -k_2 & k_2 \end{bmatrix}$$
+With three springs, $$G(s) = \frac{b s + k_2}{m_1 m_2 s^4 + k_1 k_2 + k_1 k_3 + k_2 k_3}$$
+With one mass, $$20\ddot x + 5\dot x + 16 x = f(t)$$
+"""
+
+
+def test_a_letter_of_formulas_that_are_not_judged_is_no_parameter(tmp_path: Path) -> None:
+    assert wrong(tmp_path, ONE_SPRING_LESS) == []
+
+
 TWO_CASES = r"""
 With a rigid rod, $r = L$,
 $$K = \frac12 m L^2\dot\theta^2$$

@@ -3,7 +3,7 @@
 No right formula is to be called wrong: a verdict without enough evidence becomes `context`.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -179,21 +179,22 @@ def weighed(
     it, in which case neither these nor what holds with them alone is verified; nor if one of
     several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
     it is the rate of a position that a system of energies or equations does not contain. A system
-    that is known from elsewhere must have a letter for each of its parameters, unless that is a
-    factor of the Lagrangian, such as the mass of a single body, and the accelerations as written
-    have no potential of their own; and no more formulas with more than one wrong term, or slips if
-    one is in an energy, than half of those that hold, of which there must be one. With a partial
-    search for it, none is wrong. A formula whose dimensions contradict those of all others needs no
-    more evidence if one term is wrong.
+    that is known from elsewhere must have a letter for each of its parameters in formulas that are
+    judged, unless that is a factor of the Lagrangian, such as the mass of a single body, and the
+    accelerations as written have no potential of their own; and no more formulas with more than one
+    wrong term, or slips if one is in an energy, than half of those that hold, of which there must
+    be one. With a partial search for it, none is wrong. A formula whose dimensions contradict those
+    of all others needs no more evidence if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
     misfits = sum(FOLLOWS not in one.note and len(one.corrections) != 1 for one in wrong)
     holding = sum(one.verdict.verdict in ("verified", "equivalent") for _, one in results)
     is_known = candidate.basis == "catalogue" and not is_stated
-    has_all = candidate.lacking == 0 or (
+    lacking = {*_lacking(results, candidate)}
+    has_all = not lacking or (
         misfits == 0 < holding
-        and {*_unnamed(candidate)} == {*_scales(candidate)}
+        and lacking == {*_scales(candidate, lacking)}
         and not _is_conservative([formula for formula, _ in results])
     )
     # an energy and an equation that contradict the system alike speak against the system
@@ -357,18 +358,24 @@ def _adds_letters(
     )
 
 
-def _unnamed(candidate: SystemCandidate) -> Iterator[str]:
-    """The parameters of a system that have neither a letter nor a number."""
-    known = {*candidate.parameters, *candidate.numbers}
+def _lacking(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[str]:
+    """The parameters of a system that have no number, and no letter in a formula that is judged.
+
+    A letter of other formulas alone can be one of another system.
+    """
+    judged = {w for formula, one in results if one.verdict.verdict != "context"
+              for w in formula.words}  # fmt: skip
+    known = {name for name, letter in candidate.parameters.items() if letter in judged}
+    known |= {*candidate.numbers}
     return (p.symbol.name for p in candidate.system.parameters if p.symbol.name not in known)
 
 
-def _scales(candidate: SystemCandidate) -> Iterator[str]:
+def _scales(candidate: SystemCandidate, names: Collection[str]) -> Iterator[str]:
     """Those that drop out of the equations of motion: factors of the Lagrangian."""
     system = candidate.system
     if any(system.applied) or candidate.forces or candidate.friction:
         return
-    for name in _unnamed(candidate):
+    for name in names:
         symbol = next(p.symbol for p in system.parameters if p.symbol.name == name)
         if not sp.expand(derivation(system).lagrangian / symbol).has(symbol):
             yield name
