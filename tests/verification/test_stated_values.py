@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
 from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.implied_energies import potential_of
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 
 CORRECT = {"verified", "definition"}
@@ -121,6 +123,12 @@ $$l\ddot\phi = a\gamma^2\sin(\gamma t)\cos\phi - g\sin\phi$$
 def test_kinetic_energies_can_have_terms_linear_in_velocities(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, SWUNG)} <= CORRECT
     assert verdicts(tmp_path, SWUNG.replace("= a", "= -a"))[-1] == "wrong"
+
+
+def test_a_limit_is_a_value_at_one_time(tmp_path: Path) -> None:
+    text = r"""$$m\ddot x + 5 m\dot x + 6 m x = F$$
+    $$x(t) = \frac16 - \frac12 e^{-2t} + \frac13 e^{-3t}$$ $$x(\infty) = \frac16$$"""
+    assert judged(tmp_path, text).formulas[-1].note == "it states a value at one time"
 
 
 def test_an_energy_at_a_place_is_a_value(tmp_path: Path) -> None:
@@ -438,3 +446,10 @@ $$r\ddot\theta + 2\dot r\dot\theta + g\sin\theta = 0$$
 
 def test_an_energy_that_is_stated_again_is_that_of_another_case(tmp_path: Path) -> None:
     assert wrong(tmp_path, TWO_CASES) == []
+
+
+def test_forces_have_a_potential_whatever_factors_their_quotients_have_in_common() -> None:
+    x, a = sp.symbols("x a")
+    factor = a**2 * x**2 + 1
+    slope = sp.expand(sp.expand((x + x**2) * factor) / sp.expand(factor))
+    assert potential_of([slope], [x]) == x**2 / 2 + x**3 / 3

@@ -100,6 +100,11 @@ def potential_of(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr
     """A function with a gradient; None if there is none, or it is not found quickly."""
     rates = {s for one in q for s in (velocity(one), acceleration(one))}
     V = sp.S.Zero
+    # of quotients with common factors, integrals take many times as long
+    gradient = [
+        slope if slope.is_polynomial(*q) or not slope.is_rational_function(*q) else sp.cancel(slope)
+        for slope in gradient
+    ]
     for one, slope in zip(q, gradient, strict=True):
         rest = sp.expand(slope - V.diff(one))
         if rest.free_symbols & rates or sp.count_ops(rest) > MAX_OPERATIONS:
