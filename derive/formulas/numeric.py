@@ -128,21 +128,23 @@ def solved(
 ) -> tuple[sp.Expr, ...]:
     """Solve linear equations at a state; the coefficients are expressions.
 
-    The errors are those of the coefficients, carried through the inverse (Higham, § 7.1). Values
+    Their errors are those of the residuals, carried through the inverse (Higham, § 7.1). Values
     that do not exceed their errors are zero.
     """
     rows = [[evaluator(entry) for entry in matrix.row(i)] for i in range(matrix.rows)]
     right = [evaluator(entry) for entry in column]
     coefficients = mp.matrix([[entry.number for entry in row] for row in rows])
     solution = mp.lu_solve(coefficients, mp.matrix([entry.number for entry in right]))
+    opposite = [Approximation(-entry) for entry in solution]
     residuals = [
-        _sum([side, *(_product([a, Approximation(x)]) for a, x in zip(row, solution, strict=True))])
+        _sum([side, *(_product(pair) for pair in zip(row, opposite, strict=True))])
         for row, side in zip(rows, right, strict=True)
     ]
     inverse = coefficients**-1
     values = []
     for k, entry in enumerate(solution):
-        errors = (abs(inverse[k, i]) * one.error for i, one in enumerate(residuals))
+        sizes = (abs(one.number) + one.error for one in residuals)
+        errors = (abs(inverse[k, i]) * size for i, size in enumerate(sizes))
         values.append(Approximation(entry, 2 * mp.fsum(errors)))
     return tuple(sp.S.Zero if one.is_zero else one.rounded() for one in values)
 

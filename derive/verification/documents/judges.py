@@ -120,8 +120,7 @@ class Judges:
         forces = {name for name in subjects if name.partition("_")[0] in KINDS["force"]}
         if any(map(GENERALIZED_FORCE.fullmatch, subjects)):
             forces |= {name for name, _ in candidate.forces}
-        own = sorted(forces & {*formula.words})
-        if own and formula.subject not in self.letters.quantities:  # no energy has a force
+        if own := sorted(forces & {*formula.words}):
             rest = without_unknown_terms(formula, own)
             if rest is not None:
                 note = f"it holds but for {', '.join(own)}, which the system does not contain"

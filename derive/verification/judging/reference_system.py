@@ -149,6 +149,13 @@ class ReferenceSystem:
         note = self.context.agreement(difference)
         return self.motions.agreement(difference) if note is None else note
 
+    def constancy(self, value: sp.Expr) -> str | None:
+        """A note if a value is the same at all states and times, otherwise None."""
+        system = self.derivation.system
+        value = value.xreplace(self.momenta)
+        slopes = (value.diff(one) for one in (*system.q, *system.qdot, TIME))
+        return self.context.agreement(*slopes)
+
     def _moved(self) -> Iterator[State]:
         """The states of motions near the generic ones, and those near others that exist."""
         for index, state in enumerate(self.context.states):

@@ -83,9 +83,8 @@ def systems_of_energies(
         applied = stated_forces(formulas, values, moving)
         sums = [sp.Add(*pair) for pair in zip(friction, applied, strict=True)]
         # stated forces can contain the friction, or be those of another case
-        for forces in dict.fromkeys(
-            map(tuple, (sums, applied if any(applied) else sums, friction))
-        ):
+        loads = (sums, applied, friction) if any(applied) else (friction,)
+        for forces in dict.fromkeys(map(tuple, loads)):
             is_kinetic = matrix.shape[0] == len(moving) or all(
                 sp.expand(one - T) == 0 for one, _ in kinetic
             )

@@ -84,10 +84,10 @@ class Abbreviations:
 
     def _are_equivalent(self, own: sp.Expr, value: sp.Expr) -> bool:
         """Whether values are equal, or differ by a constant, as lengths in an energy can."""
-        system = self._namespace.derivation.system
-        rates = [(own - value).diff(one) for one in (*system.q, *system.qdot, TIME)]
-        is_moving = depends_on(own, (*system.q, *system.qdot, TIME))
-        return self._are_equal([own, value]) or (is_moving and self._are_equal([*rates, sp.S.Zero]))
+        system, model = self._namespace.derivation.system, self._namespace.model
+        if depends_on(own, (*system.q, *system.qdot, TIME)):
+            return model.constancy(own - value) is not None
+        return model.context.is_zero(own - value)
 
 
 #: Names of effective potentials, which contain the energies of conserved momenta.
@@ -190,10 +190,7 @@ class PartialEnergies:
 
     def _is_constant(self, difference: sp.Expr) -> bool:
         """Whether a difference does not depend on the state."""
-        system = self._namespace.derivation.system
         try:
-            return all(
-                self._model.context.is_zero(difference.diff(s)) for s in (*system.q, *system.qdot)
-            )
+            return self._model.constancy(difference) is not None
         except (ExpressionError, NotImplementedError):
             return False

@@ -122,9 +122,7 @@ class Roles:
         self, side: FormulaText, subject: str, left: sp.Expr, right: sp.Expr
     ) -> SideVerdict:
         """The verdict on an energy that must be that of the document up to a constant."""
-        system = self._namespace.derivation.system
-        rates = [(right - left).diff(s) for s in (*system.q, *system.qdot, TIME)]
-        if (note := self._model.context.agreement(*rates)) is None:
+        if (note := self._model.constancy(right - left)) is None:
             return self.value(side, subject, left)
         note = joined("it differs by a constant", note)
         return SideVerdict(Verdict("", "equivalent", side.text, note=note), ((0, side),), "energy")
