@@ -453,3 +453,15 @@ def test_forces_have_a_potential_whatever_factors_their_quotients_have_in_common
     factor = a**2 * x**2 + 1
     slope = sp.expand(sp.expand((x + x**2) * factor) / sp.expand(factor))
     assert potential_of([slope], [x]) == x**2 / 2 + x**3 / 3
+
+
+def test_a_function_of_coordinates_alone_is_no_momentum(tmp_path: Path) -> None:
+    results = verdicts(tmp_path, r"""
+$$ x = R \sin q, \qquad y = -R \cos q $$
+$$ K = \frac{1}{2} g^2 m \dot q^2 $$
+$$ P = -\frac{1}{2} m \Omega^2 R^2 \sin^2 q - m g R \cos q $$
+$$ m R^2 \ddot q - m \Omega^2 R^2 \sin q \cos q + m g R \sin q = 0 $$
+$$ \ddot q = \Omega^2 \sin q \cos q - \frac{g}{R} \sin q $$
+""")  # fmt: skip
+    assert results[3] != "wrong"
+    assert results[4:] == ["verified", "verified"]

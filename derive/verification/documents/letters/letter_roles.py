@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice, permutations
 
 import sympy as sp
@@ -101,14 +101,15 @@ def letters_of(
         and not GENERIC.match(one)
         and not one.endswith("_column")
     ]
-    quantities |= _partners(formulas, quantities, moving)
+    resting_functions = _resting_functions(formulas, moving)
+    quantities |= _partners(quantities, resting_functions)
     columns = _columns(formulas, moving, matrices)
     generic = _generic(formulas, derivatives) | columns
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
     for one in stems:
         coordinate = _coordinate(one, moving) if orders[one] < 2 else None
-        if one not in quantities and coordinate is not None:
+        if one not in {*quantities, *resting_functions} and coordinate is not None:
             momenta[one] = coordinate
     quantities |= _routhians(formulas, momenta)
     # c of c_1 = c_2 = c is no further parameter
@@ -315,22 +316,25 @@ def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
     return result
 
 
-def _partners(
-    formulas: Iterable[DocumentFormula], quantities: Mapping[str, str], moving: Sequence[str]
-) -> dict[str, str]:
+def _resting_functions(formulas: Iterable[DocumentFormula], moving: Sequence[str]) -> set[str]:
+    """Names P and Pi of functions of coordinates alone, which no momentum is."""
+    words = {name: {word for one in formulas if one.subject == name
+                    for side in one.sides[1:] for word in _words(side.text)}
+             for name in PARTNERS["K"]}  # fmt: skip
+    return {
+        name
+        for name, own in words.items()
+        if own & {*moving} and not any(order(word) or MOMENTUM.match(word) for word in own)
+    }
+
+
+def _partners(quantities: Mapping[str, str], functions: Collection[str]) -> dict[str, str]:
     """Potential energies P or Pi beside kinetic ones: functions of coordinates alone."""
     if "potential_energy" in quantities.values():
         return {}
     names = {partner for name, kind in quantities.items() if kind == "kinetic_energy"
              for partner in PARTNERS.get(name, ("Pi",))}  # fmt: skip
-    words = {name: {word for one in formulas if one.subject == name
-                    for side in one.sides[1:] for word in _words(side.text)}
-             for name in names}  # fmt: skip
-    return {
-        name: "potential_energy"
-        for name, own in words.items()
-        if own & {*moving} and not any(order(word) or MOMENTUM.match(word) for word in own)
-    }
+    return dict.fromkeys(names & {*functions}, "potential_energy")
 
 
 def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
