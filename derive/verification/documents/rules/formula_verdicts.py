@@ -171,8 +171,11 @@ class Judge:
 
     def _is_equation_without(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
         """Whether a formula is an equation of motion but for terms with unknown letters."""
-        system = self._namespace.derivation.system
-        if {*unknown} & {*self._namespace.letters.multipliers}:  # all reactions would be correct
+        system, letters = self._namespace.derivation.system, self._namespace.letters
+        if {*unknown} & {*letters.multipliers}:  # all reactions would be correct
+            return False
+        energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
+        if any({*unknown} & {*one.words} for one in energies):  # of which they are no loads
             return False
         known = without_unknown_terms(formula, unknown)
         if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
