@@ -205,3 +205,66 @@ $$L = \frac12 m l^2\dot\theta^2 + m g l\cos\theta$$ $$\ddot\theta = -\frac gl\si
     wrong = judged(tmp_path, text.replace(r"\ddot y = -g", r"\ddot y = -2 g"))[3]
     other = judged(tmp_path, text.replace(r"-\frac gl", r"\frac gl"))[-1]
     assert (wrong.verdict, other.verdict) == ("wrong", "wrong")
+
+
+SAME_COORDINATE = r"""
+{first}
+$$ L = \frac{1}{2} m \dot x^2 - \frac{1}{2} k x^2 $$
+$$ m \ddot x + k x = 0 $$
+{second}
+$$ L = \frac{1}{2} m \dot x^2 - \frac{1}{2} k x^2 - \frac{1}{4} b x^4 $$
+$$ p = m \dot x $$
+$$ H = \frac{p^2}{2 m} + \frac{1}{2} k x^2 + \frac{1}{4} b x^4 $$
+$$ m \ddot x + k x + b x^3 = 0 $$
+"""
+HEADINGS = [
+    {"first": "## Harmonic oscillator", "second": "## Anharmonic oscillator"},
+    {"first": "A mass on a spring has", "second": "A harder spring adds a term:"},
+]
+
+
+@pytest.mark.parametrize("headings", HEADINGS)
+def test_systems_can_have_the_same_coordinate(headings: dict[str, str], tmp_path: Path) -> None:
+    text = SAME_COORDINATE
+    for name, heading in headings.items():
+        text = text.replace("{" + name + "}", heading)
+    verdicts = [one.verdict for one in judged(tmp_path, text)]
+    assert verdicts == ["verified", "verified", "definition", "verified", "verified", "verified"]
+    wrong = judged(tmp_path, text.replace("b x^3", "b x^2"))[5]
+    assert (wrong.verdict, wrong.wrong_term) == ("wrong", "b x^2")
+
+
+def test_energies_after_equations_can_be_those_of_another_system(tmp_path: Path) -> None:
+    verdicts = judged(tmp_path, r"""
+## Spring
+$$ T = \frac{1}{2} m (\dot x^2 + \dot y^2), \qquad V = \frac{1}{2} k (x^2 + y^2) $$
+$$ m \ddot x = -k x, \qquad m \ddot y = -k y $$
+## Gravity
+$$ L = \frac{1}{2} m (\dot x^2 + \dot y^2) - m g y $$
+$$ m \ddot x = 0, \qquad m (\ddot y + g) = 0 $$
+""")  # fmt: skip
+    assert {one.verdict for one in verdicts} <= {"definition", "verified"}
+
+
+def test_a_simplified_lagrangian_with_a_slip_begins_no_other_system(tmp_path: Path) -> None:
+    verdicts = judged(tmp_path, r"""
+## Energies
+$$ T = \frac{1}{2} m l^2 \dot\theta^2, \qquad V = -m g l \cos\theta $$
+$$ L = \frac{1}{2} m l^2 \dot\theta^2 + m g l \cos\theta $$
+$$ \ddot\theta = -\frac{g}{l} \sin\theta $$
+## In units of the mass
+$$ L = m \left(\frac{1}{2} l^2 \dot\theta^2 - g l \cos\theta\right) $$
+$$ l \ddot\theta + g \sin\theta = 0 $$
+""")  # fmt: skip
+    assert [one.verdict for one in verdicts].index("wrong") == 4
+    assert [one.verdict for one in verdicts].count("verified") == 5
+
+
+def test_a_letter_of_an_energy_is_no_applied_force(tmp_path: Path) -> None:
+    verdicts = judged(tmp_path, r"""
+$$ L = \frac{1}{2} m \dot x^2 - m g x $$
+$$ m \ddot x = - m g $$
+$$ L = \frac{1}{2} m \dot x^2 + \frac{1}{2} a x^2 - \frac{1}{4} b x^4 $$
+$$ m \ddot x + m g - a x + b x^2 = 0 $$
+""")  # fmt: skip
+    assert verdicts[-1].verdict == "context"

@@ -31,7 +31,12 @@ from derive.verification.documents.letters.letter_forms import (
 )
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.letters.subjects import implied_rates, subjects
+from derive.verification.documents.letters.subjects import (
+    Formulas,
+    implied_rates,
+    restated_subjects,
+    subjects,
+)
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
     Alternative,
@@ -42,7 +47,7 @@ from derive.verification.documents.rules.consequences import of_lost_dots, weigh
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
 from derive.verification.documents.rules.identities import Identities
-from derive.verification.documents.rules.side_verdict import SideVerdict
+from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
 from derive.verification.documents.statements import (
     IMPLIED,
     DocumentFormula,
@@ -79,10 +84,18 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     """Judge every formula of a document.
 
     A document can treat several systems: another is sought for the formulas with letters that
-    have no meaning in those before, then for such below each heading.
+    have no meaning in those before, then for such below each heading. Where formulas do not hold,
+    energies that are stated anew can be those of other systems.
     """
     occurrences, unreadable = _read(document)
     result = _judge(document, hints, occurrences, unreadable)
+    if not (hints or all(one.verdict in CORRECT for one in result.formulas)):
+        statements = implied_rates(translated(occurrences))
+        parts = restated_subjects(document.text, statements)
+        if len(parts) > len(subjects(document.text, statements)):
+            other = _judge(document, hints, occurrences, unreadable, parts)
+            if _holding(other) > _holding(result) and len(_wrong(other)) <= len(_wrong(result)):
+                result = other
     for variant, name in VARIANTS:
         wrong = _wrong(result)
         if wrong and (same := with_one_letter(occurrences, variant, name)):
@@ -91,6 +104,11 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
                 note = f"{variant} and {name} are taken for one letter, with which more holds"
                 result = replace(other, notes=(*other.notes, note))
     return result
+
+
+def _holding(verdicts: DocumentVerdicts) -> int:
+    """The number of formulas that hold."""
+    return sum(one.verdict in CORRECT for one in verdicts.formulas)
 
 
 def _wrong(verdicts: DocumentVerdicts) -> set[Span]:
@@ -103,8 +121,9 @@ def _judge(
     hints: Hints | None,
     occurrences: Sequence[Occurrence],
     unreadable: Sequence[FormulaVerdict],
+    parts: Sequence[Formulas] = (),
 ) -> DocumentVerdicts:
-    """Verdicts on the statements of a document."""
+    """Verdicts on the statements of a document, with its subjects unless given as `parts`."""
     judged = [*unreadable]
     statements = implied_rates(translated(occurrences))
     judged += [_plain(place, "context", note) for place, note in statements.failures]
@@ -113,7 +132,7 @@ def _judge(
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
     work = Work()
-    waiting = subjects(document.text, statements)
+    waiting = [*parts] or subjects(document.text, statements)
     while waiting:
         remaining, count, moving = waiting.pop(0), 0, set[str]()
         while remaining and count < (1 if hints else MAX_SYSTEMS):

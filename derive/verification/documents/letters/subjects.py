@@ -8,7 +8,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, takewhile
+from itertools import accumulate, chain, takewhile
 
 from derive.reading.document import below_each
 from derive.reading.latex.tree import Statement
@@ -31,6 +31,8 @@ ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|
 #: A relation of two coordinates.
 RELATION = re.compile(r"(\w+) \+ (\w+) = (\w+)")
 SPEEDS, PLACES = ("v", "u"), ("s", "x", "y", "z", "X", "Y")
+#: Energies from which equations of motion follow.
+STATING = ("kinetic_energy", "potential_energy", "lagrangian")
 
 Formulas = tuple[DocumentFormula, ...]
 
@@ -40,8 +42,52 @@ def subjects(text: str, statements: Translated) -> list[Formulas]:
 
     Those before a special case, such as m_1 = m_2 = m, are a subject of their own as well.
     """
-    parts = [case for part in _examples(text, statements) for case in _cases(part)]
+    return _with_cases(_examples(text, statements))
+
+
+def restated_subjects(text: str, statements: Translated) -> list[Formulas]:
+    """The formulas of each subject if another one begins where an energy is stated anew.
+
+    That is after an equation of motion or, by another value, below another heading. What is below
+    the first heading after the equation belongs to it, or positions just before.
+    """
+    letters = letters_of(statements.formulas, statements.derivatives)
+    parts = [
+        own
+        for part in _examples(text, statements)
+        for own in _divided_at_energies(text, part, letters)
+    ]
+    return _with_cases(parts)
+
+
+def _with_cases(examples: Iterable[Formulas]) -> list[Formulas]:
+    """The formulas of each case of examples, and those before special cases."""
+    parts = [case for part in examples for case in _cases(part)]
     return [one for part in parts for one in (*_before_equalities(part), part)]
+
+
+def _divided_at_energies(text: str, formulas: Formulas, letters: Letters) -> Iterator[Formulas]:
+    """Yield the formulas before and after each energy that is stated anew."""
+    sections = below_each(text, formulas, lambda one: one.occurrence.start)
+    headings = [*accumulate(map(len, sections))]
+    rates = {f"{name}_dot" for name in letters.momenta}
+    start, equation, known = 0, -1, dict[str, str]()
+    for number, formula in enumerate(formulas):
+        stated = formula.sides[-1].text
+        if kind := letters.quantities.get(formula.subject):
+            begins = [k for k in headings if max(start, equation) < k <= number]
+            is_other = known.get(formula.subject, stated) != stated
+            is_after = equation >= start and (is_other or kind in STATING)
+            if is_after or (is_other and begins):
+                before = formulas[start:number][::-1]
+                places = [*takewhile(lambda one: POINT.match(one.subject), before)]
+                first = begins[0] if begins else number - len(places)
+                yield formulas[start:first]
+                start, known = first, {}
+            known[formula.subject] = stated
+        if formula.subject in rates or any(order(word) == 2 for word in formula.words):
+            equation = number
+    yield formulas[start:]
 
 
 def _before_equalities(formulas: Formulas) -> Iterator[Formulas]:
