@@ -268,3 +268,13 @@ $$ L = \frac{1}{2} m \dot x^2 + \frac{1}{2} a x^2 - \frac{1}{4} b x^4 $$
 $$ m \ddot x + m g - a x + b x^2 = 0 $$
 """)  # fmt: skip
     assert verdicts[-1].verdict == "context"
+
+
+def test_an_acceleration_of_zero_is_an_equation_of_a_free_motion(tmp_path: Path) -> None:
+    verdicts = judged(tmp_path, r"""
+$$ L = \frac{1}{2} m (\dot x^2 + \dot y^2) - m g y $$
+$$ \ddot x = 0, \qquad \ddot y = - g $$
+At rest, it would be
+$$ \ddot y = 0 $$
+""")  # fmt: skip
+    assert [one.verdict for one in verdicts][1:] == ["verified", "verified", "context"]

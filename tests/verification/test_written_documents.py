@@ -3,14 +3,24 @@
 from pathlib import Path
 
 import pytest
-from document_campaign import Outcome, outcome, outcomes, random_slip, table
+from document_campaign import CORRECT, Outcome, outcome, outcomes, random_slip, table
 from document_styles import STYLES
 from recording import Record
 from written_documents import written_document
 
+from derive.verification.source_files import judge_file
+from solvers.runge_kutta.order_conditions import order
+
 DEVELOPED = [name for name, style in STYLES.items() if not style.is_held_out]
 #: Documents of an energy and its equations, of which often nothing decides which is wrong.
 UNDECIDED = ("mechanics_exam",)
+#: Styles in Markdown that state no positions, which would begin another case.
+BY_ENERGIES = [
+    name for name in DEVELOPED
+    if STYLES[name].markup == "md" and "positions" not in STYLES[name].steps
+]  # fmt: skip
+#: Seeds of systems with the same coordinates: an angle, a place, a distance with an angle.
+SAME_COORDINATES = [(0, 6), (1, 6), (0, 1), (5, 16), (7, 15), (7, 19)]
 #: Styles and systems of documents that are judged in less than a second, each with a slip.
 QUICK = {
     "lecture": 0, "notes": 1, "upright": 4, "downwards": 5, "canonical": 6, "robotics": 20,
@@ -32,6 +42,21 @@ def test_the_slip_is_found_and_no_right_formula_is_accused(style: str, tmp_path:
     numbers = table(results)
     assert numbers["found"] >= 65 or style in UNDECIDED
     assert numbers["judged"] >= 75
+
+
+@pytest.mark.long("other pairs", keep=1)
+@pytest.mark.parametrize("seeds", SAME_COORDINATES)
+@pytest.mark.parametrize("style", BY_ENERGIES)
+def test_two_right_documents_in_one_file_are_not_accused(
+    style: str, seeds: tuple[int, int], tmp_path: Path
+) -> None:
+    pair = [written_document(STYLES[style], seed) for seed in seeds]
+    parts = [f"## System {k}\n\n{one.text()}" for k, one in enumerate(pair, 1) if one]
+    path = tmp_path / "document.md"
+    path.write_text("\n\n".join(parts), encoding="utf-8")
+    formulas = judge_file(str(path), order)[0].formulas
+    assert [one.latex for one in formulas if one.verdict == "wrong"] == []
+    assert sum(one.verdict in CORRECT for one in formulas) >= 0.75 * len(formulas)
 
 
 @pytest.mark.campaign

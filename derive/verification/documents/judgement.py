@@ -92,7 +92,7 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     if not (hints or all(one.verdict in CORRECT for one in result.formulas)):
         statements = implied_rates(translated(occurrences))
         parts = restated_subjects(document.text, statements)
-        if len(parts) > len(subjects(document.text, statements)):
+        if parts != subjects(document.text, statements):
             other = _judge(document, hints, occurrences, unreadable, parts)
             if _holding(other) > _holding(result) and len(_wrong(other)) <= len(_wrong(result)):
                 result = other

@@ -49,7 +49,8 @@ def restated_subjects(text: str, statements: Translated) -> list[Formulas]:
     """The formulas of each subject if another one begins where an energy is stated anew.
 
     That is after an equation of motion or, by another value, below another heading. What is below
-    the first heading after the equation belongs to it, or positions just before.
+    the first heading after the equation, or after the energy before, belongs to it, or positions
+    just before.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
     parts = [
@@ -71,11 +72,12 @@ def _divided_at_energies(text: str, formulas: Formulas, letters: Letters) -> Ite
     sections = below_each(text, formulas, lambda one: one.occurrence.start)
     headings = [*accumulate(map(len, sections))]
     rates = {f"{name}_dot" for name in letters.momenta}
-    start, equation, known = 0, -1, dict[str, str]()
+    start, equation, energy, known = 0, -1, -1, dict[str, str]()
     for number, formula in enumerate(formulas):
         stated = formula.sides[-1].text
         if kind := letters.quantities.get(formula.subject):
-            begins = [k for k in headings if max(start, equation) < k <= number]
+            after_energy = [k for k in headings if max(start, energy) < k <= number]
+            begins = [k for k in after_energy if k > equation] or after_energy
             is_other = known.get(formula.subject, stated) != stated
             is_after = equation >= start and (is_other or kind in STATING)
             if is_after or (is_other and begins):
@@ -84,7 +86,7 @@ def _divided_at_energies(text: str, formulas: Formulas, letters: Letters) -> Ite
                 first = begins[0] if begins else number - len(places)
                 yield formulas[start:first]
                 start, known = first, {}
-            known[formula.subject] = stated
+            known[formula.subject], energy = stated, number
         if formula.subject in rates or any(order(word) == 2 for word in formula.words):
             equation = number
     yield formulas[start:]
