@@ -243,3 +243,10 @@ def test_a_rate_that_no_position_has_is_wrong(old: str, new: str, tmp_path: Path
     assert "wrong" not in verdicts(tmp_path, BALL)
     found = verdicts(tmp_path, BALL.replace(old, new))
     assert [k for k, one in enumerate(found) if one == "wrong"] == [4]
+
+
+def test_constraints_can_contain_pi(tmp_path: Path) -> None:
+    text = r"""The angles have the constraint $\theta = \frac{\pi}{2} - \phi$.
+$$L = \frac12 m(a^2\dot\theta^2 + b^2\dot\phi^2) - m g b\cos\phi$$
+$$m a^2\ddot\theta = \lambda$$ $$m b^2\ddot\phi - m g b\sin\phi = \lambda$$"""
+    assert "verified" in verdicts(tmp_path, text)

@@ -150,7 +150,7 @@ class CandidateMotions:
     @property
     def _letters(self) -> dict[str, Value]:
         """Letters of the document at the states, without accelerations."""
-        letters: dict[str, Value] = {"t": self._names["t"]}
+        letters: dict[str, Value] = {name: self._names[name] for name in ("t", "pi")}
         letters |= {p: Jet.of(np.array([[value]])) for p, value in self.parameters.items()}
         for q, place in self.places.items():
             speed = self.speeds[q]
