@@ -250,3 +250,35 @@ def test_constraints_can_contain_pi(tmp_path: Path) -> None:
 $$L = \frac12 m(a^2\dot\theta^2 + b^2\dot\phi^2) - m g b\cos\phi$$
 $$m a^2\ddot\theta = \lambda$$ $$m b^2\ddot\phi - m g b\sin\phi = \lambda$$"""
     assert "verified" in verdicts(tmp_path, text)
+
+
+ROLLING = r"""
+$$J = \frac12 m R^2$$ $$x = R\theta$$
+$$T = \frac12 m\dot x^2 + \frac12 J\dot\theta^2$$ $$U = \frac12 k x^2$$
+$$m\ddot x + \frac23 k x = 0$$ $$\ddot\theta + \frac{2 k}{3 m}\theta = 0$$
+"""
+
+
+def test_a_disc_that_rolls_has_one_coordinate(tmp_path: Path) -> None:
+    # 3/4 m v**2 + k x**2/2 is its energy
+    assert verdicts(tmp_path, ROLLING) == [*["definition"] * 4, *["verified"] * 2]
+    found = verdicts(tmp_path, ROLLING.replace(r"\frac23", r"\frac32"))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [4]
+
+
+BALANCED = r"""
+$$x = R\theta$$ $$x_t = x + l\sin\varphi$$ $$y_t = l\cos\varphi$$ $$L = E_k - E_p$$
+$$E_{k,1} = \frac12 m_b\dot x^2$$ $$E_{k,2} = \frac12 J\dot\theta^2$$
+$$E_{k,3} = \frac12 m_t(\dot x_t^2 + \dot y_t^2)$$ $$E_k = E_{k,1} + E_{k,2} + E_{k,3}$$
+$$E_p = m_t g y_t$$
+$$(m_b + m_t + \frac{J}{R^2})\ddot x
+  + m_t l(\ddot\varphi\cos\varphi - \dot\varphi^2\sin\varphi) = F$$
+$$l\ddot\varphi + \ddot x\cos\varphi - g\sin\varphi = 0$$
+"""
+
+
+def test_positions_of_one_part_do_not_state_the_system(tmp_path: Path) -> None:
+    found = judged(tmp_path, BALANCED).formulas
+    assert [one.verdict for one in found[-2:]] == ["verified"] * 2
+    assert "m_b" not in found[-2].note  # such as that it is an applied force
+    assert verdicts(tmp_path, BALANCED.replace("- g", "+ g"))[-1] == "wrong"

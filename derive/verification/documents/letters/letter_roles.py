@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import islice, permutations
 
 import sympy as sp
@@ -22,6 +23,7 @@ from derive.verification.documents.letters.letters import (
     SQUARES,
     TOTAL,
     Letters,
+    energy_of_part,
     matrices_by_entries,
 )
 from derive.verification.documents.letters.stated_constraints import (
@@ -123,7 +125,8 @@ def letters_of(
         coordinates += [q for i in sorted(indices) if (q := f"q_{i}") not in coordinates]
     # a document can define r by other coordinates, and go on with r alone
     accelerated = tuple(one for one in coordinates if orders.get(one) == 2)
-    coordinates += [one for one in stems if orders[one] == 2 and one in defined]
+    related = _related(formulas, {*quantities}, coordinates)
+    coordinates += [one for one in stems if orders[one] == 2 and one in defined - related]
     known = {*quantities, *defined, *moving, *momenta, "t"}
     parameters = [
         one
@@ -244,7 +247,12 @@ def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
         bool(words)
         and (is_used or has_other)
         and not any(
-            order(word) or word in excluded or _quantity(word) or word[0] in "pv" for word in words
+            order(word)
+            or word in excluded
+            or _quantity(word)
+            or energy_of_part(word)
+            or word[0] in "pv"
+            for word in words
         )
     )
 
@@ -377,6 +385,26 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         if square and others and is_new and not formula.is_special_case:
             defined.add(square[1])
     return defined
+
+
+def _related(
+    formulas: Sequence[DocumentFormula], energies: Collection[str], coordinates: Collection[str]
+) -> set[str]:
+    """Names that a coordinate gives, as x = R*theta does, if energies have the rates of both."""
+    own = [one for one in formulas if one.subject in energies or energy_of_part(one.subject)]
+    rates = {stem(word) for one in own for word in one.words if order(word)}
+    result = set[str]()
+    for formula in formulas:
+        words = _words(formula.sides[-1].text)
+        others = rates & {*words} & {*coordinates} - {formula.subject}
+        if formula.subject in rates and len(others) == 1:
+            symbols = {word: sp.Symbol(word) for word in words}
+            with suppress(ExpressionError, NotImplementedError, AttributeError, TypeError):
+                slope = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS})
+                slope = slope.diff(symbols[next(iter(others))])
+                if slope and not slope.has(symbols[next(iter(others))]):
+                    result.add(formula.subject)
+    return result
 
 
 def _mechanical(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:

@@ -51,7 +51,12 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
         return  # the positions are those of a part of the system
     coordinates = [Coordinate(one, "m", "a coordinate") for one in q]
     stated, values = stated_values(letters, formulas, symbols)
-    energies = [V for _, V, _ in stated_energies(letters, formulas, stated, values)]
+    pairs = [*stated_energies(letters, formulas, stated, values)]
+    others = {velocity(symbols[name]) for name in letters.coordinates if symbols[name] not in q}
+    others |= {symbols[name] for name in letters.of_kind("mass")} - {m.mass for m in masses}
+    if pairs and all(T.has(*others) for T, _, _ in pairs):
+        return  # further parts move
+    energies = [V for _, V, _ in pairs]
     energies += [value for value, _ in stated.get("potential_energy", ())]
     damping = stated_dissipation(letters, formulas, values)
     friction = [-damping.diff(velocity(one)) for one in q]
