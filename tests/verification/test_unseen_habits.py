@@ -266,6 +266,24 @@ def test_a_disc_that_rolls_has_one_coordinate(tmp_path: Path) -> None:
     assert [k for k, one in enumerate(found) if one == "wrong"] == [4]
 
 
+HINGED = r"""
+$$J\ddot\theta = -m g d\sin\theta$$ $$E_c = \frac12 J\dot\theta^2$$ $$h = -d\cos\theta$$
+$$E_p = m g h + \text{cte}$$ $$E_p = -m g d\cos\theta + \text{cte}$$ $$E_c + E_p = \text{cte}$$
+"""
+
+
+def test_constants_of_two_formulas_are_not_the_same(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, HINGED)[3:] == [*["equivalent"] * 2, "verified"]
+    found = verdicts(tmp_path, HINGED.replace("= -m g d\\cos", "= m g d\\cos"))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [4]
+
+
+def test_energies_of_parts_are_stated_up_to_a_constant(tmp_path: Path) -> None:
+    text = r"""$$J\ddot\theta = -m g d\sin\theta$$ $$E_{pp} = -m g d\cos\theta + \text{const}$$
+$$E_{pp} = m g d(1 - \cos\theta)$$ $$E_{pp} = m g d(1 + \cos\theta)$$"""
+    assert verdicts(tmp_path, text) == ["verified", "definition", "equivalent", "wrong"]
+
+
 BALANCED = r"""
 $$x = R\theta$$ $$x_t = x + l\sin\varphi$$ $$y_t = l\cos\varphi$$ $$L = E_k - E_p$$
 $$E_{k,1} = \frac12 m_b\dot x^2$$ $$E_{k,2} = \frac12 J\dot\theta^2$$

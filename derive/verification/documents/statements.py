@@ -17,6 +17,7 @@ from derive.reading.latex.tree import (
     Product,
     Span,
     Statement,
+    Sum,
     Tuple,
     Unreadable,
     has_index,
@@ -39,7 +40,9 @@ POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
-CONSTANT = ("const", "constant", "konst", "konstant", "constante", "costante")
+CONSTANT = re.compile(r"[ck]onst(?:ante?)?|costante|cte|cste?", re.IGNORECASE)
+#: The name of the constant of one sum.
+OWN_CONSTANT = re.compile(rf"(?:{CONSTANT.pattern})_\d+", re.IGNORECASE)
 #: Relations of statements that can hold or not.
 EQUALITIES = ("=", ":=", "~")
 #: The display of statements that are not written.
@@ -166,7 +169,8 @@ def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[Documen
 
 
 def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
-    sides, relations = occurrence.sides, occurrence.relations
+    sides = [_with_own_constants(side, occurrence.start) for side in occurrence.sides]
+    relations = occurrence.relations
     if any(map(_is_at_one_time, sides)):
         raise UntranslatableError("it states a value at one time")
     index = next((one for one in INDICES if has_index(sides, one)), "")
@@ -176,10 +180,24 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
         texts = [translator.text(side) for side in written]
         pairs = [*zip(("=", *relations), texts, strict=True)]
         if len(texts) > 2:
-            pairs = [one for one in pairs if one[1].text not in CONSTANT]
+            pairs = [one for one in pairs if not CONSTANT.fullmatch(one[1].text)]
         yield DocumentFormula(
             occurrence, tuple(text for _, text in pairs), tuple(one for one, _ in pairs[1:]), number
         )
+
+
+def _with_own_constants(side: Node, start: int) -> Node:
+    """The side with a letter for the constant of a sum, as that of an energy, that no other has."""
+    if not isinstance(side, Sum) or len(side.terms) < 2:
+        return side
+    return replace(side, terms=tuple((sign, _own(one, start)) for sign, one in side.terms))
+
+
+def _own(term: Node, start: int) -> Node:
+    """The term; for a constant, a letter with its place as an index."""
+    if isinstance(term, Letter) and CONSTANT.fullmatch(term.identifier):
+        return replace(term, index=str(start + term.span[0]))
+    return term
 
 
 def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:

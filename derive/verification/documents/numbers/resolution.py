@@ -9,7 +9,11 @@ from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import OPERATORS, Letters
 from derive.verification.documents.numbers.candidate_motions import CandidateMotions
 from derive.verification.documents.numbers.numbers import Numbers
-from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.statements import (
+    OWN_CONSTANT,
+    WORD,
+    DocumentFormula,
+)
 from derive.verification.judging.system_names import FACTORS
 
 #: Unknown letters of a formula that are sought at once, and comparisons that must hold.
@@ -36,6 +40,8 @@ def resolved(
         for name in letters.parameters
         if name not in candidate.letters and name in numbers.values
     }
+    for name in filter(OWN_CONSTANT.fullmatch, constants):
+        meanings[name], numbers.values[name] = name, constants[name]
     others = [q for q in letters.coordinates if q not in candidate.coordinates]
     for name in (q + ending for q in others for ending in RATES[:3]):
         numbers.values.pop(name, None)

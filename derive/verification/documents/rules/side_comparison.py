@@ -11,6 +11,7 @@ from derive.formulas.expression import Value
 from derive.formulas.syntax import place, syntax_tree
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.rules.consequences import SUBSTITUTED
 from derive.verification.documents.rules.derived_matrices import has_scaled_rows
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -18,7 +19,7 @@ from derive.verification.documents.rules.matrix_terms import MatrixTerms
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
-from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.statements import OWN_CONSTANT, WORD, DocumentFormula
 from derive.verification.judging.engine import UNDECIDED
 from derive.verification.judging.reference_system import depends_on
 from derive.verification.judging.verdict import Correction
@@ -95,6 +96,8 @@ class SideComparison:
             # it has the value along motions alone
             note = "the multipliers have not the signs and factors of the equations of motion"
             return plain("wrong", formula, note, *self._witness(formula, right, left))
+        if self._is_up_to_a_constant(formula) and self._model.constancy(left - right) is not None:
+            return plain("equivalent", formula, "it differs by a constant")
         small = "it holds for small motions about the origin"
         if is_product:
             return self._scaled(formula, side, left, right)
@@ -115,6 +118,11 @@ class SideComparison:
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             return plain("equivalent", formula, f"it holds for {text}")
         return result
+
+    def _is_up_to_a_constant(self, formula: DocumentFormula) -> bool:
+        """Whether a formula states an energy of a part, or has a constant of its own."""
+        has_constant = any(map(OWN_CONSTANT.fullmatch, formula.words))
+        return has_constant or energy_of_part(formula.subject) is not None
 
     def _is_substituted(self, difference: sp.Expr) -> bool:
         """Whether a difference vanishes by constraints that are integrable."""
