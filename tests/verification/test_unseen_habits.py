@@ -284,6 +284,13 @@ $$E_{pp} = m g d(1 - \cos\theta)$$ $$E_{pp} = m g d(1 + \cos\theta)$$"""
     assert verdicts(tmp_path, text) == ["verified", "definition", "equivalent", "wrong"]
 
 
+def test_a_relation_of_parameters_is_no_mistake(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 (m_1 a^2 + m_2 b^2)\dot\theta^2$$ $$V = (m_1 a - m_2 b) g\sin\theta$$
+$$(m_1 a^2 + m_2 b^2)\ddot\theta + (m_1 a - m_2 b) g\cos\theta = 0$$
+The lever is balanced if $$m_1 a = m_2 b$$"""
+    assert verdicts(tmp_path, text)[2:] == ["verified", "definition"]
+
+
 BALANCED = r"""
 $$x = R\theta$$ $$x_t = x + l\sin\varphi$$ $$y_t = l\cos\varphi$$ $$L = E_k - E_p$$
 $$E_{k,1} = \frac12 m_b\dot x^2$$ $$E_{k,2} = \frac12 J\dot\theta^2$$

@@ -74,12 +74,14 @@ class OtherStatements:
     def relates_parameters(self, formula: DocumentFormula) -> bool:
         """Whether a formula defines a parameter by others, as b = d/2 does: any value is right.
 
-        So is the number of a formula of parameters, as in m*l = 0.025.
+        So is the number of a formula of parameters, as in m*l = 0.025, and a formula of parameters
+        alone, as r_1*n_2 = r_2*n_1.
         """
         names, known = self._namespace.all_names, {*self._namespace.derivation.system.params}
         letters = self._namespace.letters
         values = (names.get(word) for word in formula.words if word not in letters.parameters)
         is_relation = formula.is_value or names.get(formula.subject) in known
+        is_relation |= all(names.get(word) in known for word in formula.words)
         return is_relation and all(
             callable(one) or (isinstance(one, sp.Expr) and one.free_symbols <= known)
             for one in values
