@@ -291,6 +291,16 @@ The lever is balanced if $$m_1 a = m_2 b$$"""
     assert verdicts(tmp_path, text)[2:] == ["verified", "definition"]
 
 
+@pytest.mark.long("none of the known systems fits")
+def test_a_rate_can_have_an_angle_that_moves_elsewhere_as_a_constant(tmp_path: Path) -> None:
+    # the document has one letter for the angle of the cone and, by mistake, for that around it
+    text = r"""$$\tan\theta = \frac dz$$ $$L = T - V$$ $$V = -m g z$$
+$$x = d\cos\varphi = z\tan\theta\cos\varphi$$ $$y = d\sin\varphi = z\tan\theta\sin\varphi$$
+$$z = z$$ $$\dot y = \tan\theta(\dot z\sin\varphi + z\cos\varphi\dot\varphi)$$
+$$\ddot z = \frac{z\tan^2\theta\dot\theta^2 - g}{1 + \tan^2\theta}$$"""
+    assert verdicts(tmp_path, text)[6] == "context"
+
+
 BALANCED = r"""
 $$x = R\theta$$ $$x_t = x + l\sin\varphi$$ $$y_t = l\cos\varphi$$ $$L = E_k - E_p$$
 $$E_{k,1} = \frac12 m_b\dot x^2$$ $$E_{k,2} = \frac12 J\dot\theta^2$$

@@ -289,7 +289,10 @@ def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> Si
 
 
 def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
-    """Whether a formula states the rate of a component of a position that no function has."""
+    """Whether a formula states the rate of a component of a position that no function has.
+
+    Coordinates whose rates it does not contain can be constant there.
+    """
     name = formula.subject.removesuffix("_dot")
     if name == formula.subject or not POINT.match(name) or name in candidate.coordinates:
         return False
@@ -308,7 +311,10 @@ def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
     slopes = [(q, value.diff(v)) for q, v in pairs]
     if any(is_nonzero(slope.diff(v)) for _, slope in slopes for _, v in pairs):
         return True
-    slopes.append((TIME, value.xreplace({v: sp.S.Zero for _, v in pairs})))
+    resting = value.xreplace({v: sp.S.Zero for _, v in pairs})
+    if any(is_nonzero(resting.diff(q)) for q, _ in pairs):  # a term has lost its rate
+        return True
+    slopes = [(q, slope) for q, slope in slopes if slope] + [(TIME, resting)]
     return any(is_nonzero(a.diff(p) - b.diff(q)) for (q, a), (p, b) in combinations(slopes, 2))
 
 
