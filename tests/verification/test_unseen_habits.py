@@ -301,6 +301,24 @@ $$\ddot z = \frac{z\tan^2\theta\dot\theta^2 - g}{1 + \tan^2\theta}$$"""
     assert verdicts(tmp_path, text)[6] == "context"
 
 
+TOP = r"""The moments are $\lambda_1 = \lambda_2$.
+$$L = \frac12\lambda_1(\dot\phi^2\sin^2\theta + \dot\theta^2)
+  + \frac12\lambda_3(\dot\psi + \dot\phi\cos\theta)^2 - M g R\cos\theta$$
+$$\lambda_1\ddot\theta = \lambda_1\dot\phi^2\sin\theta\cos\theta
+  - \lambda_3(\dot\psi + \dot\phi\cos\theta)\dot\phi\sin\theta + M g R\sin\theta$$
+Its tip is at $$x = \sin\theta\cos\phi,\quad y = \sin\theta\sin\phi,\quad z = \cos\theta$$
+"""
+
+
+def test_letters_of_multipliers_can_be_moments_of_inertia(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, TOP)[1:3] == ["definition", "verified"]
+    momentum = (
+        r"$$p_\theta = \lambda_1\dot\theta$$ $$p_\psi = \lambda_3(\dot\psi + \dot\phi\cos\theta)$$"
+    )
+    found = verdicts(tmp_path, TOP.replace("+ M g R\\sin", "- M g R\\sin") + momentum)
+    assert found[1:3] == ["definition", "wrong"]
+
+
 BALANCED = r"""
 $$x = R\theta$$ $$x_t = x + l\sin\varphi$$ $$y_t = l\cos\varphi$$ $$L = E_k - E_p$$
 $$E_{k,1} = \frac12 m_b\dot x^2$$ $$E_{k,2} = \frac12 J\dot\theta^2$$

@@ -137,9 +137,10 @@ def letters_of(
     used = {*abbreviations, *matrices_by_entries(stems)}
     parameters = [one for one in parameters if one not in used]
     ordered, *others = _orders(formulas, coordinates, stems)
-    multipliers = multipliers_of(stems)
+    is_inertia = any(_is_inertial(name, formulas) for name in multipliers_of(stems))
+    multipliers = () if is_inertia else multipliers_of(stems)
     constraints = stated_constraints(formulas, coordinates, parameters, multipliers, derivatives)
-    if not constraints:  # lambda = k/m defines another quantity
+    if multipliers and not constraints:  # lambda = k/m defines another quantity
         multipliers = multipliers_of(parameters)
     return Letters(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
@@ -289,6 +290,19 @@ def _is_odd(text: str, rates: set[str]) -> bool:
     except (ExpressionError, NotImplementedError, AttributeError, TypeError, ValueError):
         return False
     return bool(back) and all(one.is_number for one in values) and abs(sum(values)) < 1e-20
+
+
+def _is_inertial(name: str, formulas: Iterable[DocumentFormula]) -> bool:
+    """Whether a letter is a factor of products of velocities, as no multiplier of a force is."""
+    for text in (side.text for one in formulas if name in one.words for side in one.sides):
+        symbols = {word: sp.Symbol(word) for word in _words(text)}
+        rates = [symbol for word, symbol in symbols.items() if order(word) == 1]
+        if name in symbols and rates:
+            with suppress(ExpressionError, NotImplementedError, AttributeError, TypeError):
+                slope = parse(text, {**symbols, **FUNCTIONS}).diff(symbols[name])
+                if any(slope.diff(one).has(*rates) for one in rates):
+                    return True
+    return False
 
 
 def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:
