@@ -319,6 +319,15 @@ def test_letters_of_multipliers_can_be_moments_of_inertia(tmp_path: Path) -> Non
     assert found[1:3] == ["definition", "wrong"]
 
 
+def test_a_term_that_an_equation_lacks_can_be_a_load_without_a_meaning(tmp_path: Path) -> None:
+    text = (
+        TOP
+        + r"""Another pendulum is driven:
+$$\ddot\phi + 2\beta\dot\phi + \omega_0^2\sin\phi = \gamma\omega_0^2\cos\omega t$$"""
+    )
+    assert verdicts(tmp_path, text)[-1] == "context"
+
+
 BALANCED = r"""
 $$x = R\theta$$ $$x_t = x + l\sin\varphi$$ $$y_t = l\cos\varphi$$ $$L = E_k - E_p$$
 $$E_{k,1} = \frac12 m_b\dot x^2$$ $$E_{k,2} = \frac12 J\dot\theta^2$$

@@ -198,7 +198,10 @@ class Judge:
         return False
 
     def _beside_loads(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
-        """The verdict on an equation of motion in which a term beside unknown loads is wrong."""
+        """The verdict on an equation of motion in which a term beside unknown loads is wrong.
+
+        For a term that is missing, the loads can stand.
+        """
         has_reactions = {*unknown} & {*self._namespace.letters.multipliers}
         if not self._is_stated or len(formula.sides) != 2 or has_reactions:
             return None
@@ -213,9 +216,11 @@ class Judge:
                 result = SideComparison(namespace, self._linear, roles).compared(
                     formula, *formula.sides, left, right
                 )
-                changes = [f"{one.wrong} {one.correct}" for one in result.verdict.corrections]
-                if len(changes) == 1 and {*WORD.findall(changes[0])}.isdisjoint(unknown):
-                    return result
+                for one in result.verdict.corrections[:1]:
+                    words = {*WORD.findall(f"{one.wrong} {one.correct}")}
+                    is_alone = len(result.verdict.corrections) == 1
+                    if is_alone and one.wrong and words.isdisjoint(unknown):
+                        return result
         return None
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
