@@ -344,3 +344,15 @@ def test_positions_of_one_part_do_not_state_the_system(tmp_path: Path) -> None:
     assert [one.verdict for one in found[-2:]] == ["verified"] * 2
     assert "m_b" not in found[-2].note  # such as that it is an applied force
     assert verdicts(tmp_path, BALANCED.replace("- g", "+ g"))[-1] == "wrong"
+
+
+def test_a_constraint_g_can_stand_beside_the_gravity_g(tmp_path: Path) -> None:
+    text = r"""The constraint is $g(x,y) = \sqrt{x^2 + y^2} - a = 0$, with
+$$\frac{\partial L}{\partial x} - \frac{d}{dt}\frac{\partial L}{\partial\dot x}
+  + \lambda\frac{\partial g}{\partial x} = 0$$
+$$\frac{\partial L}{\partial y} - \frac{d}{dt}\frac{\partial L}{\partial\dot y}
+  + \lambda\frac{\partial g}{\partial y} = 0$$
+$$L = \frac12 m(\dot x^2 + \dot y^2) - m g y$$"""
+    assert verdicts(tmp_path, text) == ["definition", *["verified"] * 3]
+    text = text.replace(r"\frac{\partial g}{\partial y}", r"\frac{\partial g}{\partial x}")
+    assert verdicts(tmp_path, text)[2] == "wrong"

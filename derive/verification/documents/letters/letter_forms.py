@@ -29,7 +29,7 @@ VARIANTS = (("ell", "l"), ("varphi", "phi"), ("vartheta", "theta"), ("varepsilon
 def with_own_letters(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     """The statements with a letter of its own for each meaning that a document shows."""
     labelled = [_with_sides(one, with_labels(one.sides, QUANTITIES)) for one in occurrences]
-    return _with_any_coordinate(_with_differences(_with_lengths(labelled)))
+    return _with_any_coordinate(_with_differences(_with_functions(_with_lengths(labelled))))
 
 
 def with_one_letter(occurrences: Sequence[Occurrence], variant: str, name: str) -> list[Occurrence]:
@@ -113,6 +113,41 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         return _with_sides(place, with_letters(place.sides, partial(change, place, alone)))
 
     return [changed(one) for one in occurrences]
+
+
+#: The name of a function g, such as a constraint, beside the gravity g.
+FUNCTION = "function"
+
+
+def _with_functions(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
+    """The statements, with a name for a function g beside the gravity g.
+
+    It is differentiated, or has several arguments.
+    """
+
+    def heads(place: Occurrence) -> Iterator[Span]:
+        for node in nodes(place.sides):
+            match node:
+                case Derivative(operand=Letter(span=span) as letter):
+                    is_function = True
+                case Application(head=Letter(span=span) as letter, arguments=arguments):
+                    is_function = len(arguments) > 1 or node in place.sides
+                case _:
+                    continue
+            if is_function and letter.identifier == "g":
+                yield span
+
+    def change(own: set[Span], letter: Letter) -> Letter:
+        return replace(letter, name=FUNCTION) if letter.span in own else letter
+
+    own = [{*heads(one)} for one in occurrences]
+    count = sum(one.identifier == "g" for place in occurrences for one in letters(place.sides))
+    if not any(own) or count == sum(map(len, own)):
+        return [*occurrences]
+    return [
+        _with_sides(place, with_letters(place.sides, partial(change, spans)))
+        for place, spans in zip(occurrences, own, strict=True)
+    ]
 
 
 def _is_difference_of_energies(place: Occurrence) -> bool:
