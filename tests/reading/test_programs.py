@@ -409,6 +409,29 @@ def test_a_method_may_return_the_state_after_a_step() -> None:
     assert wrong.is_fault
 
 
+SCALAR_STAGES = """
+double rate(double t, double x, double v) { return v; }
+double force(double t, double x, double v) { return -k/m*x; }
+void step(double *t, double *x, double *v) {
+    double h = 100.0/n;
+    k1 = rate(*t, *x, *v);
+    j1 = force(*t, *x, *v);
+    k2 = rate(*t + h, *x + h*k1, *v + h*j1);
+    j2 = force(*t + h, *x + h*k1, *v + h*j1);
+    *x = *x + h/2*(k1 + k2);
+    *v = *v + h/2*(j1 + j2);
+}
+"""
+
+
+def test_stages_of_one_variable_each_give_equations_for_any_step_size() -> None:
+    program = read_program(SCALAR_STAGES, "C")
+    assert [one.text for one in program.equations] == ["x_ddot = -k/m*x"]
+    assert not finding(program, "runge_kutta").is_fault
+    wrong = read_program(SCALAR_STAGES.replace("h/2*(j1", "h/2*(3*j1"), "C")
+    assert any(one.is_fault for one in wrong.findings if one.kind == "runge_kutta")
+
+
 @pytest.mark.parametrize(
     ("name", "identifier"),
     [("θ₁", "theta1"), ("Θ", "Theta"), ("ϼ", "rho"), ("x\u0307", "x_dot"), ("x\u0308", "x_ddot")],

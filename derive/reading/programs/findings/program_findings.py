@@ -179,7 +179,7 @@ class Findings:
         functions = self._own_equations()
         read = {equation.line for one in functions for equation in one.equations}
         unread = {(one.line, one.reason): one for one in self._unread if one.line not in read}
-        starts = {one.name: one.line for one in self._functions}
+        starts = {one.name: one.line for one in functions}
         findings: dict[tuple[int, str], Finding] = {}
         for one in self._findings:
             if one.kind == "degrees" and self._takes_degrees:

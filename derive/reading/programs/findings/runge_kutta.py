@@ -81,7 +81,10 @@ def method(increment: Expression) -> tuple[Method, Expression] | None:
     if None in rows or not any(any(row) for row in rows if row):
         return None
     doubled = _coefficients(increment, calls, 2.0)
-    if doubled == weights and (size := sum(weights)):  # the step size is a number
+    is_letter = doubled is not None and all(
+        abs(y - 2 * x) <= 1e-9 * abs(x) for x, y in zip(weights, doubled, strict=True)
+    )
+    if not is_letter and (size := sum(weights)):  # the step size is a number, or one by a letter
         weights = tuple(x / size for x in weights)
         rows = [tuple(x / size for x in row) if row else row for row in rows]
     order = sorted(range(len(calls)), key=lambda i: sum(map(bool, rows[i] or ())))

@@ -61,9 +61,14 @@ def written_pairs(
 ) -> Iterator[tuple[str, str, Expression]]:
     """Coordinates, velocities and accelerations of methods that are written for each of them.
 
-    The first stage of a coordinate is its velocity: its increment is proportional to it.
+    The first stage of a coordinate is its velocity: the value of a function that returns it, or
+    its increment is proportional to it.
     """
     rates = {name: value for one in written for name, value in one.rates.items()}
+    for name, value in rates.items():
+        rate = inner(value)
+        if isinstance(rate, Name) and rate.path != name and rate.path in rates:
+            yield name, rate.path, rates[rate.path]
     at_rest = dict.fromkeys(updates.updates, 0.0)
     for name, update in updates.updates.items():
         if name in rates:
