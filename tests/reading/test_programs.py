@@ -409,6 +409,38 @@ def test_a_method_may_return_the_state_after_a_step() -> None:
     assert wrong.is_fault
 
 
+#: Programs in the forms of Julia, and their equations.
+OF_JULIA = {
+    "the value of the last assignment": (
+        "function f(x, u)\n  q, v = x\n  out = [v; 2*(u - q)]\nend\n",
+        ["q_ddot = 2*(u - q)"],
+    ),
+    "a function that is returned": (
+        "function f(p, ::Free)\n  (; m, k) = p\n  return function (x, _)\n    q, v = x\n"
+        "    return [v, -k/m*q]\n  end\nend\n",
+        ["q_ddot = -k/m*q"],
+    ),
+    "macros, views and signs in rows": (
+        "H(p, x) = @SMatrix [\n  p.M p.m*cos(x[2])\n  p.m*cos(x[2]) p.J\n]\n"
+        "function f(p, y, u)\n  C = @SMatrix [0 -p.m*y[4]*sin(y[2]); 0 0]\n  B = [1.0, 0.0]\n"
+        "  a = SVector{2}(-H(p, y)\\(C*view(y, 3:4) - B*u))\n"
+        "  return @SVector [y[3], y[4], a[1], a[2]]\nend\n",
+        [
+            "-M*y_1_ddot - m*cos(y_2)*y_2_ddot = 0*y_1_dot - m*y_2_dot*sin(y_2)*y_2_dot - 1.0*u",
+            "-m*cos(y_2)*y_1_ddot - J*y_2_ddot = 0*y_1_dot + 0*y_2_dot - 0.0*u",
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OF_JULIA)
+def test_forms_of_julia_are_followed(name: str) -> None:
+    text, equations = OF_JULIA[name]
+    program = read_program(text, "Julia")
+    assert [one.text for one in program.equations] == equations
+    assert not program.unread
+
+
 SCALAR_STAGES = """
 double rate(double t, double x, double v) { return v; }
 double force(double t, double x, double v) { return -k/m*x; }

@@ -56,6 +56,16 @@ class Other:
     def __init__(self):
         self.total_mass = self.polemass + self.cartmass
 """
+#: A force on the first of two coordinates.
+DIRECTED = r"""
+function dx = cart(x, u, M, m, l, g)
+    H = [M + m, m*l*cos(x(2)); m*l*cos(x(2)) m*l*l];
+    C = [0, -m*l*x(4)*sin(x(2)); 0, 0];
+    G = [0; m*g*l*sin(x(2))];
+    B = [1; 0];
+    dx = [x(3:4); H\(B*u - G - C*x(3:4))];
+end
+"""
 
 
 def judged(text: str, language: str = "Python") -> DocumentVerdicts:
@@ -107,3 +117,10 @@ def rhs(t, y, l):
     assert shown["y, l"] == ["theta_ddot = -g/l*sin(theta)"]
     # without the parameter it is that variable, as of an object or a program that assigns it once
     assert shown["y"] == ["theta_ddot = -g/(2*length)*sin(theta)"]
+
+
+def test_a_vector_of_zeros_and_ones_gives_a_force_its_direction() -> None:
+    # of the letters B_1 and B_2, the second would be a force that the system does not have
+    assert equations(judged(DIRECTED, "MATLAB")) == ["verified", "verified"]
+    wrong = judged(DIRECTED.replace("g*l*sin", "g*l*cos"), "MATLAB")
+    assert [(one.line, one.verdict) for one in wrong.formulas] == [(5, "wrong"), (7, "verified")]

@@ -37,6 +37,8 @@ def combined(
         return transposed(values[0])
     if len(values) == 1:
         return _each(line, operator, values, language)
+    if operator == "solve":
+        return OperatorExpression(line, operator, tuple(flat(inner(one)) for one in operands))
     left, right = values
     is_matrix = is_square(left) or _is_inverse(left)
     if operator == "@" or (operator == "*" and language.has_matrix_products and is_matrix):

@@ -73,6 +73,8 @@ class Calls(Values):
             return self._inlined(made, function, call.arguments)
         if self._is_entry(call, path, arguments):
             return self.value(Item(call.line, call.function, call.arguments))
+        if name == "view" and len(call.arguments) > 1:  # of Julia
+            return self.value(Item(call.line, call.arguments[0], call.arguments[1:]))
         if (value := of_entries(call.line, path, arguments)) is not None:
             return value
         if name == "map" and isinstance(call.function, Member):

@@ -109,8 +109,11 @@ class Follower(Calls):
             self.steps.append(VariableValue(line, path, value))
 
     def _is_constant(self, target: Expression, value: Expression) -> bool:
+        numbers = constant(value)
+        if isinstance(numbers, tuple) and 0 in numbers and {*map(abs, numbers)} == {0, 1}:
+            return False  # a force acts on one coordinate, and not on others
         is_known = static_path(target) in self.fixed
-        return is_known and isinstance(target, Name | Member) and constant(value) is not None
+        return is_known and isinstance(target, Name | Member) and numbers is not None
 
     def _letters(self, line: int, target: Expression, value: Expression) -> Array | None:
         """An array of numbers as entries with names, one for each of the bodies that are read."""

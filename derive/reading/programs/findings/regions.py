@@ -23,6 +23,7 @@ from derive.reading.programs.syntax.code import (
     ExpressionStatement,
     Lambda,
     Loop,
+    Return,
     Statement,
 )
 from derive.reading.programs.syntax.trees import (
@@ -176,6 +177,8 @@ def _regions(context: ProgramContext, body: tuple[Statement, ...]) -> Iterator[R
     for one in statements(body, inner=True):
         if isinstance(one, Definition):
             yield from _followed(context, one, {}, one.body)
+        elif isinstance(one, Return) and isinstance(one.value, Lambda):
+            yield from _followed(context, one.value.function, {}, one.value.function.body)
         elif isinstance(one, ExpressionStatement | Assignment):
             for callback in _callbacks(one.value):
                 yield from _followed(context, callback, {}, callback.body)

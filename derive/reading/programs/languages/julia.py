@@ -6,11 +6,13 @@ from derive.reading.programs.languages.language import Language
 
 #: A number before a name in a row of a matrix; the grammar would read their product.
 NUMBER = re.compile(r"(?<![\w.])(\d[\d_]*+\.?+\d*+(?:e[+-]?\d++)?+)(?=[ \t]+[^\W\d])")
+#: An operator between a number and a bracket; the grammar would read the call of a function.
+OPERATOR = re.compile(r"(?<=\d)(\.?)([-+*/^])(?=\()")
 
 
 def prepared(text: str) -> str:
-    """The text with such numbers in brackets."""
-    return NUMBER.sub(r"(\1)", text)
+    """The text with such numbers in brackets, and spaces around such operators."""
+    return OPERATOR.sub(r"\1 \2 ", NUMBER.sub(r"(\1)", text))
 
 
 language = Language(
@@ -34,6 +36,7 @@ language = Language(
         "try_statement": "block",
         "macro_argument_list": "block",
         "macrocall_expression": "block",
+        "parametrized_type_expression": "first",
         "macro_identifier": "skip",
         "struct_definition": "skip",
         "using_statement": "skip",

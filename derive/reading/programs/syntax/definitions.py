@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from derive.reading.programs.syntax.code import (
+    Assignment,
     Conditional,
     Definition,
     ExpressionStatement,
@@ -35,8 +36,8 @@ class DefinitionTranslator(ExpressionTranslator):
         raise NotImplementedError
 
     def _function_statements(self, node: "Node") -> Iterator[Statement]:
-        parameters = self._first(node, "parameters")
         header = next((one for one in self.children(node) if self.role(one) == "header"), node)
+        parameters = self._first(node, "parameters") or self._first(header, "arguments")
         named = header.child_by_field_name("name") or self._first(header, "name")
         declared = header.child_by_field_name("declarator") or header
         operator = declared.child_by_field_name("declarator")  # operator() of C++
@@ -51,6 +52,11 @@ class DefinitionTranslator(ExpressionTranslator):
         namespace = named.child_by_field_name("scope") if named else None
         return text(namespace) if namespace else self._owner
 
+    def _function_tree(self, node: "Node") -> Expression:
+        """A function as a value, such as one that another returns."""
+        header = next((one for one in self.children(node) if self.role(one) == "header"), node)
+        return Lambda(line(node), self._definition(node, "", self._first(header, "arguments")))
+
     def _lambda_tree(self, node: "Node") -> Expression:
         parameters = node.child_by_field_name("parameter") or self._first(node, "parameters")
         parameters = parameters or self.children(node)[0]
@@ -60,7 +66,7 @@ class DefinitionTranslator(ExpressionTranslator):
         body = node.child_by_field_name("body")
         blocks = [one for one in self.children(node) if one.type == "block"]
         nodes = [body] if body else blocks or self._body(node)
-        if name == "" and len(nodes) > 1:
+        if self.role(node) == "lambda" and len(nodes) > 1:
             nodes = nodes[-1:]  # the parameter of a short function stands before its body
         first = [one for one in self.children(node) if self.role(one) == "initializers"]
         statements = self.statements([*first, *nodes])
@@ -139,6 +145,8 @@ def _with_return(statements: tuple[Statement, ...]) -> tuple[Statement, ...]:
     match statements:
         case (*rest, ExpressionStatement(line=number, value=value)):
             return (*rest, Return(number, value))
+        case (*_, Assignment(line=number, target=Name() as target, operator="")):
+            return (*statements, Return(number, target))
         case (*rest, Conditional(number, body, otherwise, different)):
             arms = _with_return(body), _with_return(otherwise)
             return (*rest, Conditional(number, *arms, different))

@@ -96,6 +96,13 @@ class ExpressionTranslator:
         inner = [one for one in self.children(node) if self.role(one) != "skip"]
         return self.tree(inner[-1]) if inner else Opaque(line(node), "an empty bracket")
 
+    def _block_tree(self, node: "Node") -> Expression:
+        """The value of a macro of an expression, or of a block with one expression."""
+        inner = [one for one in self.children(node) if self.role(one) != "skip"]
+        if len(inner) != 1:
+            return Opaque(line(node), f"{shown(node)!r} is not followed")
+        return self.tree(inner[0])
+
     def _first_tree(self, node: "Node") -> Expression:
         return self.tree(self.children(node)[0])
 
@@ -225,11 +232,27 @@ class ExpressionTranslator:
         return Array(line(node), self._trees(self.children(node)))
 
     def _matrix_tree(self, node: "Node") -> Expression:
-        rows = [self._trees(self.children(row)) for row in self.children(node)]
+        rows = [
+            tuple(one for child in self.children(row) for one in self._entries(child))
+            for row in self.children(node)
+        ]
         if len(rows) == 1 or all(len(row) == 1 for row in rows):
             items = Array(line(node), tuple(one for row in rows for one in row))
             return FunctionCall(line(node), Name(line(node), "vcat"), (items,))
         return Array(line(node), tuple(Array(one.line, row) for row in rows for one in row[:1]))
+
+    def _entries(self, node: "Node") -> list[Expression]:
+        """The entries of a row of a matrix: ``a -b`` are two of them."""
+        left, sign, right = [*(one for one in node.children if not one.is_extra), *[node] * 3][:3]
+        if self.role(node) != "binary" or text(sign) not in ("+", "-"):
+            return [self.tree(node)]
+        *before, last = self._entries(left)
+        value = self.tree(right)
+        if left.end_byte < sign.start_byte and sign.end_byte == right.start_byte:
+            is_negative = text(sign) == "-"
+            own = OperatorExpression(line(sign), "-", (value,)) if is_negative else value
+            return [*before, last, own]
+        return [*before, OperatorExpression(line(node), text(sign), (last, value))]
 
     def _comprehension_tree(self, node: "Node") -> Expression:
         return self._comprehension(node, self.children(node))
