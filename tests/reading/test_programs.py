@@ -321,6 +321,9 @@ MEANINGS = [
     ("Julia", "-3x^2k^2", "-3*x**(2*k)**2"),
     ("Julia", "1/2k*x", "1/(2*k)*x"),
     ("Julia", "3(x + k)", "3*(x + k)"),
+    ("Julia", "k + 3*(x + k)", "k + 3*(x + k)"),  # the grammar reads *(x + k)
+    ("MATLAB", "k*cot(x)", "k*(cos(x)/sin(x))"),
+    ("MATLAB", "sec(x)/csc(k)", "1/cos(x)/(1/sin(k))"),
 ]
 
 
@@ -439,6 +442,23 @@ def test_forms_of_julia_are_followed(name: str) -> None:
     program = read_program(text, "Julia")
     assert [one.text for one in program.equations] == equations
     assert not program.unread
+
+
+def test_a_copy_of_an_array_is_another_array() -> None:
+    text = """
+function rates(s, k)
+    ds = copy(s)
+    ds[1] = s[2]
+    ds[2] = -k*s[1]
+    return ds
+end
+function step(y, h, k)
+    a = rates(y, k)
+    b = rates(y + h*a, k)
+    y += h/2*(a + b)
+end
+"""
+    assert [one.text for one in read_program(text, "Julia").equations] == ["s_1_ddot = -k*s_1"]
 
 
 SCALAR_STAGES = """

@@ -76,6 +76,9 @@ class Follower(Calls):
 
     def _assign(self, one: Assignment) -> None:
         value = self.value(one.value)
+        if isinstance(one.target, Name) and not one.operator:
+            is_copy = isinstance(one.value, FunctionCall) and isinstance(value, Name)
+            (self.copies.add if is_copy else self.copies.discard)(one.target.path)
         if one.operator:
             operands = (one.target, one.value)
             value = self.value(OperatorExpression(one.line, one.operator, operands))

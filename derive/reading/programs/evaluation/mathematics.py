@@ -62,6 +62,10 @@ def applied(line: int, path: str, arguments: tuple[Expression, ...]) -> Expressi
             return FunctionCall(line, Name(line, FUNCTIONS[name]), (x,))
         case _, (x,) if name in DEGREES:
             return FunctionCall(line, Name(line, DEGREES[name]), (radians(line, x),))
+        case "cot" | "sec" | "csc", (x,):
+            sine, cosine = (FunctionCall(line, Name(line, one), (x,)) for one in ("sin", "cos"))
+            above = cosine if name == "cot" else NumberLiteral(line, "1")
+            return OperatorExpression(line, "/", (above, cosine if name == "sec" else sine))
         case "radians" | "deg2rad" | "toRadians", (x,):
             return radians(line, x)
         case "degrees" | "rad2deg" | "toDegrees", (x,):

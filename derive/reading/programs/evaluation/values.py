@@ -37,6 +37,8 @@ class Values:
         self.context, self.owner = context, owner
         self.variables: dict[str, Expression] = {}
         self.parameters: set[str] = set()
+        #: Copies of arrays, of which entries can change by themselves.
+        self.copies: set[str] = set()
         #: Arrays that a caller passes, which the function changes.
         self.references: dict[str, str] = {}
         self._open: set[str] = set()
@@ -100,7 +102,8 @@ class Values:
         """The value of a variable, or of an entry or member of one."""
         if path in self.variables:
             known = self.variables[path]
-            return (self._collected(line, path) if is_zeros(known) else None) or known
+            is_filled = is_zeros(known) or path in self.copies
+            return (self._collected(line, path) if is_filled else None) or known
         if (array := self._collected(line, path)) is not None:
             return array
         if path in self.counts:
@@ -153,7 +156,7 @@ class Values:
     def _object(self, tree: Expression) -> str | None:
         """The name of an array or object, which can be another name for one."""
         place = self.place(tree)
-        value = self.variables.get(place) if place else None
+        value = self.variables.get(place) if place and place not in self.copies else None
         return value.path if isinstance(value, Name) else place
 
     def _index(self, indices: tuple[Expression, ...]) -> str:
@@ -196,7 +199,7 @@ class Values:
             place = number - (self.context.language.first_index if number >= 0 else 0)
             if -len(items) <= place < len(items):
                 return items[place]
-        if path and isinstance(base, Name):
+        if path and isinstance(base, Name) and self.place(tree.base) not in self.copies:
             return self.variable(tree.line, path)
         if isinstance(base, Name) and index:
             return self.variable(tree.line, f"{base.path}[{index}]")
