@@ -461,6 +461,25 @@ end
     assert [one.text for one in read_program(text, "Julia").equations] == ["s_1_ddot = -k*s_1"]
 
 
+COMPONENTS = """
+const int D = 2;
+double pull(double q[D], int i) { return -k*q[i]/pow(q[0]*q[0] + q[1]*q[1], 1.5); }
+void step(double h, double (&q)[D], double (&p)[D]) {
+    for (int i = 0; i < D; ++i) p[i] = p[i] + h*pull(q, i);
+    for (int i = 0; i < D; ++i) q[i] = q[i] + h*p[i];
+}
+"""
+
+
+def test_loops_over_components_of_vectors_are_followed_and_those_over_steps_are_not() -> None:
+    program = read_program(COMPONENTS, "C++")
+    assert [one.text for one in program.equations] == [
+        f"q_{i}_ddot = -k*q_{i}/(q_0*q_0 + q_1*q_1)**1.5" for i in (0, 1)
+    ]
+    text = "function draw() {\n for (let i = 0; i < 2; i++) { v -= k*x*dt; x += v*dt; }\n}\n"
+    assert [one.text for one in read_program(text, "JavaScript").equations] == ["x_ddot = -k*x"]
+
+
 SCALAR_STAGES = """
 double rate(double t, double x, double v) { return v; }
 double force(double t, double x, double v) { return -k/m*x; }

@@ -124,3 +124,28 @@ def test_a_vector_of_zeros_and_ones_gives_a_force_its_direction() -> None:
     assert equations(judged(DIRECTED, "MATLAB")) == ["verified", "verified"]
     wrong = judged(DIRECTED.replace("g*l*sin", "g*l*cos"), "MATLAB")
     assert [(one.line, one.verdict) for one in wrong.formulas] == [(5, "wrong"), (7, "verified")]
+
+
+#: A leapfrog step with momenta, and variables of their own for values in the step.
+MOMENTA = """
+void orbit(int n) {
+    double x0 = 1, y0 = 0, px0 = 0, py0 = m;
+    for (int i = 0; i < n; i++) {
+        double x = x0 + dt*px0/(2*m), y = y0 + dt*py0/(2*m);
+        double px = px0 - dt*G*M*m*x/pow(sqrt(x*x + y*y), 3);
+        double py = py0 - dt*G*M*m*y/pow(sqrt(x*x + y*y), 3);
+        x0 = x + dt*px/(2*m);
+        y0 = y + dt*py/(2*m);
+        px0 = px;
+        py0 = py;
+    }
+}
+"""
+
+
+def test_momenta_of_a_leapfrog_step_give_accelerations() -> None:
+    document = judged(MOMENTA, "C")
+    assert equations(document) == ["verified", "verified"]
+    assert all("leapfrog" in one.note for one in document.formulas if "method" in one.latex)
+    wrong = judged(MOMENTA.replace("py0 - dt", "py0 + dt"), "C")
+    assert [one.line for one in wrong.formulas if one.verdict == "wrong"] == [7]

@@ -119,6 +119,20 @@ def _parts(tree: Expression) -> Iterator[Expression]:
         yield from _parts(part)
 
 
+def has_index(loop: Loop) -> bool:
+    """Whether the index of a loop stands in its body, unlike that of steps."""
+    return any(mentions(one, {loop.variable}) for one in _trees(loop.body))
+
+
+def changed_vectors(loop: Loop) -> set[str]:
+    """The arrays of which a loop changes the entry at its index."""
+    index = Name(0, loop.variable)
+    found = (
+        one.target for one in statements(loop.body, inner=False) if isinstance(one, Assignment)
+    )
+    return {static_path(one) for one in found if isinstance(one, Item) and index in one.indices}
+
+
 class _NotElementwiseError(Exception):
     pass
 

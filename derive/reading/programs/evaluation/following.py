@@ -7,7 +7,13 @@ from typing import Self
 from derive.reading.programs.evaluation.arrays import entries, flat
 from derive.reading.programs.evaluation.calls import CONDITION, Calls, VariableValue
 from derive.reading.programs.evaluation.context import ProgramContext, assigned, static_path
-from derive.reading.programs.evaluation.counted_loops import BODIES, elementwise
+from derive.reading.programs.evaluation.counted_loops import (
+    BODIES,
+    changed_vectors,
+    elementwise,
+    has_index,
+    integer,
+)
 from derive.reading.programs.evaluation.numeric_values import constant, number
 from derive.reading.programs.evaluation.values import whole
 from derive.reading.programs.syntax.code import (
@@ -36,6 +42,8 @@ from derive.reading.programs.syntax.trees import (
 )
 
 LOOP = "a loop is not followed"
+#: Components of vectors that a loop counts.
+MAX_COMPONENTS = 3
 
 
 class Follower(Calls):
@@ -217,8 +225,27 @@ class Follower(Calls):
         if (body := elementwise(one)) is not None:
             self.run(body)
             return
+        if (components := self._components(one)) is not None:
+            for path in changed_vectors(one):
+                entries_of = [f"{path}[{component}]" for component in components]
+                if self.variables.keys().isdisjoint([path, *entries_of]):
+                    self.variables |= {entry: Name(one.line, entry) for entry in entries_of}
+            for component in components:
+                self.variables[one.variable] = NumberLiteral(one.line, str(component))
+                self.run(one.body)
+            del self.variables[one.variable]
+            return
         self.loops.append((one, {**self.variables}))
         self._close(assigned(one.body), one.line, LOOP)
+
+    def _components(self, one: Loop) -> range | None:
+        """The indices of a loop over the components of vectors; None of other loops."""
+        if one.bounds is None or not has_index(one):
+            return None
+        values = (self.context.constants.get(static_path(bound), bound) for bound in one.bounds)
+        first, end = (integer(self.value(value)) for value in values)
+        is_short = first is not None and end is not None and first < end <= first + MAX_COMPONENTS
+        return range(first or 0, end or 0) if is_short else None
 
     def _close(self, paths: Iterable[str], line: int, reason: str) -> None:
         """Give variables values that cannot be followed."""

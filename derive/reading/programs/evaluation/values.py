@@ -199,6 +199,8 @@ class Values:
             place = number - (self.context.language.first_index if number >= 0 else 0)
             if -len(items) <= place < len(items):
                 return items[place]
+            if path and self.place(tree.base) not in self.variables:
+                return self.variable(tree.line, path)  # others are assigned before it
         if path and isinstance(base, Name) and self.place(tree.base) not in self.copies:
             return self.variable(tree.line, path)
         if isinstance(base, Name) and index:

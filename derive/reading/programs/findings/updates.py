@@ -80,9 +80,14 @@ class Updates:
             is_copy = id(value) in self._owners and LAST.fullmatch(step.path)
             if not isinstance(value, Name | NumberLiteral) and not is_copy:
                 self._owners[id(value)] = self._old[step.path]
+        before = {path for step in self._steps for path in names(step.value)}
+        for path, value in final.items():
+            self._own_sums(self._old.get(path, path), value, before)
         result = (self._update(path, value) for path, value in final.items())
         self.updates: dict[str, Update] = {one.variable: one for one in result if one}
-        self._final = {id(value) for value in final.values()}
+        self._final = {
+            id(value) for path, value in final.items() if self._old.get(path, path) in before
+        }
         #: Values that are used in the next step, such as accelerations.
         self._kept: dict[str, Expression] = {}
         others = {
@@ -98,6 +103,16 @@ class Updates:
             for old, value in pairs
             if (acceleration := recurrence(old, value, self._earlier(old, value, final)))
         )
+
+    def _own_sums(self, old: str, value: Expression, before: Set[str]) -> None:
+        """Count names for parts of an update, which have no value before, as its variable."""
+        sums = [tree := inner(value)]
+        while isinstance(tree, OperatorExpression) and tree.operator in ("+", "-"):
+            sums.append(tree := inner(tree.operands[0]))
+        if sums[-1] == Name(0, old):
+            for one in sums:
+                if id(one) in self._owners and self._owners[id(one)] not in before:
+                    self._owners[id(one)] = old
 
     def _earlier(self, path: str, value: Expression, final: Mapping[str, Expression]) -> set[str]:
         """The names of a variable one step before: of an entry, or of a copy."""
@@ -212,15 +227,31 @@ class Updates:
         """The acceleration in values before the step, and the variables used after it."""
         used: set[str] = set()
         velocity, step = pair.velocity, pair.step
+        step, factor = self._without_mass(velocity, step)
         result = [(sign, self._divided(term, step)) for sign, term in velocity.increment]
         if any(term is None for _, term in result):  # no common factor
             whole = [(sign, self._restored(term, used)) for sign, term in velocity.increment]
-            value = OperatorExpression(
-                velocity.line, "/", (total(velocity.line, whole), step or NO_STEP)
-            )
-            return value, frozenset(used)
+            quotient = total(velocity.line, whole), step or NO_STEP
+            return OperatorExpression(velocity.line, "/", quotient), frozenset(used)
         divided = [(sign, self._restored(term, used)) for sign, term in result if term]
-        return total(velocity.line, divided), frozenset(used)
+        value = total(velocity.line, divided)
+        return product(value.line, [value, *factor]) if factor else value, frozenset(used)
+
+    def _without_mass(
+        self, velocity: Update, step: Expression | None
+    ) -> tuple[Expression | None, list[Expression]]:
+        """The step size, and factors of a velocity that is a momentum, as 1/m of dt*p/m."""
+        if step is None:
+            return None, []
+        parts = [*_divisors(factors(step, self._is_whole))]
+        terms_of = [factors(term, self._is_whole) for _, term in velocity.increment]
+        own = [one for one in parts if all(one in others for others in terms_of)]
+        rest = [one for one in parts if one not in own]
+        values = [self._restored(one, set()) for _, one in velocity.increment]
+        is_used = any(velocity.variable in {*names(one)} for one in values)
+        if not own or is_used or any(number(one) is not None or self._moves(one) for one in rest):
+            return step, []
+        return product(step.line, own), rest
 
     def _divided(self, term: Expression, step: Expression | None) -> Expression | None:
         """A term without the step size; None if that is not a factor."""
@@ -246,8 +277,24 @@ class Updates:
         return tree if is_same else replaced(tree, parts)
 
 
+def _divisors(parts: Sequence[Expression]) -> Iterator[Expression]:
+    """Factors, with one for each factor of a divisor."""
+    for one in parts:
+        match one:
+            case OperatorExpression(line=line, operator="/", operands=(above, below)):
+                own = factors(below, lambda _: False)
+                yield from (OperatorExpression(line, "/", (above, divisor)) for divisor in own)
+            case _:
+                yield one
+
+
 def _whole(steps: Sequence[Term]) -> Expression:
     """The sum of step sizes such as two halves of one."""
+    parts = [*_divisors(factors(steps[0][1], lambda _: False))]
+    halves = [one for one in parts if (number(one) or 0) * len(steps) == 1]
+    if halves and all(step == steps[0] for step in steps):
+        parts.remove(halves[0])
+        return product(steps[0][1].line, parts)
     size, line, rest = 0.0, steps[0][1].line, list[list[Expression]]()
     for sign, step in steps:
         parts = factors(step, lambda _: False)
