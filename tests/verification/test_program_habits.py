@@ -149,3 +149,23 @@ def test_momenta_of_a_leapfrog_step_give_accelerations() -> None:
     assert all("leapfrog" in one.note for one in document.formulas if "method" in one.latex)
     wrong = judged(MOMENTA.replace("py0 - dt", "py0 + dt"), "C")
     assert [one.line for one in wrong.formulas if one.verdict == "wrong"] == [7]
+
+
+#: A plate on a hinge, whose moment of inertia follows from other constants.
+PLATE = """
+M, a, b, g = 2.0, 0.5, 0.25, 9.81
+I = M*(a**2 + b**2)/3
+d = np.sqrt(a**2 + b**2)/2
+
+def rates(t, y):
+    theta, w = y
+    return [w, -M*g*d/I*np.sin(theta)]
+"""
+
+
+def test_constants_that_follow_from_others_can_be_letters() -> None:
+    (function,) = read_program(PLATE, "Python").functions
+    assert "a**2 + b**2" in function.equations[0].text
+    (formula,) = judged(PLATE).formulas
+    assert (formula.latex, formula.verdict) == ("theta_ddot = -M*g*d/I*sin(theta)", "verified")
+    assert equations(judged(PLATE.replace("np.sin", "np.cos"))) != ["wrong"]

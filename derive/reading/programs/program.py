@@ -59,6 +59,8 @@ class RateFunction:
     equations: tuple[ProgramEquation, ...]
     #: Names of the program, such as "y[1]" or "self.m1", and those of the equations.
     names: Mapping[str, str] = field(default_factory=dict)
+    #: The equations with the names of constants that follow from others, as I of I = m*l**2/3.
+    short: tuple[ProgramEquation, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,11 @@ from pkgutil import iter_modules
 from derive.reading.programs import languages
 from derive.reading.programs.evaluation.context import ProgramContext
 from derive.reading.programs.findings.program_findings import Findings
-from derive.reading.programs.findings.regions import prepare, regions
+from derive.reading.programs.findings.regions import derived_constants, prepare, regions
 from derive.reading.programs.findings.symbolic_statements import symbolic_statements
 from derive.reading.programs.languages.language import Language
 from derive.reading.programs.program import Program, ProgramError
+from derive.reading.programs.syntax.code import Statement
 from derive.reading.programs.syntax.statement_translation import StatementTranslator
 from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import read_bytes
@@ -96,13 +97,26 @@ def by_name(name: str) -> Language:
 
 def _read(file: str, text: str, language: Language) -> Program:
     body = StatementTranslator(language).statements([language.parse(text)])
-    context = ProgramContext(language)
-    prepare(context, body)
-    findings = Findings(context, body)
-    for region in regions(context, body):
-        findings.add(region)
-    program = findings.program(file, language.name)
+    program, derived = _followed(file, language, body)
+    if derived and program.functions:
+        short = {
+            one.line: one.equations for one in _followed(file, language, body, derived)[0].functions
+        }
+        functions = (replace(one, short=short.get(one.line, ())) for one in program.functions)
+        program = replace(program, functions=tuple(functions))
     if not program.functions and language.name == "Python" and "sympy" in text:
         stated = symbolic_statements(language.prepared(text))
         return replace(program, functions=(stated,)) if stated else program
     return program
+
+
+def _followed(
+    file: str, language: Language, body: tuple[Statement, ...], kept: frozenset[str] = frozenset()
+) -> tuple[Program, frozenset[str]]:
+    """The program with some names as letters, and names of constants that others define."""
+    context = ProgramContext(language, kept=kept)
+    prepare(context, body)
+    findings = Findings(context, body)
+    for region in regions(context, body):
+        findings.add(region)
+    return findings.program(file, language.name), derived_constants(context)

@@ -1,12 +1,13 @@
 """Verdicts on the equations of programs, and on their methods of integration."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from derive.reading.latex.tree import Letter, Statement
 from derive.reading.programs.program import Finding, Program, ProgramEquation
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letter_meanings import (
+    Interpretation,
     alternatives,
     interpretation,
     unopposed,
@@ -34,9 +35,9 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     judged: list[FormulaVerdict] = []
     for function in program.functions:
-        formulas = [_formula(equation) for equation in function.equations]
-        statements = Translated(tuple(formulas), (), {})
-        found = interpretation(statements, hints)
+        equations, found = function.equations, _interpretation(function.equations, hints)
+        if found.match is None and len(function.short) == len(equations):
+            equations, found = function.short, _interpretation(function.short, hints)
         if found.match is None:
             note = without_meaning(hints)
             judged += [_plain(equation, note) for equation in function.equations]
@@ -48,7 +49,7 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
         results = [*weighed(verdicts, candidate, found.contradictions, hints is not None)]
         contrary = [*alternatives(found, results, {})]
         others += contrary
-        pairs = zip(function.equations, unopposed(results, contrary), strict=True)
+        pairs = zip(equations, unopposed(results, contrary), strict=True)
         judged += [_judged(equation, result) for equation, (_, result) in pairs]
     judged += [_finding(one) for one in program.findings]
     judged.sort(key=lambda one: one.line)
@@ -57,6 +58,11 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
     return DocumentVerdicts(
         program.file, "program", title, tuple(judged), notes, letters, tuple(others)
     )
+
+
+def _interpretation(equations: Sequence[ProgramEquation], hints: Hints | None) -> Interpretation:
+    statements = Translated(tuple(map(_formula, equations)), (), {})
+    return interpretation(statements, hints)
 
 
 def _formula(equation: ProgramEquation) -> DocumentFormula:

@@ -40,6 +40,8 @@ class ProgramContext:
     variables: set[str] = field(default_factory=set)
     #: Names that are assigned once, and their values.
     shared: dict[str, Expression] = field(default_factory=dict)
+    #: Names that stay letters although they have one formula, of constants alone.
+    kept: frozenset[str] = frozenset()
     steps: int = 0
 
     def spend(self) -> None:

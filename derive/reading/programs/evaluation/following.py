@@ -105,7 +105,9 @@ class Follower(Calls):
             if array := self._letters(line, target, value):
                 self.variables[static_path(target)] = array
             return  # it stays a letter
-        elif static_path(target) in self.counts and isinstance(target, Name | Member):
+        elif static_path(target) in self.counts | self.context.kept and isinstance(
+            target, Name | Member
+        ):
             return
         elif path := self.place(target):
             if self._is_input(value):

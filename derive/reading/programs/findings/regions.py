@@ -117,6 +117,27 @@ def regions(context: ProgramContext, body: tuple[Statement, ...]) -> list[Region
     return [*_regions(context, body)]
 
 
+def derived_constants(context: ProgramContext) -> frozenset[str]:
+    """The names with one formula of numeric constants."""
+
+    def is_constant(tree: Expression, within: frozenset[str] = frozenset()) -> bool:
+        parts = tree.parts
+        match tree:
+            case Name(path=path):
+                if path == "pi" or path in context.constants:
+                    return True
+                if path in within or path not in context.shared:
+                    return False
+                parts, within = (context.shared[path],), within | {path}
+            case FunctionCall(arguments=arguments):
+                parts = arguments
+        return all(is_constant(part, within) for part in parts)
+
+    return frozenset(
+        path for path, value in context.shared.items() if value.parts and is_constant(value)
+    )
+
+
 def _assigned_once(body: tuple[Statement, ...]) -> set[str]:
     """Names with one formula, even repeated; numbers that they have at the beginning aside."""
     counts: Counter[str] = Counter()
