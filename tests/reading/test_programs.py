@@ -461,6 +461,31 @@ end
     assert [one.text for one in read_program(text, "Julia").equations] == ["s_1_ddot = -k*s_1"]
 
 
+def test_solutions_can_be_columns_and_cyclic_coordinates_can_occur_in_no_rate() -> None:
+    text = """
+for i in range(n - 1):
+    x[i+1] = x[i] + v[i]*dt
+    y[i+1] = y[i] + w[i]*dt
+    s = np.linalg.solve(np.array([[m, c], [c, k]]), np.array([[-x[i]], [-y[i]]]))
+    v[i+1] = v[i] + s[0][0]*dt
+    w[i+1] = w[i] + s[1][0]*dt
+"""
+    found = [one.text for one in read_program(text, "Python").equations]
+    assert found == ["m*x_ddot + c*y_ddot = -x", "c*x_ddot + k*y_ddot = -y"]
+    text = """
+def rates(t, y):
+    r, p_r, phi, p_phi = y
+    return np.array([p_r/m, p_phi**2/(m*r**3) - k*r, p_phi/(m*r**2), 0])
+"""
+    found = [one.text for one in read_program(text, "Python").equations]
+    assert found == [
+        "r_dot = p_r/m",
+        "p_r_dot = p_phi**2/(m*r**3) - k*r",
+        "phi_dot = p_phi/(m*r**2)",
+        "p_phi_dot = 0",
+    ]
+
+
 COMPONENTS = """
 const int D = 2;
 double pull(double q[D], int i) { return -k*q[i]/pow(q[0]*q[0] + q[1]*q[1], 1.5); }

@@ -207,6 +207,10 @@ class Values:
             return self.variable(tree.line, f"{base.path}[{index}]")
         if isinstance(base, Opaque):
             return base
+        if isinstance(base, Item) and whole(index) == self.context.language.first_index:
+            match base.base:
+                case OperatorExpression(operator="solve"):
+                    return base  # of a solution that is a column as a matrix
         whole_array = self.variables.get(self.place(tree.base) or "", base)
         if is_zeros(base) or is_zeros(whole_array):
             return NumberLiteral(tree.line, "0")

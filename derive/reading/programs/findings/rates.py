@@ -120,6 +120,8 @@ def _state(
         if key and base:
             counts[base] += 1 + 100 * (name in rates_by_name)
     parameters = {one.name for one in definition.parameters}
+    # theta, p_theta, phi, p_phi = y, of which cyclic coordinates occur nowhere else
+    taken = {step.value.path for step in follower.steps if isinstance(step.value, Name)}
     for base, _ in counts.most_common():
         if all(whole(key) is not None for key in outputs):
             keys = [f"{base}[{i + first}]" for i in range(len(outputs))]
@@ -127,7 +129,8 @@ def _state(
             keys = [f"{base}.{key}" for key in outputs]
         used = {name for name in names if _split(name)[0] == base}
         own = {name for name in rates_by_name if _split(name)[0] == base}
-        is_canonical = used == {*keys} and base in parameters
+        is_whole = used == {*keys} or used <= {*keys} <= taken
+        is_canonical = is_whole and base in parameters
         is_canonical &= not any(
             {f"{other}[{i + first}]" for i in range(len(outputs))} <= {*names}
             for other in parameters - {base}
