@@ -169,3 +169,24 @@ def test_constants_that_follow_from_others_can_be_letters() -> None:
     (formula,) = judged(PLATE).formulas
     assert (formula.latex, formula.verdict) == ("theta_ddot = -M*g*d/I*sin(theta)", "verified")
     assert equations(judged(PLATE.replace("np.sin", "np.cos"))) != ["wrong"]
+
+
+#: Accelerations by their names, of a state that is an object of a library.
+NAMED = """
+def dynamics(model, x, u):
+    th, thdot = x[1].item(), x[3].item()
+    f = u[0].item()
+    M, m, l, g = model.M, model.m, model.l, model.g
+    s, c = np.sin(th), np.cos(th)
+    mu = M + m*s**2
+    xddot = (f + m*c*s*g - m*l*s*thdot**2)/mu
+    thddot = (c*f/l + (M + m)*g*s/l - m*c*s*thdot**2)/mu
+    return [xddot, thddot]
+"""
+
+
+def test_accelerations_can_be_known_by_their_names_alone() -> None:
+    assert equations(judged(NAMED)) == ["verified", "verified"]
+    wrong = judged(NAMED.replace("l*s*thdot**2", "l*s*thdot"))
+    assert [(one.line, one.verdict) for one in wrong.formulas] == [(8, "wrong"), (9, "verified")]
+    assert not judged(NAMED.replace("thdot", "rate")).formulas

@@ -1,5 +1,6 @@
 """The equations and findings of all regions of a program, each of them once."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -27,6 +28,7 @@ from derive.reading.programs.findings.step_methods import (
     written_pairs,
 )
 from derive.reading.programs.findings.updates import Updates, without_time
+from derive.reading.programs.findings.updates import names as paths
 from derive.reading.programs.program import (
     Finding,
     NumericConstant,
@@ -36,7 +38,10 @@ from derive.reading.programs.program import (
 )
 from derive.reading.programs.syntax.code import Assignment, Statement
 from derive.reading.programs.syntax.formula_text import UnwrittenError, Writer
-from derive.reading.programs.syntax.trees import Expression, Opaque
+from derive.reading.programs.syntax.trees import Expression, Name, Opaque
+
+#: Names of accelerations, such as theta_ddot and ddx.
+NAMED = re.compile(r"([^\W\d]\w*?)_?ddot|dd([^\W\d]\w*)")
 
 
 class Findings:
@@ -45,6 +50,8 @@ class Findings:
     def __init__(self, context: ProgramContext, body: tuple[Statement, ...]) -> None:
         self._context = context
         self._functions: list[RateFunction] = []
+        #: Functions without a state, whose accelerations are known by their names.
+        self._named: list[RateFunction] = []
         self._findings: list[Finding] = []
         self._unread: list[UnreadPart] = []
         #: Functions that are passed to integrators, and initial states.
@@ -78,6 +85,7 @@ class Findings:
             self._add_rates(region, result)
         for is_met in (False, True):
             self._add_updates(region, is_met=is_met)
+        self._add_named(region)
         self._add_open(region)
 
     def _add_open(self, region: Region) -> None:
@@ -111,6 +119,32 @@ class Findings:
         self._angles[region.definition.name] = {
             i: q for i, q in enumerate(result.values) if q in angular
         }
+
+    def _add_named(self, region: Region) -> None:
+        """Add accelerations by their names, as xddot of a function with xdot, as a last choice."""
+        follower = region.follower
+        names = Names(follower.steps)
+        equations = FunctionEquations(region.name, names)
+        found = {step.path: step for step in follower.steps if NAMED.fullmatch(step.path)}
+        used = {path for step in found.values() for path in paths(step.value)}
+        pairs = []
+        for step in found.values():
+            match = NAMED.fullmatch(step.path)
+            name = (match and (match[1] or match[2])) or ""
+            rates = (f"{name}dot", f"{name}_dot", f"d{name}")
+            values = (follower.variables.get(one, Name(step.line, one)) for one in (name, *rates))
+            q, *rest = (one.path if isinstance(one, Name) else "" for one in values)
+            v = next((one for one in rest if one in used), "")
+            pairs.append((step, q, v))
+            if q and v:
+                names.define(v, f"{names(q)}_dot")
+        if any(v for _, _, v in pairs) and all(q for _, q, _ in pairs):
+            for step, q, v in pairs:
+                equations.acceleration(step.line, q, v, step.value)
+        equations.end()
+        if equations.equations and not equations.unread:
+            own = tuple(equations.equations)
+            self._named.append(RateFunction(region.name, region.line, own, names.read))
 
     def _add_updates(self, region: Region, *, is_met: bool) -> None:
         updates = Updates(region.follower, is_met=is_met)
@@ -203,6 +237,7 @@ class Findings:
 
     def _own_equations(self) -> tuple[RateFunction, ...]:
         """The functions without equations that they take from functions that they call."""
+        self._functions = self._functions or self._named
         best: dict[int, RateFunction] = {}
         for function in self._functions:
             for equation in function.equations:
