@@ -131,7 +131,9 @@ def _with_functions(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
                 case Derivative(operand=Letter(span=span) as letter):
                     is_function = True
                 case Application(head=Letter(span=span) as letter, arguments=arguments):
-                    is_function = len(arguments) > 1 or node in place.sides
+                    # unlike the product g(m_1 - m_2)
+                    is_stated = node in place.sides[:1] and isinstance(arguments[0], Letter)
+                    is_function = len(arguments) > 1 or is_stated
                 case _:
                     continue
             if is_function and letter.identifier == "g":
