@@ -465,3 +465,16 @@ $$ \ddot q = \Omega^2 \sin q \cos q - \frac{g}{R} \sin q $$
 """)  # fmt: skip
     assert results[3] != "wrong"
     assert results[4:] == ["verified", "verified"]
+
+
+def test_a_constant_in_an_abbreviation_of_the_potential_stands_for_itself(tmp_path: Path) -> None:
+    text = r"""
+$$ \sigma = - g m_1 x - g m_2 (l - x), \qquad V = \sigma $$
+$$ T = \frac{1}{2} (m_1 + m_2) \dot x^2 $$
+$$ L = \frac{1}{2} (m_1 + m_2) \dot x^2 + g l m_2 + g m_1 x - g m_2 x $$
+$$ m_1 \ddot x + m_2 \ddot x - g m_1 + g m_2 = 0 $$
+$$ H = \frac{p_x^2}{2 (m_1 + m_2)} - g l m_2 - g (m_1 - m_2) x $$
+$$ \dot p_x = -\frac{\partial H}{\partial x} = g \left(m_1 - m_2\right) $$
+"""
+    assert {*verdicts(tmp_path, text)} <= {"definition", "verified", "equivalent"}
+    assert judged(tmp_path, text).formulas[-1].note == ""

@@ -29,9 +29,9 @@ def resolved(
     """Formulas in known letters for letters without a meaning.
 
     A meaning is accepted if at least two comparisons and more than half of them hold with it, so
-    that a mistake in a single letter is not taken for another letter. A letter with which all
-    formulas hold, whatever its value, is a constant, as l of a potential energy m*g*(l - x): it
-    stands for itself.
+    that a mistake in a single letter is not taken for another letter. A letter with which as many
+    hold, whatever its value, is a constant, as l of a potential energy m*g*(l - x): it stands for
+    itself.
     """
     numbers = Numbers(CandidateMotions([candidate], letters), letters, derivatives)
     meanings: dict[str, str] = {}
@@ -130,10 +130,12 @@ def _meaning(
     numbers: Numbers,
     constants: Mapping[str, Value],
 ) -> dict[str, str] | None:
+    own, as_constants = dict[str, str](), 0  # comparisons that hold whatever the values are
     if {*names} <= {*constants}:
         votes = _votes({name: constants[name] for name in names}, formulas, numbers)
+        own, as_constants = {name: name for name in names}, votes.count(True)
         if votes and all(votes):
-            return {name: name for name in names}
+            return own
     pool = [*_pool(candidate)]
     if len(names) == 1:
         pool += _reactions(candidate, numbers)
@@ -149,9 +151,9 @@ def _meaning(
         # no mistake in a letter makes a sum of it
         is_sum = all("+" in text for text in texts)
         least = max(1, len(votes) // 2) if is_sum else max(SUPPORT, len(votes) // 2 + 1)
-        if votes.count(True) >= least:
+        if votes.count(True) >= max(least, as_constants + 1):
             return dict(zip(names, texts, strict=True))
-    return None
+    return own if as_constants >= SUPPORT else None
 
 
 def _votes(
