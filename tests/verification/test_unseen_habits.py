@@ -356,3 +356,28 @@ $$L = \frac12 m(\dot x^2 + \dot y^2) - m g y$$"""
     assert verdicts(tmp_path, text) == ["definition", *["verified"] * 3]
     text = text.replace(r"\frac{\partial g}{\partial y}", r"\frac{\partial g}{\partial x}")
     assert verdicts(tmp_path, text)[2] == "wrong"
+
+
+RING = r"""
+A bead on a ring of the radius $r$ has $$y = \sqrt{2 r x - x^2}$$
+The length of its spring is $$r = \sqrt{x^2 + y^2} = \sqrt{2 r x}$$
+$$T = \frac12 m\dot x^2\frac{r^2}{2 r x - x^2}$$ $$V = \frac12 k(\sqrt{2 r x} - a)^2$$
+$$\frac{\partial T}{\partial\dot x} = m\dot x\frac{r^2}{2 r x - x^2}$$
+$$\frac{\partial r}{\partial x} = \sqrt{\frac{r}{2 x}}$$
+$$\frac{\partial V}{\partial x} = \frac{k r(\sqrt{2 r x} - a)}{\sqrt{2 r x}}$$
+"""
+
+
+def test_a_letter_can_be_a_radius_and_the_length_of_a_spring(tmp_path: Path) -> None:
+    found = verdicts(tmp_path, RING)
+    assert [k for k, one in enumerate(found) if one not in ("definition", "verified")] == [1, 5]
+    assert found[1] == found[5] == "context"
+
+
+def test_an_equation_with_numbers_alone_is_about_another_system(tmp_path: Path) -> None:
+    text = (
+        TOP
+        + r"""Another pendulum has $\gamma = 1.5$, $\omega = 2\pi$ and $\beta = \omega/8$:
+$$\ddot\phi + 2\beta\dot\phi + \omega^2\sin\phi = \gamma\omega^2\cos\omega t$$"""
+    )
+    assert verdicts(tmp_path, text)[-1] == "context"

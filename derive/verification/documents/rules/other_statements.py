@@ -2,12 +2,14 @@
 
 import re
 from contextlib import suppress
+from functools import cached_property
 
 import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order
+from derive.verification.documents.letters.document_system import is_length
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_comparison import Frequencies
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
@@ -33,8 +35,13 @@ class OtherStatements:
         """The verdict on a formula for which `result` is not correct; None if it is no other."""
         if self.relates_parameters(formula):
             return plain("definition", formula, "")
+        operands = (self._namespace.derivatives.get(one, (one,))[0] for one in formula.words)
+        if letters := sorted(self._ambiguous.intersection(operands)):
+            return plain("context", formula, f"{', '.join(letters)} has two meanings")
         if GENERALIZED_FORCE.fullmatch(formula.subject):
             return plain("context", formula, "it states a generalized force")
+        if self._is_foreign(formula):
+            return plain("context", formula, "it has no parameter of the system")
         if (other := self._with_an_energy(formula)) is not None:
             return other
         if self._is_place(formula):
@@ -44,6 +51,29 @@ class OtherStatements:
         if _lacks_terms(formula, result) and SIMPLIFIED.search(formula.occurrence.prose):
             return plain("context", formula, "it lacks terms that it can neglect")
         return None
+
+    def _is_foreign(self, formula: DocumentFormula) -> bool:
+        """Whether an equation of motion has numbers by name, and no parameter of the system."""
+        values = [self._namespace.names.get(word) for word in formula.words]
+        known = [one for one in values if isinstance(one, sp.Expr)]
+        params = {*self._namespace.derivation.system.params}
+        is_equation = any(order(word) == 2 for word in formula.words)
+        has_numbers = any(one.is_number for one in known)
+        return is_equation and has_numbers and sp.Tuple(*known).free_symbols.isdisjoint(params)
+
+    @cached_property
+    def _ambiguous(self) -> set[str]:
+        """Lengths that are parameters and that formulas define by coordinates, as r = sqrt(x*a)."""
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        result = set[str]()
+        for formula in self._namespace.formulas:
+            if names.get(formula.subject) in system.params and is_length(formula.subject):
+                with suppress(ExpressionError, TypeError):
+                    value = self._namespace.value(formula.sides[-1].text)
+                    moving = value.free_symbols - {*system.params}
+                    if moving and moving <= {*system.q} and not system.conditions:
+                        result.add(formula.subject)
+        return result
 
     def states_value(self, formula: DocumentFormula) -> bool:
         """Whether a formula states the value of a coordinate, of its rate or of a parameter.
