@@ -381,3 +381,18 @@ def test_an_equation_with_numbers_alone_is_about_another_system(tmp_path: Path) 
 $$\ddot\phi + 2\beta\dot\phi + \omega^2\sin\phi = \gamma\omega^2\cos\omega t$$"""
     )
     assert verdicts(tmp_path, text)[-1] == "context"
+
+
+PARABOLA = r"""
+$$X = x\cos\omega t, \quad Y = a^2 x^2, \quad Z = x\sin\omega t$$
+$$T = \frac12 m(\dot X^2 + \dot Y^2 + \dot Z^2)$$ $$V = m g Y = m g a^2 x^2$$
+$$L = \frac12 m((1 + 4 a^4 x^2)\dot x^2 + \omega^2 x^2) - m g a^2 x^2$$
+$$p = \frac{\partial L}{\partial\dot x} = m (1 + 4 a^4 x^2)\dot x$$
+$$H = \frac{p^2}{2 m(1 + 4 a^4 x^2)} + m\left(g a^2 - \frac{\omega^2}{2}\right) x^2$$
+"""
+
+
+def test_any_axis_of_positions_can_be_the_vertical_one(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, PARABOLA) == [*["definition"] * 3, *["verified"] * 5]
+    found = verdicts(tmp_path, PARABOLA.replace("(g a^2 - ", "(g a^2 + "))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [7]

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import sympy as sp
 
@@ -60,8 +61,9 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
     energies += [value for value, _ in stated.get("potential_energy", ())]
     damping = stated_dissipation(letters, formulas, values)
     friction = [-damping.diff(velocity(one)) for one in q]
-    for sign in (1, -1) if gravity is not None else (0,):
-        weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[-1] for m in masses))
+    axes = (-1, *_verticals(masses, gravity, energies))
+    for axis, sign in product(axes, (1, -1) if gravity is not None else (0,)):
+        weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[axis] for m in masses))
         for potential in _potentials(weight, gravity, energies):
             used = sp.Tuple(potential, *friction, *(m.mass for m in masses)).free_symbols
             used |= positions
@@ -173,6 +175,17 @@ def _masses(
     is_missing = not any(position[-1] == 0 for position in points.values())
     if len(left) == 1 and lines and dimension == 2 and is_missing:
         yield PointMass(symbols[left[0]], (symbols[lines[0]], sp.S.Zero))
+
+
+def _verticals(
+    masses: Sequence[PointMass], gravity: sp.Symbol | None, energies: Sequence[sp.Expr]
+) -> Iterator[int]:
+    """Yield the axes but for the last along which a stated potential energy has the weight."""
+    for axis in range(len(masses[0].position) - 1 if gravity is not None else 0):
+        weight = sp.Add(*(gravity * m.mass * m.position[axis] for m in masses))
+        rests = (sp.expand(V - sign * weight) for V in energies for sign in (1, -1))
+        if weight and any(gravity not in rest.free_symbols for rest in rests):
+            yield axis
 
 
 def _potentials(
