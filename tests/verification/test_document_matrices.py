@@ -85,3 +85,11 @@ def test_a_letter_of_a_state_is_defined(tmp_path: Path) -> None:
 def test_other_matrices_are_definitions(tmp_path: Path) -> None:
     text = CART + r"$$Q = \begin{pmatrix} 1 & 0 \\ 0 & m \end{pmatrix}$$"
     assert judged(tmp_path, text)[-1].verdict == "definition"
+
+
+def test_the_rate_of_a_state_can_be_a_column_with_accelerations(tmp_path: Path) -> None:
+    text = r"""$$m\ddot x = -k x - b\dot x$$
+$$\begin{bmatrix} \dot x\\ \ddot x \end{bmatrix} = \begin{bmatrix} 0 & 1\\
+  -\frac km & -\frac bm \end{bmatrix}\begin{bmatrix} x\\ \dot x \end{bmatrix}$$"""
+    assert [one.verdict for one in judged(tmp_path, text)] == ["verified"] * 2
+    assert judged(tmp_path, text.replace(r"-\frac km", r"\frac km"))[1].verdict != "verified"

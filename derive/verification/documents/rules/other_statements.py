@@ -92,7 +92,9 @@ class OtherStatements:
         sides = formula.sides[:-1]
         entries = [one.text for side in sides for one in side.entries or (side,)]
         rates = [names[one] for one in entries if names.get(one) in system.qddot]
-        if any(self._namespace.model.agreement(one - value) is not None for one in rates):
+        if not isinstance(value, sp.MatrixBase) and any(
+            self._namespace.model.agreement(one - value) is not None for one in rates
+        ):
             return False  # an equation of motion
         return not value.free_symbols and all(
             isinstance(names.get(one), sp.Symbol)
