@@ -105,3 +105,13 @@ def test_reactions_can_have_letters_of_their_own(tmp_path: Path) -> None:
     text = r"""$$N - m g\cos\theta = 0$$ $$m g\sin\theta - F_s = m a$$ $$F_s r = \frac12 m r a$$
 $$a = \frac23 g\sin\theta, \quad N = m g\cos\theta$$"""
     assert verdicts(tmp_path, text)[-2:] == ["verified"] * 2
+
+
+def test_the_rate_of_an_energy_gives_no_mass_matrix(tmp_path: Path) -> None:
+    text = r"""
+$$ m \dot x \ddot x + k x \dot x = 0 $$
+$$ \ddot x = -\frac{k}{m} x $$
+"""
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    formulas = judge_document(read_document(tmp_path / "a.md")).formulas
+    assert [one.verdict for one in formulas] == ["verified", "verified"]

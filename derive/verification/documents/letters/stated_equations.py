@@ -156,9 +156,11 @@ class StatedEquations:
             return None
         n, name = len(self._q), BY_EQUATIONS
         inertia, forces, V = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n]), None
-        if not reactions and (symmetric := _symmetric(matrix, rest)):
+        rates = [*map(velocity, self._q)]
+        symmetric = None if reactions else _symmetric(matrix, rest)
+        if symmetric and not symmetric[0].has(*rates):  # as that of a rate of an energy has
             inertia, forces = symmetric
-            v = sp.Matrix([velocity(one) for one in self._q])
+            v = sp.Matrix(rates)
             T = sp.expand((v.T * inertia * v)[0, 0] / 2)
             forces = [f + inertial(T, self._q, i).xreplace(still) for i, f in enumerate(forces)]
             V = potential_of([sp.expand(-force) for force in forces], self._q)
