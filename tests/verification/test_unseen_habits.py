@@ -396,3 +396,12 @@ def test_any_axis_of_positions_can_be_the_vertical_one(tmp_path: Path) -> None:
     assert verdicts(tmp_path, PARABOLA) == [*["definition"] * 3, *["verified"] * 5]
     found = verdicts(tmp_path, PARABOLA.replace("(g a^2 - ", "(g a^2 + "))
     assert [k for k, one in enumerate(found) if one == "wrong"] == [7]
+
+
+def test_a_coordinate_of_the_same_name_is_a_component_of_a_position(tmp_path: Path) -> None:
+    text = r"""$$y = a x^4, \quad z = 0$$ $$V = m g y = m g a x^4$$
+$$p = m(1 + 16 a^2 x^6)\dot x$$
+$$(1 + 16 a^2 x^6)\ddot x + 48 a^2 x^5\dot x^2 + 4 g a x^3 = 0$$"""
+    assert verdicts(tmp_path, text) == [*["definition"] * 2, *["verified"] * 3]
+    found = verdicts(tmp_path, text.replace("4 g a x^3 =", "2 g a x^3 ="))
+    assert [k for k, one in enumerate(found) if one == "wrong"] == [4]

@@ -146,8 +146,13 @@ def _points(
     # beside a point in the plane, a mass can move along one axis alone
     indices = {name.partition("_")[2] for name in letters.of_kind("mass")} - {""}
     has_plane = any(len(axes) > 1 for axes in points.values())
+
+    def component(index: str, axes: Mapping[int, sp.Expr], k: int) -> sp.Expr:
+        name = f"{AXES[k]}_{index}" if index else AXES[k]
+        return axes.get(k, symbols[name] if name in letters.coordinates else sp.S.Zero)
+
     result = {
-        index: tuple(axes.get(k, sp.S.Zero) for k in range(3 if 2 in axes else 2))
+        index: tuple(component(index, axes, k) for k in range(3 if 2 in axes else 2))
         for index, axes in points.items()
         if (len(axes) > 1 or (has_plane and index in indices))
         and any(value.free_symbols & moving for value in axes.values())
