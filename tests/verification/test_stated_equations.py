@@ -5,8 +5,11 @@ from pathlib import Path
 import pytest
 
 from derive.reading.document_formats import read_document
-from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.judgement import _read, judge_document
+from derive.verification.documents.letters import stated_equations
+from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.statements import translated
 
 
 def judged(folder: Path, text: str) -> tuple[FormulaVerdict, ...]:
@@ -115,3 +118,24 @@ $$ \ddot x = -\frac{k}{m} x $$
     (tmp_path / "a.md").write_text(text, encoding="utf-8")
     formulas = judge_document(read_document(tmp_path / "a.md")).formulas
     assert [one.verdict for one in formulas] == ["verified", "verified"]
+
+
+SEVERAL = r"""
+$$x_b = x + \frac{L}{2}\sin\theta$$ $$y_b = \frac{L}{2}\cos\theta$$
+$$m_w\ddot x = f_w + R_x + H_w$$ $$R_x = f_b - m_b\ddot x_b$$ $$R_y = m_b\ddot y_b + m_b g$$
+$$(m_w + m_b + \frac{I_w}{r^2})\ddot x
+  = m_b l\sin\theta\,\dot\theta^2 - m_b l\cos\theta\,\ddot\theta + \frac{\tau}{r} + f_w$$
+$$I_b\ddot\theta = R_x l\cos\theta + R_y l\sin\theta - \tau$$
+"""
+
+
+def test_equations_with_large_solutions_are_no_system(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.md").write_text(SEVERAL, encoding="utf-8")
+    statements = translated(_read(read_document(tmp_path / "a.md"))[0])
+    letters = letters_of(statements.formulas, statements.derivatives)
+    stated = stated_equations.StatedEquations(letters, statements.formulas)
+    assert not [*stated.candidates()]  # with each of which a comparison takes seconds
+    monkeypatch.setattr(stated_equations, "MAX_SOLVED", 10_000)
+    assert [*stated.candidates()]

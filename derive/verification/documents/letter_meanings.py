@@ -136,7 +136,15 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
 
 def _refutes(judges: Judges, candidate: SystemCandidate, number: int) -> bool:
     """Whether a formula is wrong in one term by a system."""
+    formula = judges.statements.formulas[number]
+    if not _is_slip_of_a_term(judges.judge(candidate).verdict(formula)):
+        return False  # for which the other verdicts are not required
     _, result = judges.verdicts(candidate)[number]
+    return _is_slip_of_a_term(result)
+
+
+def _is_slip_of_a_term(result: SideVerdict) -> bool:
+    """Whether a verdict is `wrong` with a correction of one term."""
     return result.verdict.verdict == "wrong" and len(result.verdict.corrections) == 1
 
 

@@ -36,6 +36,9 @@ from derive.verification.documents.statements import DocumentFormula
 REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSRtnsrf]\w*|tension|normal)(?:_\w+)?\Z")
 #: Most unknown accelerations and reactions, and operations of an equation.
 MAX_UNKNOWN, MAX_OPERATIONS = 6, 120
+#: Most operations of what equations determine; those of one system, even for six unknowns, have
+#: fewer, and with those of several systems every comparison takes seconds.
+MAX_SOLVED = 600
 #: Most equations that are solved by determinants.
 MOST_BY_CRAMER = 4
 #: Most coordinates whose equations are sought in an order with a symmetric mass matrix.
@@ -152,7 +155,7 @@ class StatedEquations:
         matrix = sp.Matrix([one.coefficients for one in rows])
         rest = sp.Matrix([-one.value.xreplace(still) for one in rows])
         solved = _solved(matrix, rest)
-        if solved is None:
+        if solved is None or sp.count_ops(solved) > MAX_SOLVED:
             return None
         n, name = len(self._q), BY_EQUATIONS
         inertia, forces, V = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n]), None
