@@ -346,6 +346,21 @@ def test_positions_of_one_part_do_not_state_the_system(tmp_path: Path) -> None:
     assert verdicts(tmp_path, BALANCED.replace("- g", "+ g"))[-1] == "wrong"
 
 
+def test_the_tip_of_a_top_does_not_state_the_system(tmp_path: Path) -> None:
+    text = r"""
+$$L = \frac12 I(\dot\phi^2\sin^2\theta + \dot\theta^2)
+  + \frac12 J(\dot\psi + \dot\phi\cos\theta)^2 - M g R\cos\theta$$
+$$I\ddot\theta = I\dot\phi^2\sin\theta\cos\theta
+  - J(\dot\psi + \dot\phi\cos\theta)\dot\phi\sin\theta + M g R\sin\theta$$
+$$\dot\phi = \frac{L_z - L_3\cos\theta}{I\sin^2\theta}$$
+$$\dot\psi = \frac{L_3}{J} - \frac{L_z - L_3\cos\theta}{I\sin^2\theta}\cos\theta$$
+It starts at $\theta_0 = \pi/3$ with $\phi_0 = \psi_0 = \dot\theta_0 = 0$. The tip is drawn at
+$$x = \sin\theta\cos\phi,\quad y = \sin\theta\sin\phi, \quad z = \cos\theta$$"""
+    found = judged(tmp_path, text)
+    assert found.system == "The system of the stated energies"
+    assert found.formulas[1].verdict == "verified"
+
+
 def test_a_constraint_g_can_stand_beside_the_gravity_g(tmp_path: Path) -> None:
     text = r"""The constraint is $g(x,y) = \sqrt{x^2 + y^2} - a = 0$, with
 $$\frac{\partial L}{\partial x} - \frac{d}{dt}\frac{\partial L}{\partial\dot x}

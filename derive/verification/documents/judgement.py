@@ -52,6 +52,7 @@ from derive.verification.documents.statements import (
     IMPLIED,
     DocumentFormula,
     Occurrence,
+    Translated,
     translated,
 )
 from solvers.io.suggestion import did_you_mean
@@ -88,21 +89,35 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
     energies that are stated anew can be those of other systems.
     """
     occurrences, unreadable = _read(document)
-    result = _judge(document, hints, occurrences, unreadable)
-    if not (hints or all(one.verdict in CORRECT for one in result.formulas)):
-        statements = implied_rates(translated(occurrences))
-        parts = restated_subjects(document.text, statements)
-        if parts != subjects(document.text, statements):
-            other = _judge(document, hints, occurrences, unreadable, parts)
-            if _holding(other) > _holding(result) and len(_wrong(other)) <= len(_wrong(result)):
-                result = other
+    result = _by_subjects(document, hints, occurrences, unreadable)
     for variant, name in VARIANTS:
         wrong = _wrong(result)
         if wrong and (same := with_one_letter(occurrences, variant, name)):
-            other = _judge(document, hints, same, unreadable)
+            other = _by_subjects(document, hints, same, unreadable)
             if _wrong(other) < wrong:
                 note = f"{variant} and {name} are taken for one letter, with which more holds"
                 result = replace(other, notes=(*other.notes, note))
+    return result
+
+
+def _by_subjects(
+    document: Document,
+    hints: Hints | None,
+    occurrences: Sequence[Occurrence],
+    unreadable: Sequence[FormulaVerdict],
+) -> DocumentVerdicts:
+    """Verdicts with other subjects where energies are stated anew, if more formulas hold so."""
+    statements = implied_rates(translated(occurrences))
+    parts = subjects(document.text, statements)
+    work = Work()
+    result = _judge(document, hints, occurrences, unreadable, statements, parts, work)
+    if hints or all(one.verdict in CORRECT for one in result.formulas):
+        return result
+    others = restated_subjects(document.text, statements)
+    if others != parts:
+        other = _judge(document, hints, occurrences, unreadable, statements, others, work)
+        if _holding(other) > _holding(result) and len(_wrong(other)) <= len(_wrong(result)):
+            return other
     return result
 
 
@@ -121,18 +136,18 @@ def _judge(
     hints: Hints | None,
     occurrences: Sequence[Occurrence],
     unreadable: Sequence[FormulaVerdict],
-    parts: Sequence[Formulas] = (),
+    statements: Translated,
+    parts: Sequence[Formulas],
+    work: Work,
 ) -> DocumentVerdicts:
-    """Verdicts on the statements of a document, with its subjects unless given as `parts`."""
+    """Verdicts on the statements of a document with some subjects."""
     judged = [*unreadable]
-    statements = implied_rates(translated(occurrences))
     judged += [_plain(place, "context", note) for place, note in statements.failures]
     written = _written(occurrences)
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
-    work = Work()
-    waiting = [*parts] or subjects(document.text, statements)
+    waiting = [*parts]
     while waiting:
         remaining, count, moving = waiting.pop(0), 0, set[str]()
         while remaining and count < (1 if hints else MAX_SYSTEMS):

@@ -17,7 +17,6 @@ from derive.reading.latex.tree import (
     Product,
     Span,
     Statement,
-    Sum,
     Tuple,
     Unreadable,
     has_index,
@@ -169,8 +168,7 @@ def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[Documen
 
 
 def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
-    sides = [_with_own_constants(side, occurrence.start) for side in occurrence.sides]
-    relations = occurrence.relations
+    sides, relations = occurrence.sides, occurrence.relations
     if any(map(_is_at_one_time, sides)):
         raise UntranslatableError("it states a value at one time")
     index = next((one for one in INDICES if has_index(sides, one)), "")
@@ -184,20 +182,6 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
         yield DocumentFormula(
             occurrence, tuple(text for _, text in pairs), tuple(one for one, _ in pairs[1:]), number
         )
-
-
-def _with_own_constants(side: Node, start: int) -> Node:
-    """The side with a letter for the constant of a sum, as that of an energy, that no other has."""
-    if not isinstance(side, Sum) or len(side.terms) < 2:
-        return side
-    return replace(side, terms=tuple((sign, _own(one, start)) for sign, one in side.terms))
-
-
-def _own(term: Node, start: int) -> Node:
-    """The term; for a constant, a letter with its place as an index."""
-    if isinstance(term, Letter) and CONSTANT.fullmatch(term.identifier):
-        return replace(term, index=str(start + term.span[0]))
-    return term
 
 
 def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:

@@ -20,7 +20,7 @@ from derive.reading.latex.tree import (
     with_letters,
 )
 from derive.verification.documents.letters.letters import QUANTITIES
-from derive.verification.documents.statements import Occurrence
+from derive.verification.documents.statements import CONSTANT, Occurrence
 
 #: Two forms of one letter, which some documents mix.
 VARIANTS = (("ell", "l"), ("varphi", "phi"), ("vartheta", "theta"), ("varepsilon", "epsilon"))
@@ -29,7 +29,8 @@ VARIANTS = (("ell", "l"), ("varphi", "phi"), ("vartheta", "theta"), ("varepsilon
 def with_own_letters(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     """The statements with a letter of its own for each meaning that a document shows."""
     labelled = [_with_sides(one, with_labels(one.sides, QUANTITIES)) for one in occurrences]
-    return _with_any_coordinate(_with_differences(_with_functions(_with_lengths(labelled))))
+    separate = _with_constants(_with_functions(_with_lengths(labelled)))
+    return _with_any_coordinate(_with_differences(separate))
 
 
 def with_one_letter(occurrences: Sequence[Occurrence], variant: str, name: str) -> list[Occurrence]:
@@ -122,7 +123,7 @@ FUNCTION = "function"
 def _with_functions(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     """The statements, with a name for a function g beside the gravity g.
 
-    It is differentiated, or has several arguments.
+    It is differentiated, has several arguments, or is stated, as in g(x) = 0.
     """
 
     def heads(place: Occurrence) -> Iterator[Span]:
@@ -150,6 +151,25 @@ def _with_functions(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         _with_sides(place, with_letters(place.sides, partial(change, spans)))
         for place, spans in zip(occurrences, own, strict=True)
     ]
+
+
+def _with_constants(occurrences: Iterable[Occurrence]) -> list[Occurrence]:
+    """The statements with a letter of its own for each constant of a sum, as that of an energy."""
+
+    def change(place: Occurrence, own: set[Span], letter: Letter) -> Letter:
+        start = str(place.start + letter.span[0])
+        return replace(letter, index=start) if letter.span in own else letter
+
+    def changed(place: Occurrence) -> Occurrence:
+        terms = (one for side in place.sides for one in _summands(side))
+        own = {
+            one.span
+            for one in terms
+            if isinstance(one, Letter) and CONSTANT.fullmatch(one.identifier)
+        }
+        return _with_sides(place, with_letters(place.sides, partial(change, place, own)))
+
+    return [changed(one) for one in occurrences]
 
 
 def _is_difference_of_energies(place: Occurrence) -> bool:

@@ -295,14 +295,19 @@ def _is_odd(text: str, rates: set[str]) -> bool:
 def _is_inertial(name: str, formulas: Iterable[DocumentFormula]) -> bool:
     """Whether a letter is a factor of products of velocities, as no multiplier of a force is."""
     for text in (side.text for one in formulas if name in one.words for side in one.sides):
-        symbols = {word: sp.Symbol(word) for word in _words(text)}
-        rates = [symbol for word, symbol in symbols.items() if order(word) == 1]
-        if name in symbols and rates:
-            with suppress(ExpressionError, NotImplementedError, AttributeError, TypeError):
-                slope = parse(text, {**symbols, **FUNCTIONS}).diff(symbols[name])
-                if any(slope.diff(one).has(*rates) for one in rates):
-                    return True
+        slope = _slope(text, name)
+        rates = [one for one in slope.free_symbols if order(one.name) == 1]
+        if any(slope.diff(one).has(*rates) for one in rates):
+            return True
     return False
+
+
+def _slope(text: str, name: str) -> sp.Expr:
+    """The derivative of a formula by a letter; 0 where it cannot be formed."""
+    symbols = {word: sp.Symbol(word) for word in _words(text)}
+    with suppress(ExpressionError, NotImplementedError, AttributeError, TypeError):
+        return parse(text, {**symbols, **FUNCTIONS}).diff(sp.Symbol(name))
+    return sp.S.Zero
 
 
 def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:
@@ -412,12 +417,10 @@ def _related(
         words = _words(formula.sides[-1].text)
         others = rates & {*words} & {*coordinates} - {formula.subject}
         if formula.subject in rates and len(others) == 1:
-            symbols = {word: sp.Symbol(word) for word in words}
-            with suppress(ExpressionError, NotImplementedError, AttributeError, TypeError):
-                slope = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS})
-                slope = slope.diff(symbols[next(iter(others))])
-                if slope and not slope.has(symbols[next(iter(others))]):
-                    result.add(formula.subject)
+            (other,) = others
+            slope = _slope(formula.sides[-1].text, other)
+            if slope and not slope.has(sp.Symbol(other)):
+                result.add(formula.subject)
     return result
 
 

@@ -29,9 +29,9 @@ def resolved(
     """Formulas in known letters for letters without a meaning.
 
     A meaning is accepted if at least two comparisons and more than half of them hold with it, so
-    that a mistake in a single letter is not taken for another letter. A letter with which as many
-    hold, whatever its value, is a constant, as l of a potential energy m*g*(l - x): it stands for
-    itself.
+    that a mistake in a single letter is not taken for another letter. A letter is a constant, as l
+    of a potential energy m*g*(l - x), if so many hold whatever its value is, and no more with a
+    meaning: it stands for itself.
     """
     numbers = Numbers(CandidateMotions([candidate], letters), letters, derivatives)
     meanings: dict[str, str] = {}
@@ -153,7 +153,7 @@ def _meaning(
         least = max(1, len(votes) // 2) if is_sum else max(SUPPORT, len(votes) // 2 + 1)
         if votes.count(True) >= max(least, as_constants + 1):
             return dict(zip(names, texts, strict=True))
-    return own if as_constants >= SUPPORT else None
+    return own if own and as_constants >= max(SUPPORT, len(votes) // 2 + 1) else None
 
 
 def _votes(

@@ -216,11 +216,10 @@ class Judge:
                 result = SideComparison(namespace, self._linear, roles).compared(
                     formula, *formula.sides, left, right
                 )
-                for one in result.verdict.corrections[:1]:
-                    words = {*WORD.findall(f"{one.wrong} {one.correct}")}
-                    is_alone = len(result.verdict.corrections) == 1
-                    if is_alone and one.wrong and words.isdisjoint(unknown):
-                        return result
+                changes = [f"{one.wrong} {one.correct}" for one in result.verdict.corrections]
+                is_one = len(changes) == 1 and result.verdict.corrections[0].wrong != ""
+                if is_one and {*WORD.findall(changes[0])}.isdisjoint(unknown):
+                    return result
         return None
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
