@@ -176,7 +176,7 @@ def test_derivations_of_the_readme_have_the_verdicts_shown(
     (tmp_path / name).write_text(blocks(VERIFICATION, language)[0])
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    assert main(["verify", name]) == 1
+    assert main(["verify", name]) == (0 if name == "pendulum.js" else 1)
     expected = f"$ holonomic verify {name}\n{capsys.readouterr().out}"
     assert blocks(VERIFICATION, "text")[number] == expected
 

@@ -74,7 +74,7 @@ class NumericConstant:
 
 @dataclass(frozen=True)
 class Finding:
-    """A remark on the method of integration."""
+    """A remark on the method of integration, which is a fault where it cannot be meant."""
 
     line: int
     kind: FindingKind

@@ -129,13 +129,13 @@ def euler_findings(
             text = f"semi-implicit Euler: {x} first, then {rate} (line {v.line})"
             yield Finding(q.line, "semi_implicit_euler", function, text)
         else:
-            text = f"explicit Euler: {x} grows by the old value of {rate}"
-            yield Finding(q.line, "explicit_euler", function, text, True)
+            text = f"explicit Euler, with which undamped oscillations grow: {x} is changed by the"
+            yield Finding(q.line, "explicit_euler", function, f"{text} old value of {rate}")
         partly = (new & velocities) | (moved if moved != coordinates else frozenset())
         if partly:
             changed = ", ".join(sorted(map(shown, partly)))
             text = f"the acceleration for {rate} uses values after the step: {changed}"
-            yield Finding(v.line, "mixed_update", function, text, True)
+            yield Finding(v.line, "mixed_update", function, text)
     yield from _steps(pairs, region, constants)
     for pair in pairs:
         yield from _damping(pair.velocity, function, shown)
@@ -155,15 +155,14 @@ def _steps(
             text = "one step a picture: the step size is that of the pictures"
         else:
             continue
-        is_fault = step is None or isinstance(value, NumberLiteral)
-        yield Finding(line, "frame_step", region.name, text, is_fault)
+        yield Finding(line, "frame_step", region.name, text)
         return
 
 
 def _damping(velocity: Update, function: str, shown: Callable[[str], str]) -> Iterator[Finding]:
     if velocity.damping is not None:
         text = f"{shown(velocity.variable)} is multiplied by a factor each step: damping"
-        yield Finding(velocity.damping_line or velocity.line, "damping", function, text, True)
+        yield Finding(velocity.damping_line or velocity.line, "damping", function, text)
 
 
 #: Functions that integrate, and the library and the method by default.

@@ -170,9 +170,10 @@ class Updates:
             parts = factors(term, self._is_whole)
             for part in parts:
                 velocity, is_new, is_part = self._velocity(inner(part))
-                is_middle = is_new and id(inner(part)) not in self._final
                 if velocity is None or velocity is coordinate or sign < 0:
                     continue
+                is_last = id(inner(part)) in self._final or velocity.damping is not None
+                is_middle = is_new and not is_last
                 others = [one for one in parts if one is not part]
                 if any(self._moves(one) for one in others):
                     continue
