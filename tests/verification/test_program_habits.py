@@ -190,3 +190,13 @@ def test_accelerations_can_be_known_by_their_names_alone() -> None:
     wrong = judged(NAMED.replace("l*s*thdot**2", "l*s*thdot"))
     assert [(one.line, one.verdict) for one in wrong.formulas] == [(8, "wrong"), (9, "verified")]
     assert not judged(NAMED.replace("thdot", "rate")).formulas
+
+
+def test_a_ratio_of_masses_is_no_letter_for_both_of_them() -> None:
+    text = """
+def rates(t, y, g, mu):
+    r, v, theta, omega = y
+    a = (r*omega**2 + g*(np.cos(theta) - mu))/(1 + mu)
+    return v, a, omega, -(2*v*omega + g*np.sin(theta))/r
+"""
+    assert equations(judged(text)) == ["context", "verified"]

@@ -3,6 +3,7 @@
 No right formula is to be called wrong: a verdict without enough evidence becomes `context`.
 """
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -181,10 +182,11 @@ def weighed(
     it is the rate of a position that a system of energies or equations does not contain. A system
     that is known from elsewhere must have a letter for each of its parameters in formulas that are
     judged, unless that is a factor of the Lagrangian, such as the mass of a single body, and the
-    accelerations as written have no potential of their own; and no more formulas with more than one
-    wrong term, or slips if one is in an energy, than half of those that hold, of which there must
-    be one. With a partial search for it, none is wrong. A formula whose dimensions contradict those
-    of all others needs no more evidence if one term is wrong.
+    accelerations as written have no potential of their own; a letter for several of them, such as
+    for both masses, in a formula that holds; and no more formulas with more than one wrong term, or
+    slips if one is in an energy, than half of those that hold, of which there must be one. With a
+    partial search for it, none is wrong. A formula whose dimensions contradict those of all others
+    needs no more evidence if one term is wrong.
     """
     lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
     wrong = [one.verdict for _, one in results if one.verdict.verdict == "wrong"]
@@ -227,6 +229,8 @@ def weighed(
     # rates of positions, or of other names, of which nothing in a system shows that they hold
     shown = {w for formula, one in results if one.verdict.verdict == "verified"
              for w in formula.words}  # fmt: skip
+    counts = Counter(candidate.parameters.values())
+    unsure = {letter for letter, n in counts.items() if is_known and n > 1 and letter not in shown}
     unused = {
         f"{formula.subject}_dot": lines[k]
         for k, (formula, one) in enumerate(results)
@@ -267,7 +271,7 @@ def weighed(
             result = plain("context", formula, f"it contradicts the stated friction: {UNDECIDED}")
         elif verdict.verdict == "wrong" and has_cases:
             result = plain("context", formula, f"it differs from {given or 'others'}: {OTHER_CASE}")
-        elif verdict.verdict == "wrong" and is_weak:
+        elif verdict.verdict == "wrong" and (is_weak or unsure & {*formula.words}):
             result = plain("context", formula, UNSUPPORTED)
         elif verdict.verdict == "wrong" and (
             _is_driven(candidate)
