@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import permutations
 
 import numpy as np
@@ -133,6 +134,15 @@ class StatedEquations:
 
     def _equations(self, unknown: Sequence[sp.Symbol]) -> Iterator[_Equation]:
         """The equations between neighbouring sides that are linear in unknowns."""
+        for number, value in self._differences:
+            coefficients = tuple(value.diff(symbol) for symbol in unknown)
+            if any(coefficients) and not sp.Tuple(*coefficients).has(*unknown):
+                yield _Equation(value, number, coefficients)
+
+    @cached_property
+    def _differences(self) -> list[tuple[int, sp.Expr]]:
+        """Differences of neighbouring sides, with the numbers of their formulas."""
+        result = []
         for number, formula in enumerate(self._formulas):
             for k, relation in enumerate(formula.relations):
                 if relation not in ("=", ":="):
@@ -140,11 +150,10 @@ class StatedEquations:
                 with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
                     one, other = (parse(s.text, self._names) for s in formula.sides[k : k + 2])
                     value = one - other
-                    if isinstance(value, sp.MatrixBase) or sp.count_ops(value) > MAX_OPERATIONS:
-                        continue
-                    coefficients = tuple(value.diff(symbol) for symbol in unknown)
-                    if any(coefficients) and not sp.Tuple(*coefficients).has(*unknown):
-                        yield _Equation(value, number, coefficients)
+                    is_scalar = not isinstance(value, sp.MatrixBase)
+                    if is_scalar and sp.count_ops(value) <= MAX_OPERATIONS:
+                        result.append((number, value))
+        return result
 
     def _candidate(
         self, rows: Sequence[_Equation], reactions: Mapping[str, sp.Symbol], numbers: frozenset[int]
