@@ -10,7 +10,7 @@ from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.dimensions import inhomogeneous_formula
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
-from derive.verification.documents.rules.consequences import INHOMOGENEOUS
+from derive.verification.documents.rules.evidence import INHOMOGENEOUS
 from derive.verification.documents.statements import Occurrence, translated
 
 

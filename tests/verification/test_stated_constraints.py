@@ -15,7 +15,8 @@ from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
-from derive.verification.documents.rules.consequences import Contradictions, weighed
+from derive.verification.documents.rules.consequences import Contradictions
+from derive.verification.documents.rules.evidence import weighed
 from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import translated
 

@@ -43,9 +43,9 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.documents.rules.consequences import of_lost_dots, weighed
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
+from derive.verification.documents.rules.evidence import of_lost_dots, weighed
 from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
 from derive.verification.documents.statements import (

@@ -20,8 +20,8 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.documents.rules.consequences import weighed
 from derive.verification.documents.rules.corrected_formulas import inserted, source_span
+from derive.verification.documents.rules.evidence import weighed
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.judging.verdict import VerdictName

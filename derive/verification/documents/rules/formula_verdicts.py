@@ -15,7 +15,6 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.rules.amplitudes import Amplitudes
 from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
@@ -30,7 +29,7 @@ from derive.verification.documents.rules.side_verdict import (
     not_understood,
     plain,
 )
-from derive.verification.documents.rules.small_motions import SmallMotions
+from derive.verification.documents.rules.small_motions import Amplitudes, SmallMotions
 from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,

@@ -1,0 +1,374 @@
+"""Which verdicts stand by the evidence of a document.
+
+No right formula is to be called wrong: a verdict without enough evidence becomes `context`.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+from itertools import combinations
+
+import sympy as sp
+
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.generic_values import is_nonzero
+from derive.formulas.syntax import ExpressionError
+from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.document_system import derivation
+from derive.verification.documents.rules.consequences import (
+    FOLLOWS,
+    UNDECIDED,
+    Contradictions,
+    WithVerdict,
+    opposed,
+)
+from derive.verification.documents.rules.side_verdict import SideVerdict, plain
+from derive.verification.documents.statements import POINT, WORD, DocumentFormula
+from derive.verification.judging.engine import joined
+
+#: Kinds of formulas that no other case of the system gives.
+OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
+#: Verdicts on formulas that hold.
+HOLDING = ("verified", "equivalent")
+
+#: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
+UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
+#: The note on a formula whose dimensions contradict those of all others.
+INHOMOGENEOUS = "its dimensions contradict those of all other formulas"
+#: The note on a rate that contradicts any position.
+NO_RATE = "nothing that depends on the coordinates has this rate"
+#: The reason of a verdict that a system without enough support gives.
+UNSUPPORTED = (
+    "it does not hold for the system that fits best, but this fits too few other formulas to call "
+    "it wrong: state the system by --system"
+)
+#: The reason of a verdict on an equation that differs from other equations.
+OTHER_CASE = "it can be another case, or one of these can be wrong"
+
+
+def weighed(
+    results: Sequence[WithVerdict],
+    candidate: SystemCandidate,
+    contradictions: Contradictions,
+    is_stated: bool,
+    is_partial: bool = False,
+) -> Iterator[WithVerdict]:
+    """Yield the verdicts, with `context` for formulas that are wrong by too weak evidence.
+
+    A formula is wrong by a system that the user states, or that follows from positions or energies
+    in the document. It is not if other formulas of the document fit the rest as well and agree with
+    it, in which case neither these nor what holds with them alone is verified; nor if one of
+    several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
+    it is the rate of a position that a system of energies or equations does not contain. A system
+    that is known from elsewhere must have a letter for each of its parameters in formulas that are
+    judged, unless that is a factor of the Lagrangian, such as the mass of a single body, and the
+    accelerations as written have no potential of their own; a letter for several of them, such as
+    for both masses, in a formula that holds; and no more formulas with more than one wrong term, or
+    slips if one is in an energy, than half of those that hold, of which there must be one. With a
+    partial search for it, none is wrong. A formula whose dimensions contradict those of all others
+    needs no more evidence if one term is wrong.
+    """
+    evidence = _Evidence(results, candidate, contradictions, is_stated, is_partial)
+    for number, (formula, _) in enumerate(results):
+        yield formula, evidence.weighed(number)
+
+
+class _Evidence:
+    """What supports and what contradicts the verdicts on formulas by a system."""
+
+    def __init__(
+        self,
+        results: Sequence[WithVerdict],
+        candidate: SystemCandidate,
+        contradictions: Contradictions,
+        is_stated: bool,
+        is_partial: bool,
+    ) -> None:
+        self._results, self._candidate, self._contradictions = results, candidate, contradictions
+        self._is_stated, self._is_partial = is_stated, is_partial
+        self._is_known = candidate.basis == "catalogue" and not is_stated
+        self._lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
+        self._wrong = [one for _, one in results if one.verdict.verdict == "wrong"]
+        self._independent = [one for one in self._wrong if FOLLOWS not in one.verdict.note]
+        self._misfits = sum(len(one.verdict.corrections) != 1 for one in self._independent)
+        self._holding = sum(one.verdict.verdict in HOLDING for _, one in results)
+        self._has_energy = any(one.kind in OF_ENERGIES for one in self._wrong)
+        self._given = _lines(self._lines[k] for k in candidate.stating)
+        self._undecided = {*_of_friction(results, candidate)}
+
+    def weighed(self, number: int) -> SideVerdict:
+        """The verdict on a formula in the light of the others."""
+        formula, result = self._results[number]
+        if number == self._contradictions.inhomogeneous:
+            own = self._of_dimensions(formula, result)
+            if own is not None:
+                return own
+        is_wrong = result.verdict.verdict == "wrong"
+        if is_wrong and _is_no_rate(formula, self._candidate):
+            return _noted(result, NO_RATE)
+        if self._is_guess and (is_wrong or result.verdict.verdict in HOLDING):
+            return plain("context", formula, UNSTATED)
+        if result.verdict.verdict in HOLDING and number in self._contradictions.disputed:
+            line = self._lines[min(self._contradictions.disputed[number])]
+            return plain("context", formula, opposed(line))
+        if is_wrong and (doubt := self._doubt(number)):
+            return plain("context", formula, doubt)
+        return _noted(result, f"given {self._given}") if is_wrong and self._given else result
+
+    def _of_dimensions(self, formula: DocumentFormula, result: SideVerdict) -> SideVerdict | None:
+        """The verdict on the formula whose dimensions contradict those of all others."""
+        verdict = result.verdict
+        if verdict.verdict == "wrong":
+            if len(verdict.corrections) != 1:
+                return None
+            noted = _noted(result, INHOMOGENEOUS)
+            return _noted(noted, f"given {self._given}") if self._given else noted
+        if self._contradictions.lost_dots:
+            return of_lost_dots(formula, self._contradictions)
+        if verdict.verdict == "definition":
+            return plain("context", formula, INHOMOGENEOUS)
+        return None
+
+    def _doubt(self, number: int) -> str:
+        """Why a formula that contradicts the system need not be wrong; empty if it is."""
+        formula, result = self._results[number]
+        other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
+        inhomogeneous = self._contradictions.inhomogeneous
+        if inhomogeneous is not None and inhomogeneous in self._candidate.stating:
+            return opposed(self._lines[inhomogeneous])
+        if number in self._contradictions.doubts:
+            others = self._contradictions.doubts[number] - {number}
+            beside = f" and agrees with {_lines(self._lines[k] for k in others)}" if others else ""
+            return f"it contradicts {self._given or 'the system'}{beside}: {UNDECIDED}"
+        if formula.subject in self._unused:
+            return opposed(self._unused[formula.subject])
+        if number in self._undecided:
+            return f"it contradicts the stated friction: {UNDECIDED}"
+        if self._has_cases:
+            return other_case
+        if self._is_weak or self._unsure & {*formula.words}:
+            return UNSUPPORTED
+        if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
+            return other_case if _is_driven(self._candidate) else ""
+        if self._is_tie or _adds_letters(formula, result, self._candidate):
+            return other_case
+        return ""
+
+    @cached_property
+    def _is_weak(self) -> bool:
+        """Whether a system that is known from elsewhere fits too little."""
+        lacking = {*_lacking(self._results, self._candidate)}
+        has_all = not lacking or (
+            self._misfits == 0 < self._holding
+            and lacking == {*_scales(self._candidate, lacking)}
+            and not _is_conservative([formula for formula, _ in self._results])
+        )
+        # an energy and an equation that contradict the system alike speak against the system
+        terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
+        slips = max(self._misfits, len(terms) if self._has_energy else 0)
+        few = max(1, min(self._holding, max(2, self._holding // 2)))
+        is_several = self._has_energy and len(self._wrong) > 1
+        has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
+        return self._is_known and (self._is_partial or not has_all or has_none or slips > few)
+
+    @property
+    def _is_guess(self) -> bool:
+        """Whether a single formula supports an unusual meaning of angles."""
+        return self._is_known and self._holding < 2 and self._candidate.is_turned
+
+    @property
+    def _is_tie(self) -> bool:
+        """Whether equations that state a system are no more certain than one that differs."""
+        is_alone = len(self._independent) == 1 and self._holding >= 2 and self._misfits == 0
+        return self._candidate.is_of_equations and not is_alone
+
+    @cached_property
+    def _has_cases(self) -> bool:
+        """Whether an energy is stated again, with other equations, as for another case."""
+        if len(self._wrong) < 2 or self._is_stated:
+            return False
+        stating = self._candidate.stating
+        held = {
+            formula.subject
+            for k, (formula, one) in enumerate(self._results)
+            if k in stating or one.verdict.verdict in HOLDING
+        }
+        return self._candidate.basis in ("energies", "catalogue") and any(
+            one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES and formula.subject in held
+            for k, (formula, one) in enumerate(self._results)
+            if k not in stating and formula.subject
+        )
+
+    @cached_property
+    def _shown(self) -> set[str]:
+        """The names in formulas that are verified."""
+        return {
+            word
+            for formula, one in self._results
+            if one.verdict.verdict == "verified"
+            for word in formula.words
+        }
+
+    @cached_property
+    def _unsure(self) -> set[str]:
+        """Letters for several parameters of a known system that no formula shows to be right."""
+        counts = Counter(self._candidate.parameters.values())
+        several = {letter for letter, count in counts.items() if count > 1}
+        return several - self._shown if self._is_known else set()
+
+    @cached_property
+    def _unused(self) -> dict[str, int]:
+        """Rates of positions, or of other names, of which nothing shows that they hold.
+
+        With the lines of their definitions, which the system does not contain.
+        """
+        is_any = bool(self._candidate.stating)
+        return {
+            f"{formula.subject}_dot": self._lines[k]
+            for k, (formula, one) in enumerate(self._results)
+            if (is_any or (self._is_known and not POINT.match(formula.subject)))
+            and one.verdict.verdict == "definition"
+            and k not in self._candidate.stating
+            and formula.subject not in self._shown
+        }
+
+
+def _noted(result: SideVerdict, note: str) -> SideVerdict:
+    """The verdict with one more note."""
+    verdict = result.verdict
+    return replace(result, verdict=replace(verdict, note=joined(verdict.note, note)))
+
+
+def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> SideVerdict:
+    """The verdict on a formula that lacks dots, which its dimensions alone show."""
+    result = plain("wrong", formula, INHOMOGENEOUS)
+    verdict = replace(result.verdict, corrections=contradictions.lost_dots)
+    return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
+
+
+def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
+    """Whether a formula states the rate of a component of a position that no function has.
+
+    Coordinates whose rates it does not contain can be constant there.
+    """
+    name = formula.subject.removesuffix("_dot")
+    if name == formula.subject or not POINT.match(name) or name in candidate.coordinates:
+        return False
+    words = {*candidate.coordinates, *(f"{q}_dot" for q in candidate.coordinates)}
+    words |= candidate.letters - {"t"}
+    if not {*WORD.findall(formula.sides[-1].text)} <= {*words, *FUNCTIONS, "t"}:
+        return False  # such as speeds by name
+    symbols = {word: sp.Symbol(word) for word in words}
+    try:
+        value = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS, "t": TIME})
+    except ExpressionError:
+        return False
+    pairs = [(symbols[q], symbols[f"{q}_dot"]) for q in candidate.coordinates]
+    if not isinstance(value, sp.Expr):
+        return False
+    slopes = [(q, value.diff(v)) for q, v in pairs]
+    if any(is_nonzero(slope.diff(v)) for _, slope in slopes for _, v in pairs):
+        return True
+    resting = value.xreplace({v: sp.S.Zero for _, v in pairs})
+    if any(is_nonzero(resting.diff(q)) for q, _ in pairs):  # a term has lost its rate
+        return True
+    slopes = [(q, slope) for q, slope in slopes if slope] + [(TIME, resting)]
+    return any(is_nonzero(a.diff(p) - b.diff(q)) for (q, a), (p, b) in combinations(slopes, 2))
+
+
+def _is_driven(candidate: SystemCandidate) -> bool:
+    """Whether equations of a driven motion state the system, which leave its energies open."""
+    return candidate.is_of_equations and candidate.system.potential_energy.has(TIME)
+
+
+def _of_friction(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[int]:
+    """Yield the numbers of wrong formulas that differ in friction of Rayleigh's function.
+
+    This can be wrong, too: it is right if it leads to other formulas that contain its letters.
+    """
+    if candidate.basis not in ("positions", "energies"):
+        return
+    names = {symbol.name for symbol in sp.Tuple(*candidate.system.forces).free_symbols}
+    letters = {letter for name, letter in candidate.parameters.items() if name in names}
+    supported = {
+        word
+        for formula, one in results
+        if one.verdict.verdict in HOLDING and formula.subject not in letters
+        for word in formula.words
+    }
+    for number, (formula, result) in enumerate(results):
+        if result.verdict.verdict == "wrong":
+            terms = [
+                text for one in result.verdict.corrections for text in (one.wrong, one.correct)
+            ]
+            words = {w for text in terms for w in WORD.findall(text)} or {*formula.words}
+            own = words & letters
+            if own and not own <= supported:
+                yield number
+
+
+def _adds_letters(
+    formula: DocumentFormula, result: SideVerdict, candidate: SystemCandidate
+) -> bool:
+    """Whether a correction has forces or friction that a formula, as of a case without, has not.
+
+    Of a system that equations state, these are all letters.
+    """
+    terms = [one for one in result.verdict.corrections if one.correct != f"{one.wrong}_dot"]
+    added = {w for one in terms for w in WORD.findall(one.correct)}  # but for a lost dot
+    loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
+    return bool(
+        (added - {*formula.words, *FUNCTIONS}) & (added if candidate.is_of_equations else loads)
+    )
+
+
+def _lacking(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[str]:
+    """The parameters of a system that have no number, and no letter in a formula that is judged.
+
+    A letter of other formulas alone can be one of another system.
+    """
+    judged = {w for formula, one in results if one.verdict.verdict != "context"
+              for w in formula.words}  # fmt: skip
+    known = {name for name, letter in candidate.parameters.items() if letter in judged}
+    known |= {*candidate.numbers}
+    return (p.symbol.name for p in candidate.system.parameters if p.symbol.name not in known)
+
+
+def _scales(candidate: SystemCandidate, names: Collection[str]) -> Iterator[str]:
+    """Those that drop out of the equations of motion: factors of the Lagrangian."""
+    system = candidate.system
+    if any(system.applied) or candidate.forces or candidate.friction:
+        return
+    for name in names:
+        symbol = next(p.symbol for p in system.parameters if p.symbol.name == name)
+        if not sp.expand(derivation(system).lagrangian / symbol).has(symbol):
+            yield name
+
+
+def _is_conservative(formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether accelerations that formulas state are the gradient of a potential energy."""
+    words = {word for formula in formulas for word in formula.words}
+    symbols = {word: sp.Symbol(word, positive=True) for word in words}
+    rows = {stem(one.subject): one.sides[-1].text for one in formulas if order(one.subject) == 2}
+    try:
+        values = {q: parse(text, {**symbols, **FUNCTIONS}) for q, text in rows.items()}
+    except ExpressionError:
+        return False
+    if any(order(str(symbol)) for value in values.values() for symbol in value.free_symbols):
+        return False
+    point = {symbols[word]: sp.Rational(k + 7, k + 5) for k, word in enumerate(sorted(words))}
+    q = {name: sp.Symbol(name, positive=True) for name in rows}
+    curls = (values[a].diff(q[b]) - values[b].diff(q[a]) for a, b in combinations(rows, 2))
+    return all(abs(one.subs(point).evalf(30)) < 1e-20 for one in curls)
+
+
+def _lines(numbers: Iterable[int]) -> str:
+    """Lines in words."""
+    words = [*map(str, sorted({*numbers}))]
+    if not words:
+        return ""
+    *first, last = words
+    return f"lines {', '.join(first)} and {last}" if first else f"line {last}"
