@@ -22,8 +22,7 @@ from derive.verification.documents.letter_meanings import (
     interpretation,
     unopposed,
 )
-from derive.verification.documents.letters.convention import convention
-from derive.verification.documents.letters.hints import Hints, without_meaning
+from derive.verification.documents.letters.hints import Hints, convention, without_meaning
 from derive.verification.documents.letters.letter_forms import (
     VARIANTS,
     with_one_letter,

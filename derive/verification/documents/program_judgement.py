@@ -12,8 +12,7 @@ from derive.verification.documents.letter_meanings import (
     interpretation,
     unopposed,
 )
-from derive.verification.documents.letters.convention import convention
-from derive.verification.documents.letters.hints import Hints, without_meaning
+from derive.verification.documents.letters.hints import Hints, convention, without_meaning
 from derive.verification.documents.pages.verdicts_in_place import (
     METHOD,
     Alternative,

@@ -10,44 +10,33 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.formula_translation import FormulaText, order, stem
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
     COLUMN,
-    COLUMNS,
-    ENERGIES,
     GENERIC,
-    MATRICES,
     OPERATORS,
-    QUANTITIES,
-    SQUARES,
-    TOTAL,
     Letters,
     energy_of_part,
     matrices_by_entries,
+)
+from derive.verification.documents.letters.quantities import (
+    matrices_of,
+    partners,
+    quantities_of,
+    resting_functions,
+    routhians,
 )
 from derive.verification.documents.letters.stated_constraints import (
     multipliers_of,
     stated_constraints,
 )
-from derive.verification.documents.statements import (
-    SQUARE,
-    DocumentFormula,
-)
+from derive.verification.documents.statements import SQUARE, WORD, DocumentFormula
 
 #: A letter with a number.
 INDEXED = re.compile(r"[A-Za-z]+_\d+")
-#: Letters of momenta.
-MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
-#: Letters of potential energies beside those of kinetic ones; alone they can be momenta.
-PARTNERS = {"K": ("P", "Pi")}
-#: A multiple of a quantity on the left, such as that in 2 T = m v**2.
-MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: A number, perhaps with a unit.
 NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d+\*[msN]\b.*")
-#: Letters of accelerations of documents without any rate, and of velocities.
-#: The letter of gravity.
-GRAVITY = "g"
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -64,33 +53,7 @@ def letters_of(
                 words.update((operand, *variables))
     stems = list(dict.fromkeys(map(stem, words)))
     orders = {one: max(order(name) for name in words if stem(name) == one) for one in stems}
-    combined = _combinations(formulas)
-    operands = {operand for operand, _ in derivatives.values()}
-    # a function K that is differentiated by a momentum is a Hamiltonian of other coordinates
-    transformed = {one for one, by in derivatives.values() if any(map(MOMENTUM.match, by))}
-    subjects = {formula.subject for formula in formulas}
-    # no energy has accelerations, as a force does in H = m*x_ddot
-    forces = {one.subject for one in formulas if any(map(_is_of_second_order, one.sides[1:]))}
-    # nor a kinetic energy a weight, as the tension T = m*g*cos(theta) + m*l*theta_dot**2 has
-    weights = {
-        one.subject for one in formulas for side in one.sides[1:] if GRAVITY in _words(side.text)
-    }
-    subjects |= {match[1] for one in formulas if (match := MULTIPLE.fullmatch(one.sides[0].text))}
-    quantities = {
-        one: kind
-        for one in stems
-        if (kind := combined.get(one) or _quantity(one))
-        and (one in subjects or one in operands or one in combined)
-        and not (kind == "kinetic_energy" and _is_constant(one, formulas))
-        and not (kind == "kinetic_energy" and one in {*transformed, *weights})
-        and not (kind == "potential_energy" and _is_effective(one, formulas))
-        and one not in forces
-        and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
-    }
-    written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
-    quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
-    matrices = _matrices(formulas)
-    quantities |= matrices
+    quantities = quantities_of(formulas, derivatives, stems)
     defined = _defined(formulas, orders)
     varied = {stem(v) for _, variables in derivatives.values() for v in variables}
     resting = _resting(formulas)
@@ -103,17 +66,17 @@ def letters_of(
         and not GENERIC.match(one)
         and not one.endswith("_column")
     ]
-    resting_functions = _resting_functions(formulas, moving)
-    quantities |= _partners(quantities, resting_functions)
-    columns = _columns(formulas, moving, matrices)
+    functions = resting_functions(formulas, moving)
+    quantities |= partners(quantities, functions)
+    columns = _columns(formulas, moving, matrices_of(formulas))
     generic = _generic(formulas, derivatives) | columns
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
     for one in stems:
         coordinate = _coordinate(one, moving) if orders[one] < 2 else None
-        if one not in {*quantities, *resting_functions} and coordinate is not None:
+        if one not in {*quantities, *functions} and coordinate is not None:
             momenta[one] = coordinate
-    quantities |= _routhians(formulas, momenta)
+    quantities |= routhians(formulas, momenta)
     # c of c_1 = c_2 = c is no further parameter
     defined |= {name for one in formulas for name in equal_letters(one) if "_" not in name}
     defined -= {*quantities}
@@ -210,13 +173,6 @@ def _abbreviations(
     return result if len({function for function, _ in result.values()}) == 2 else {}
 
 
-def _quantity(name: str) -> str | None:
-    letter, _, index = name.partition("_")
-    if letter == "E" and index in ENERGIES:
-        return ENERGIES[index]
-    return QUANTITIES.get(letter) if index in TOTAL else None
-
-
 def _resting(formulas: Iterable[DocumentFormula]) -> set[str]:
     """Letters of which the rates vanish, as ``l_dot = 0`` states, and occur nowhere else."""
     stated, others = set[str](), set[str]()
@@ -225,71 +181,6 @@ def _resting(formulas: Iterable[DocumentFormula]) -> set[str]:
         *first, last = (side.text for side in formula.sides)
         (stated if last == "0" and all(map(str.isidentifier, first)) else others).update(rates)
     return stated - others
-
-
-def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:
-    """Whether all definitions of a name contain parameters alone, as that of K = m l**2.
-
-    They may contain coordinates if another kinetic energy is stated by it, T = m K x_dot**2/2, or
-    by velocities.
-    """
-    own = [one for one in formulas if one.subject == name]
-    words = {word for one in own for side in one.sides[1:] for word in _words(side.text)}
-    moving = {stem(word) for one in formulas for word in one.words if order(word)}
-    is_used = any(name in one.words and one.subject != name for one in formulas)
-    has_other = any(
-        _quantity(one.subject) == "kinetic_energy"
-        and (name in one.words or any(map(order, one.words)))
-        for one in formulas
-        if one.subject not in ("", name)
-    )
-    excluded = set() if has_other else moving
-    return (
-        bool(words)
-        and (is_used or has_other)
-        and not any(
-            order(word)
-            or word in excluded
-            or _quantity(word)
-            or energy_of_part(word)
-            or word[0] in "pv"
-            for word in words
-        )
-    )
-
-
-def _is_effective(name: str, formulas: Sequence[DocumentFormula]) -> bool:
-    """Whether a potential energy contains a constant of the motion, as c of r**2*phi_dot = c."""
-    own = {word for one in formulas if one.subject == name for word in one.words} - {name}
-    own -= {stem(word) for one in formulas for word in one.words if order(word)}
-    for formula in formulas:
-        first, last = formula.sides[0].text, formula.sides[-1].text
-        for one, other in ((first, last), (last, first)):
-            is_constant = one in own and not other.isidentifier()
-            orders = {order(word) for word in {*_words(other)} - {one}}
-            if is_constant and formula.relations == ("=",) and max(orders, default=0) == 1:
-                return True
-    return False
-
-
-def _is_momentum(name: str, formulas: Sequence[DocumentFormula]) -> bool:
-    """Whether a name is odd in velocities, as the momentum L = x*y_dot - y*x_dot; none is T - V."""
-    sides = [side.text for one in formulas if one.subject == name for side in one.sides[1:]]
-    rates = {one.sides[-1].text for one in formulas if order(one.subject) == 1}
-    return bool(sides) and all(_is_odd(text, rates) for text in sides)
-
-
-def _is_odd(text: str, rates: set[str]) -> bool:
-    """Whether a formula changes its sign with all velocities, some of which have other names."""
-    symbols = {word: sp.Symbol(word) for word in _words(text)}
-    point = {one: sp.Rational(k + 7, k + 5) for k, one in enumerate(symbols.values())}
-    back = {s: -value for s, value in point.items() if order(s.name) == 1 or s.name in rates}
-    try:
-        value = parse(text, {**symbols, **FUNCTIONS})
-        values = [value.xreplace(one).evalf(30) for one in (point, {**point, **back})]
-    except (ExpressionError, NotImplementedError, AttributeError, TypeError, ValueError):
-        return False
-    return bool(back) and all(one.is_number for one in values) and abs(sum(values)) < 1e-20
 
 
 def _is_inertial(name: str, formulas: Iterable[DocumentFormula]) -> bool:
@@ -304,64 +195,10 @@ def _is_inertial(name: str, formulas: Iterable[DocumentFormula]) -> bool:
 
 def _slope(text: str, name: str) -> sp.Expr:
     """The derivative of a formula by a letter; 0 where it cannot be formed."""
-    symbols = {word: sp.Symbol(word) for word in _words(text)}
+    symbols = {word: sp.Symbol(word) for word in WORD.findall(text)}
     with suppress(ExpressionError, NotImplementedError, AttributeError, TypeError):
         return parse(text, {**symbols, **FUNCTIONS}).diff(sp.Symbol(name))
     return sp.S.Zero
-
-
-def _routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -> dict[str, str]:
-    """Names R of functions of momenta; other quantities of this name, as radii, contain none."""
-    subjects = {one.subject for one in formulas if {*momenta} & {*one.words}}
-    return {name: "routhian" for name in subjects if name.partition("_")[0] == "R"}
-
-
-def _matrices(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
-    """Names of the matrices of M q̈ + C q̇ = G that a document writes out."""
-    result: dict[str, str] = {}
-    for formula in formulas:
-        letter, _, index = formula.subject.removesuffix("_column").partition("_")
-        count = max(len(side.entries) for side in formula.sides)
-        if index == "0":
-            continue  # the value at an equilibrium
-        if letter in MATRICES and count in (COLUMNS if letter in "Gg" else SQUARES):
-            result[formula.subject] = MATRICES[letter]
-    return result
-
-
-def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
-    """Energies by statements such as L = K - P and H = T + U."""
-    result: dict[str, str] = {}
-    pattern = re.compile(r"(\w+) ([+-]) (\w+)\Z")
-    for formula in formulas:
-        kind = _quantity(formula.subject)
-        for side in formula.sides[1:]:
-            match = pattern.match(side.text)
-            signs = {"lagrangian": "-", "energy": "+", "hamiltonian": "+"}
-            if match and signs.get(kind or "") == match[2]:
-                result |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
-    return result
-
-
-def _resting_functions(formulas: Iterable[DocumentFormula], moving: Sequence[str]) -> set[str]:
-    """Names P and Pi of functions of coordinates alone, which no momentum is."""
-    words = {name: {word for one in formulas if one.subject == name
-                    for side in one.sides[1:] for word in _words(side.text)}
-             for name in PARTNERS["K"]}  # fmt: skip
-    return {
-        name
-        for name, own in words.items()
-        if own & {*moving} and not any(order(word) or MOMENTUM.match(word) for word in own)
-    }
-
-
-def _partners(quantities: Mapping[str, str], functions: Collection[str]) -> dict[str, str]:
-    """Potential energies P or Pi beside kinetic ones: functions of coordinates alone."""
-    if "potential_energy" in quantities.values():
-        return {}
-    names = {partner for name, kind in quantities.items() if kind == "kinetic_energy"
-             for partner in PARTNERS.get(name, ("Pi",))}  # fmt: skip
-    return dict.fromkeys(names & {*functions}, "potential_energy")
 
 
 def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
@@ -371,7 +208,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
     equal = [{side.text for side in one.sides} for one in formulas]
     for formula in formulas:
         name = formula.subject
-        others = {stem(word) for side in formula.sides[1:] for word in _words(side.text)}
+        others = {stem(word) for side in formula.sides[1:] for word in WORD.findall(side.text)}
         others -= OPERATORS
         moves = any(orders.get(one) for one in others)
         is_solution = orders.get(name) and not moves
@@ -414,7 +251,7 @@ def _related(
     rates = {stem(word) for one in own for word in one.words if order(word)}
     result = set[str]()
     for formula in formulas:
-        words = _words(formula.sides[-1].text)
+        words = WORD.findall(formula.sides[-1].text)
         others = rates & {*words} & {*coordinates} - {formula.subject}
         if formula.subject in rates and len(others) == 1:
             (other,) = others
@@ -428,14 +265,6 @@ def _mechanical(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) 
     """Names in formulas with letters that move."""
     words = [{stem(word) for word in formula.words} - OPERATORS for formula in formulas]
     return {name for one in words if any(orders.get(word) for word in one) for name in one}
-
-
-def _is_of_second_order(side: FormulaText) -> bool:
-    return "ddt(ddt(" in side.text or any(order(word) == 2 for word in _words(side.text))
-
-
-def _words(text: str) -> list[str]:
-    return re.findall(r"[A-Za-z_]\w*", text)
 
 
 def _coordinate(name: str, moving: Sequence[str]) -> str | None:
