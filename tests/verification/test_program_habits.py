@@ -200,3 +200,15 @@ def rates(t, y, g, mu):
     return v, a, omega, -(2*v*omega + g*np.sin(theta))/r
 """
     assert equations(judged(text)) == ["context", "verified"]
+
+
+def test_friction_can_have_the_name_of_a_gain() -> None:
+    text = """
+def rates(t, y, u, M, m, l, g, Kd):
+    x, v, theta, omega = y
+    F = u - Kd*v - m*l*omega**2*np.sin(theta)
+    a = (F + m*g*np.sin(theta)*np.cos(theta))/(M + m*np.sin(theta)**2)
+    return v, a, omega, (g*np.sin(theta) + a*np.cos(theta))/l
+"""
+    assert equations(judged(text)) == ["verified"] * 2
+    assert equations(judged(text.replace("+ a*np", "- a*np"))) == ["verified", "wrong"]

@@ -50,7 +50,7 @@ KINDS: dict[str, tuple[str, ...]] = {
     "stiffness": ("k", "K", "kappa", "c"),
     "inertia": ("I", "J", "Theta"),
     "frequency": ("omega", "Omega", "w", "nu"),
-    "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta", "h"),
+    "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta", "h", "Kd", "kd"),
     "force": ("F", "u", "f", "tau", "Q"),
 }
 
