@@ -21,10 +21,14 @@ $$\mathbf G = \begin{bmatrix} (m_1 + m_2) g l_1 \sin q_1 + m_2 g l_2 \sin(q_1 + 
 """
 
 
-def last(folder: Path, text: str) -> FormulaVerdict:
+def judged(folder: Path, text: str) -> tuple[FormulaVerdict, ...]:
     path = folder / "document.md"
     path.write_text(text)
-    return judge_file(str(path), order)[0].formulas[-1]
+    return judge_file(str(path), order)[0].formulas
+
+
+def last(folder: Path, text: str) -> FormulaVerdict:
+    return judged(folder, text)[-1]
 
 
 @pytest.mark.long("more cases of the same kind", keep=1)
@@ -69,3 +73,34 @@ def test_an_equation_with_a_force_that_has_a_value_is_not_accused(tmp_path: Path
 
 def test_a_column_of_columns_is_one_column() -> None:
     assert parse("((1, 2), (3, 4, 5))", {}).shape == (5, 1)
+
+
+FREE_WHEEL = r"""
+$$L = \frac12 J_1\dot\theta_1^2 + \frac12 J_2\dot\theta_2^2 + \frac12 J_3\dot\phi^2
+  - \frac12 k(\theta_1 - \phi)^2$$
+$$J_2\ddot\theta_2 = d f$$
+$$J_3\ddot\phi = k(\theta_1 - \phi) + Q$$
+"""
+
+
+def test_loads_of_a_free_body_verify_no_other_inertia(tmp_path: Path) -> None:
+    found = judged(tmp_path, FREE_WHEEL)
+    assert [(one.verdict, one.note) for one in found[1:]] == [
+        ("verified", "with d, f as applied forces"),
+        ("verified", "with Q as applied forces"),
+    ]
+    wrong = judged(tmp_path, FREE_WHEEL.replace(r"J_2\ddot", r"J_1\ddot"))
+    assert [one.verdict for one in wrong[1:]] == ["context", "verified"]
+    twice = FREE_WHEEL + r"$$J_1\ddot\theta_2 = d f$$"  # f is not the acceleration of theta_2
+    assert [one.verdict for one in judged(tmp_path, twice)[1:]] == ["verified"] * 2 + ["context"]
+
+
+def test_stated_values_verify_no_formula_that_is_written_with_their_letters(
+    tmp_path: Path,
+) -> None:
+    text = r"""Let $m = 1$ and $\ell = 1$.
+$$L = \frac12 m\ell^2\dot\theta^2 + m g\ell\cos\theta$$
+$$\frac{\partial L}{\partial\dot\theta} = m\ell^2\dot\theta$$
+$$\frac{\partial L}{\partial\theta} = -m g\ell\sin\theta$$
+$$p = \ell^3 m\dot\theta$$"""
+    assert [one.verdict for one in judged(tmp_path, text)[3:]] == ["verified"] * 2 + ["context"]

@@ -3,8 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
+import numpy as np
+
 from derive.verification.documents.formula_translation import RATES, stem
-from derive.verification.documents.jets import UnknownNameError, Value, evaluated
+from derive.verification.documents.jets import Jet, UnknownNameError, Value, evaluated
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import OPERATORS, Letters
 from derive.verification.documents.numbers.candidate_motions import CandidateMotions
@@ -147,6 +149,8 @@ def _meaning(
             }
         except UnknownNameError:
             continue
+        if any(np.allclose(one.value, 0) for one in jets.values() if isinstance(one, Jet)):
+            continue  # with which any factor would hold, as the acceleration of a free body
         votes = _votes(jets, formulas, numbers)
         # no mistake in a letter makes a sum of it
         is_sum = all("+" in text for text in texts)

@@ -1,7 +1,7 @@
 """Verdicts on the formulas of a document whose letters are known."""
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Sequence, Set
 from contextlib import suppress
 from copy import copy
 from dataclasses import replace
@@ -181,7 +181,8 @@ class Judge:
             return False
         with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
             left, right = (self._namespace.value(one.text) for one in known.sides)
-            if not depends_on(sp.Tuple(left, right), system.qddot):
+            symbols = sp.Tuple(left, right).free_symbols
+            if not symbols & {*system.qddot} or self._has_foreign_parameters(symbols):
                 return False
             result = self._comparison.compared(known, *known.sides, left, right)
             if result.verdict.verdict == "verified":
@@ -195,6 +196,14 @@ class Judge:
                 free = replace(self._model, derivation=Derivation(replace(system, forces=forces)))
                 return free.agreement(left - right) is not None
         return False
+
+    def _has_foreign_parameters(self, symbols: Set[sp.Symbol]) -> bool:
+        """Whether a formula has parameters that no equation with its accelerations has."""
+        derivation = self._namespace.derivation
+        moving = symbols & {*derivation.system.qddot}
+        equations = [one for one in derivation.euler_lagrange if one.has(*moving)]
+        own = symbols & {*derivation.system.params}
+        return not own <= sp.Tuple(*equations).free_symbols
 
     def _beside_loads(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
         """The verdict on an equation of motion in which a term beside unknown loads is wrong.

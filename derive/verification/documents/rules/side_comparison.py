@@ -116,6 +116,8 @@ class SideComparison:
                 result = inside if inside.verdict.corrections and not is_relation else result
         if values := self._special_values(formula, first, left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
+            if any(values.values()) and {*values} <= right.free_symbols:  # for which none stands
+                return plain("context", formula, f"it holds for {text} alone")
             return plain("equivalent", formula, f"it holds for {text}")
         return result
 
