@@ -32,7 +32,7 @@ def combined(
             rest = operands[1]
             return rest if operator == "+" else OperatorExpression(line, "-", (rest,))
         return OperatorExpression(line, operator, tuple(operands))
-    values = [Array(one.line, entries(one) or ()) if is_array(one) else one for one in operands]
+    values = [_opened(one) for one in operands]
     if operator == "transpose":
         return transposed(values[0])
     if len(values) == 1:
@@ -51,6 +51,11 @@ def combined(
 def is_array(tree: Expression) -> bool:
     """Whether the entries of a value are known."""
     return isinstance(tree.value if isinstance(tree, Result) else tree, Array)
+
+
+def _opened(tree: Expression) -> Expression:
+    """An array of arrays, of which some are values of calls, as written."""
+    return Array(tree.line, tuple(map(_opened, entries(tree) or ()))) if is_array(tree) else tree
 
 
 def is_square(tree: Expression) -> bool:
@@ -78,7 +83,9 @@ def entries(tree: Expression) -> tuple[Expression, ...] | None:
                 Result(one.line, Item(tree.line, call, (number,)), one)
                 for number, one in zip(numbers, result, strict=True)
             )
-        case OperatorExpression(operator="solve", operands=(Array(items=rows), _)):
+        case OperatorExpression(
+            operator="solve", operands=(Array(items=rows), _) | (Name(), Array(items=rows))
+        ):
             return tuple(
                 Item(tree.line, tree, (NumberLiteral(tree.line, str(i)),)) for i in range(len(rows))
             )

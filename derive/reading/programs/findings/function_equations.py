@@ -50,6 +50,8 @@ class FunctionEquations:
         for system, unknowns in self._systems:
             matrix, column = system.parts
             values = entries(column)
+            if isinstance(matrix, Name) and values is not None:
+                matrix = _letters(matrix, len(values))
             count = len(matrix.items) if isinstance(matrix, Array) else 0
             is_known = is_square(matrix) and values is not None and len(values) == count
             if not is_known or values is None or set(unknowns) != {*range(count)}:
@@ -106,6 +108,13 @@ def _entry_of_solution(value: Expression) -> tuple[Expression, int] | None:
         ):
             return system, int(digits)
     return None
+
+
+def _letters(matrix: Name, count: int) -> Array:
+    """A matrix that is not known, as one of letters."""
+    line, path, numbers = matrix.line, matrix.path, range(1, count + 1)
+    rows = (tuple(Name(line, f"{path}[{i},{j}]") for j in numbers) for i in numbers)
+    return Array(line, tuple(Array(line, row) for row in rows))
 
 
 #: Objects that stand for the program's own values.

@@ -33,6 +33,7 @@ from derive.reading.programs.program import (
     Finding,
     NumericConstant,
     Program,
+    ProgramEquation,
     RateFunction,
     UnreadPart,
 )
@@ -247,9 +248,16 @@ class Findings:
         result = []
         for function in self._functions:
             own = tuple(e for e in function.equations if best[e.line] is function)
-            if own:
+            if own and not any(_is_part(own, other.equations) for other in self._functions):
                 result.append(replace(function, equations=own))
         return tuple(result)
+
+
+def _is_part(rates: tuple[ProgramEquation, ...], others: tuple[ProgramEquation, ...]) -> bool:
+    """Whether values that look like rates are terms of an equation of another function."""
+    lines = {origin.line for one in others for origin in one.origins}
+    lines -= {one.line for one in others}
+    return all(one.kind == "rate" and one.line in lines for one in rates)
 
 
 def _nearness(function: RateFunction, line: int) -> int:

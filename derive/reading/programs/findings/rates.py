@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from derive.reading.programs.evaluation.arrays import entries, flat
+from derive.reading.programs.evaluation.arrays import entries, flat, is_array
 from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.sums import inner, terms
 from derive.reading.programs.evaluation.values import whole
@@ -34,6 +34,8 @@ class Rates:
 def rates(definition: Definition, follower: Follower) -> Rates | None:
     """The rates that a function computes; None if it computes none."""
     for outputs, lines in _outputs(definition, follower):
+        if any(map(is_array, outputs.values())):
+            continue  # a matrix
         if len(outputs) >= 2 and (keys := _state(definition, follower, outputs)) is not None:
             found = dict(zip(keys, outputs.values(), strict=True))
             result = Rates(found, dict(zip(keys, lines, strict=True)))

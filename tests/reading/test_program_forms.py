@@ -1,0 +1,45 @@
+"""Forms of programs: their equations are those that a person reads from the same lines."""
+
+import pytest
+
+from derive.reading.programs.program_reader import read_program
+
+MATRICES = r"""
+function dx = arm(x, u)
+    H = @(q) [a + b*cos(q(2))  c
+              c                d];
+    V = @(q, w) [0              -b*sin(q(2))*w(1)
+                 b*sin(q(2))*w(1)   0];
+    P = @(q) [-k*sin(q(1)); -s*sin(q(2))];
+    q = x(1:2);
+    w = x(3:4);
+    dx = [w; H(q)\(P(q) - V(q, w)*w)];
+end
+"""
+LETTERS = r"""
+function dx = wheel(x, D, k, tau)
+    acc = D\([0, tau]' + [k*sin(x(1)), 0]');
+    dx = [x(2), acc(1), x(4), acc(2)]';
+end
+"""
+#: Programs with their language and their equations, as read by eye.
+PROGRAMS = {
+    "matrices": (
+        MATRICES,
+        "MATLAB",
+        "(a + b*cos(x_2))*x_1_ddot + c*x_2_ddot = -k*sin(x_1) - (0*x_1_dot"
+        " - b*sin(x_2)*x_1_dot*x_2_dot); "
+        "c*x_1_ddot + d*x_2_ddot = -s*sin(x_2) - (b*sin(x_2)*x_1_dot*x_1_dot + 0*x_2_dot)",
+    ),
+    "letters": (
+        LETTERS,
+        "MATLAB",
+        "D_1_1*x_1_ddot + D_1_2*x_3_ddot = k*sin(x_1); D_2_1*x_1_ddot + D_2_2*x_3_ddot = tau + 0",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_equations_are_those_that_a_person_reads(name: str) -> None:
+    text, language, expected = PROGRAMS[name]
+    assert "; ".join(one.text for one in read_program(text, language).equations) == expected
