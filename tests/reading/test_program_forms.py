@@ -22,6 +22,27 @@ function dx = wheel(x, D, k, tau)
     dx = [x(2), acc(1), x(4), acc(2)]';
 end
 """
+PARTS = """
+function draw() {
+  f = force(x, y);
+  other = force(2*x, 2*y);
+  vx += f.x/m*dt;
+  vy += f.y/m*dt;
+  x += vx*dt;
+  y += vy*dt;
+}
+function force(a, b) {
+  F = {x: -k*a, y: -k*b};
+  return F;
+}
+"""
+OBJECT = """
+class Model:
+    def __init__(self, angle, rate, dt):
+        self.state = [angle, rate]
+        self.dt = dt
+        self.half = dt / 2
+"""
 #: Programs with their language and their equations, as read by eye.
 PROGRAMS = {
     "matrices": (
@@ -36,6 +57,8 @@ PROGRAMS = {
         "MATLAB",
         "D_1_1*x_1_ddot + D_1_2*x_3_ddot = k*sin(x_1); D_2_1*x_1_ddot + D_2_2*x_3_ddot = tau + 0",
     ),
+    "parts": (PARTS, "JavaScript", "x_ddot = -k*x/m; y_ddot = -k*y/m"),
+    "object": (OBJECT, "Python", ""),
 }
 
 

@@ -3,7 +3,12 @@
 from dataclasses import dataclass
 
 from derive.reading.programs.evaluation.arrays import of_arrays, of_entries
-from derive.reading.programs.evaluation.context import APPENDING, ProgramContext, assigned
+from derive.reading.programs.evaluation.context import (
+    APPENDING,
+    OWN_OBJECTS,
+    ProgramContext,
+    assigned,
+)
 from derive.reading.programs.evaluation.counted_loops import mapped
 from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.evaluation.numeric_values import number
@@ -18,6 +23,7 @@ from derive.reading.programs.syntax.trees import (
     Name,
     NumberLiteral,
     Opaque,
+    Record,
     Result,
 )
 
@@ -176,11 +182,24 @@ class Calls(Values):
         if self.other_returns:
             return Opaque(self.other_returns[0].line, CONDITION)
         if self.returned is not None:
-            return self.returned
+            return self._with_members(self.returned)
         values = tuple(self.variable(function.line, name) for name in function.results)
         if len(values) == 1:
             return values[0]
         return Array(function.line, values) if values else Opaque(function.line, "no value")
+
+    def _with_members(self, tree: Expression) -> Expression:
+        """A variable whose members were assigned one by one, as a record of their values."""
+        if not isinstance(tree, Name) or tree.path in {*OWN_OBJECTS, *self.parameters}:
+            return tree
+        start = f"{tree.path}."
+        fields = tuple(
+            (key.removeprefix(start), value)
+            for key, value in self.variables.items()
+            if key.startswith(start)
+        )
+        is_flat = all(name.isidentifier() for name, _ in fields)
+        return Record(tree.line, fields) if fields and is_flat else tree
 
 
 def _has_results(tree: Expression) -> bool:

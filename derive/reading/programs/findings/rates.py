@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from derive.reading.programs.evaluation.arrays import entries, flat, is_array
+from derive.reading.programs.evaluation.context import OWN_OBJECTS
 from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.sums import inner, terms
 from derive.reading.programs.evaluation.values import whole
@@ -95,7 +96,7 @@ def _outputs(
                 continue
             lines = [last.get(f"{base}[{one}]", definition.line) for one in numbers]
             yield {str(i): group[one] for i, one in enumerate(numbers)}, lines
-        elif not any(whole(key) is not None for key in group):
+        elif base not in OWN_OBJECTS and not any(whole(key) is not None for key in group):
             lines = [last.get(f"{base}.{one}", definition.line) for one in group]
             yield group, lines
 

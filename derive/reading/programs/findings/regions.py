@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from derive.reading.programs.evaluation.arrays import entries
 from derive.reading.programs.evaluation.context import (
+    OWN_OBJECTS,
     ProgramContext,
     assigned,
     statements,
@@ -171,7 +172,7 @@ def _everything(body: tuple[Statement, ...]) -> Iterator[Statement]:
 def _elsewhere(tree: Expression, parameters: set[str], function: str) -> Expression:
     """A value with the parameters of a function as names that others do not have."""
     if isinstance(tree, Name):
-        is_parameter = root(tree.path) in parameters - {"self", "this", "obj"}
+        is_parameter = root(tree.path) in parameters - {*OWN_OBJECTS}
         return Name(tree.line, f"{function}.{tree.path}") if is_parameter else tree
     parts = tuple(_elsewhere(part, parameters, function) for part in tree.parts)
     is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
