@@ -22,6 +22,28 @@ function dx = wheel(x, D, k, tau)
     dx = [x(2), acc(1), x(4), acc(2)]';
 end
 """
+ROWS = """
+function dz = cart(z)
+    dz(1,:) = z(2);
+    dz(2,:) = [c*z(2) - k*z(1)]/[m + M];
+end
+"""
+COLUMNS = """
+def batch(x, u, *, m=1.0):
+    r, v = x[:, 0], x[:, 1]
+    dx = torch.empty_like(x)
+    dx[:, 0] = v
+    dx[:, 1] = (u - k * r) / m
+    return dx
+"""
+FILLED = """
+def planar(t, y):
+    d = np.zeros(4)
+    d[0:2] = y[2:4]
+    d[2] = -k*y[0]/m
+    d[3] = -k*y[1]/m - g
+    return d
+"""
 PARTS = """
 function draw() {
   f = force(x, y);
@@ -57,6 +79,9 @@ PROGRAMS = {
         "MATLAB",
         "D_1_1*x_1_ddot + D_1_2*x_3_ddot = k*sin(x_1); D_2_1*x_1_ddot + D_2_2*x_3_ddot = tau + 0",
     ),
+    "rows": (ROWS, "MATLAB", "z_1_ddot = (c*z_1_dot - k*z_1)/(m + M)"),
+    "columns": (COLUMNS, "Python", "r_ddot = (u - k*r)/m"),
+    "filled": (FILLED, "Python", "y_0_ddot = -k*y_0/m; y_1_ddot = -k*y_1/m - g"),
     "parts": (PARTS, "JavaScript", "x_ddot = -k*x/m; y_ddot = -k*y/m"),
     "object": (OBJECT, "Python", ""),
 }

@@ -109,7 +109,7 @@ class Calls(Values):
         is_possible = language.has_round_indices or (language.has_numbered_entries and has_numbers)
         if not is_possible or not isinstance(call.function, Name):
             return False
-        return path in self.context.variables or path in self.parameters
+        return root(path) in self.context.variables or root(path) in self.parameters
 
     def _function(self, tree: Expression, path: str) -> Definition | None:
         value = self.variables.get(path)

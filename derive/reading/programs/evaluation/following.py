@@ -15,7 +15,7 @@ from derive.reading.programs.evaluation.counted_loops import (
     integer,
 )
 from derive.reading.programs.evaluation.numeric_values import constant, number
-from derive.reading.programs.evaluation.values import whole
+from derive.reading.programs.evaluation.values import row_or_column, whole
 from derive.reading.programs.syntax.code import (
     Assignment,
     Conditional,
@@ -152,6 +152,8 @@ class Follower(Calls):
         )
         if whole_range:
             self.assign(line, target.base, value)
+        elif (index := row_or_column(target)) is not None:
+            self.assign(line, Item(target.line, target.base, (index,)), value)
         elif isinstance(array := self.value(target), Array):
             for one, part in zip(array.items, self._parts(array, value), strict=True):
                 self.assign(line, one, part)

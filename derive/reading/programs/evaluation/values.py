@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from derive.reading.programs.evaluation.arrays import combined, entries, flat
+from derive.reading.programs.evaluation.arrays import combined, entries, flat, transposed
 from derive.reading.programs.evaluation.context import ProgramContext
 from derive.reading.programs.evaluation.counted_loops import BODIES, bound, integer, mentions
 from derive.reading.programs.evaluation.mathematics import constant
@@ -189,6 +189,11 @@ class Values:
     def _item(self, tree: Item) -> Expression:
         if len(tree.indices) == 1 and isinstance(tree.indices[0], Slice):
             return self._part(tree, tree.indices[0])
+        if (one := row_or_column(tree)) is not None:
+            rows = entries(self.value(tree.base)) or ()
+            columns = Array(tree.line, tuple(Array(tree.line, entries(row) or ()) for row in rows))
+            base = transposed(columns) if tree.indices[1] is one and rows else tree.base
+            return self._item(Item(tree.line, base, (one,)))
         if isinstance(tree.base, Name) and tree.base.path == "SA":  # a static array of Julia
             return Array(tree.line, tuple(map(self.value, tree.indices)))
         path, index = self.place(tree), self._index(tree.indices)
@@ -233,6 +238,10 @@ class Values:
         end += upper is not None and not language.is_half_open
         if (items := entries(base)) is not None:
             return Array(tree.line, items[start : None if upper is None else end])
+        if is_zeros(base) and upper is not None:
+            numbers = range(start + language.first_index, end + language.first_index)
+            entry = (Item(tree.line, tree.base, (NumberLiteral(0, str(i)),)) for i in numbers)
+            return Array(tree.line, tuple(entry))  # to be filled
         if not isinstance(base, Name) or not end:
             return Opaque(tree.line, "a range of entries is not followed")
         return Array(tree.line, self.named_entries(tree.line, base.path, start, end))
@@ -257,6 +266,14 @@ def _field(tree: Expression, name: str) -> Expression | None:
             return _field(value, name)
         case Record(fields=fields):
             return dict(fields).get(name)
+    return None
+
+
+def row_or_column(tree: Item) -> Expression | None:
+    """The index of a whole row or column, as i of ``k(i, :)``; None for other entries."""
+    match tree.indices:
+        case (Slice(lower=None, upper=None), index) | (index, Slice(lower=None, upper=None)):
+            return None if isinstance(index, Slice) else index
     return None
 
 

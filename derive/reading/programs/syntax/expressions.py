@@ -236,6 +236,8 @@ class ExpressionTranslator:
             tuple(one for child in self.children(row) for one in self._entries(child))
             for row in self.children(node)
         ]
+        if [len(row) for row in rows] == [1]:
+            return rows[0][0]  # a bracket
         if len(rows) == 1 or all(len(row) == 1 for row in rows):
             items = Array(line(node), tuple(one for row in rows for one in row))
             return FunctionCall(line(node), Name(line(node), "vcat"), (items,))
