@@ -44,6 +44,15 @@ def planar(t, y):
     d[3] = -k*y[1]/m - g
     return d
 """
+LIMITS = """
+function dx = thrown(x, u)
+    top = 5;
+    if (u(1) > top), u(1) = top;
+    elseif (u(1) < -top), u(1) = -top;
+    end
+    dx = [x(2); u(1)/max(m, 1e-6) - g];
+end
+"""
 PARTS = """
 function draw() {
   f = force(x, y);
@@ -82,6 +91,7 @@ PROGRAMS = {
     "rows": (ROWS, "MATLAB", "z_1_ddot = (c*z_1_dot - k*z_1)/(m + M)"),
     "columns": (COLUMNS, "Python", "r_ddot = (u - k*r)/m"),
     "filled": (FILLED, "Python", "y_0_ddot = -k*y_0/m; y_1_ddot = -k*y_1/m - g"),
+    "limits": (LIMITS, "MATLAB", "x_1_ddot = u_1/m - g"),
     "parts": (PARTS, "JavaScript", "x_ddot = -k*x/m; y_ddot = -k*y/m"),
     "object": (OBJECT, "Python", ""),
 }

@@ -231,10 +231,12 @@ def of_entries(line: int, path: str, arguments: tuple[Expression, ...]) -> Expre
 
 
 def _extreme(name: str, given: Sequence[Expression]) -> Expression | None:
-    """The largest or the smallest of numbers; None if others are among them."""
+    """The largest or the smallest of numbers, or a variable within limits; None for several."""
     values = [(value, one) for one in given if (value := number(one)) is not None]
-    if not given or len(values) < len(given):
-        return None
+    others = [one for one in given if number(one) is None]
+    if not values or others:
+        is_name = len(others) == 1 and isinstance(others[0], Name)
+        return others[0] if values and is_name else None
     return (max if name.startswith("max") else min)(values, key=itemgetter(0))[1]
 
 

@@ -110,7 +110,7 @@ class Follower(Calls):
         ):
             return
         elif path := self.place(target):
-            if self._is_input(value):
+            if self._is_input(value, path):
                 value = Name(line, path)
             if isinstance(target, Item) and whole(path[:-1].rpartition("[")[2]) is not None:
                 self._open_array(target)
@@ -211,7 +211,7 @@ class Follower(Calls):
         for path in before | after:
             values = [one.get(path, Name(line, path)) for one in (before, after)]
             value = values[0] if values[0] == values[1] else Choice(line, *values)
-            merged[path] = Name(line, path) if self._is_input(value) else value
+            merged[path] = Name(line, path) if self._is_input(value, path) else value
         self.variables = merged
 
     def _loop(self, one: Loop) -> None:
@@ -258,14 +258,20 @@ class Follower(Calls):
                 del self.variables[key]
             self.variables[path] = Opaque(line, reason)
 
-    def _is_input(self, tree: Expression) -> bool:
-        """Whether a value is one of two constants, such as a force to the left or to the right."""
-        return isinstance(tree, Choice) and all(map(self._is_number, tree.parts))
+    def _is_input(self, tree: Expression, path: str = "") -> bool:
+        """Whether a value is one of two constants, such as a force to the left or to the right.
+
+        With a path, also whether it is a variable within limits that are constants.
+        """
+        if not isinstance(tree, Choice):
+            return False
+        others = [one for one in tree.parts if one != Name(0, path)]
+        return len(others) > 0 and all(map(self._is_number, others))
 
     def _is_number(self, tree: Expression) -> bool:
         match tree:
-            case OperatorExpression(operator="-", operands=(operand,)):
-                return self._is_number(operand)
+            case OperatorExpression(operands=operands):
+                return all(map(self._is_number, operands))
             case Name(path=path):
-                return path in self.context.constants
+                return path in self.context.constants or path == "pi"
         return number(tree) is not None
