@@ -67,6 +67,16 @@ function force(a, b) {
   return F;
 }
 """
+MOMENTUM = """
+from numpy import array as vector
+r = vector([1, 0])
+v = vector([0, 1])
+while t < end:
+    P = m * v
+    P = P + (-k * r) * dt
+    r = r + v * dt
+    v = P / m
+"""
 OBJECT = """
 class Model:
     def __init__(self, angle, rate, dt):
@@ -93,6 +103,7 @@ PROGRAMS = {
     "filled": (FILLED, "Python", "y_0_ddot = -k*y_0/m; y_1_ddot = -k*y_1/m - g"),
     "limits": (LIMITS, "MATLAB", "x_1_ddot = u_1/m - g"),
     "parts": (PARTS, "JavaScript", "x_ddot = -k*x/m; y_ddot = -k*y/m"),
+    "momentum": (MOMENTUM, "Python", "r_0_ddot = -k*r_0/m; r_1_ddot = -k*r_1/m"),
     "object": (OBJECT, "Python", ""),
 }
 

@@ -25,7 +25,7 @@ IDENTITIES = {
     "float", "double", "Number", "parseFloat", "real", "float64", "Float64", "real64", "dble",
     "Real", "static_cast", "copy", "deepcopy", "squeeze", "ravel", "flatten", "asarray", "array",
     "matrix", "Vector", "collect", "vec", "tolist", "SVector", "MVector", "SA", "list", "tuple",
-    "Matrix", "atleast_1d", "Vector2d", "Vector3d", "Vector4d", "VectorXd", "state_type",
+    "vector", "Matrix", "atleast_1d", "Vector2d", "Vector3d", "Vector4d", "VectorXd", "state_type",
 }  # fmt: skip
 PI = {"pi", "PI", "M_PI", "π", "Pi", "M_PIl"}
 MULTIPLES = {"TWO_PI": "2", "TAU": "2", "HALF_PI": "0.5", "M_PI_2": "0.5"}

@@ -142,6 +142,8 @@ class Updates:
                 damping, damping_line, value = factor, value.line, earlier
         line = value.line
         first = [*terms(value, lambda tree: self._owners.get(id(tree), old) != old)]
+        if len(first) == 1 and first[0][1] != Name(0, old):
+            first = [*quotients(*first[0])]
         own = [one for one in first if one[1] == Name(0, old)]
         if len(own) != 1 or own[0][0] != 1:
             return self._damped(old, line, first)
@@ -276,6 +278,23 @@ class Updates:
         parts = tuple(self._restored(part, used) for part in tree.parts)
         is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
         return tree if is_same else replaced(tree, parts)
+
+
+def quotients(sign: int, term: Expression) -> Iterator[Term]:
+    """The terms of a sum over a factor of some, such as (m*v + F*dt)/m; others as they are."""
+    match term:
+        case OperatorExpression(line=line, operator="/", operands=(above, below)) if (
+            len(found := [*terms(inner(above), lambda _: False)]) > 1
+        ):
+            for own, one in found:
+                parts = _factors(one)
+                if below in parts:
+                    parts.remove(below)
+                else:
+                    parts.append(OperatorExpression(line, "/", (NumberLiteral(line, "1"), below)))
+                yield from terms(product(one.line, parts), lambda _: False, sign * own)
+        case _:
+            yield sign, term
 
 
 def _divisors(parts: Sequence[Expression]) -> Iterator[Expression]:
