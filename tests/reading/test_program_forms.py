@@ -22,6 +22,34 @@ function dx = wheel(x, D, k, tau)
     dx = [x(2), acc(1), x(4), acc(2)]';
 end
 """
+HALVES = """
+while (t < end) {
+    r = sqrt(x*x);
+    ax = -K*x/(r*r*r);
+    xn = x + vx*dt + 0.5*ax*dt*dt;
+    r = sqrt(xn*xn);
+    axn = -K*xn/(r*r*r);
+    vn = vx + 0.5*dt*(ax + axn);
+    x = xn;
+    vx = vn;
+}
+"""
+#: Each half of the change of a velocity has the value of a function at another time.
+KICKS = """
+double force(double a) { return -K*a/m; }
+void step(double &q, double &p, double h) {
+  double middle = p + h/2.0*force(q);
+  q = q + h*middle;
+  p = middle + h/2.0*force(q);
+}
+"""
+QUOTIENT = """
+def rates(s):
+    return np.array([s[1], -(g/l)*np.sin(s[0])])
+h = 1.0/(pictures*parts)
+while True:
+    s += h*rates(s)
+"""
 ROWS = """
 function dz = cart(z)
     dz(1,:) = z(2);
@@ -98,6 +126,9 @@ PROGRAMS = {
         "MATLAB",
         "D_1_1*x_1_ddot + D_1_2*x_3_ddot = k*sin(x_1); D_2_1*x_1_ddot + D_2_2*x_3_ddot = tau + 0",
     ),
+    "halves": (HALVES, "C++", "x_ddot = -K*x/(sqrt(x*x)*sqrt(x*x)*sqrt(x*x))"),
+    "kicks": (KICKS, "C++", "q_ddot = -K*q/m"),
+    "quotient": (QUOTIENT, "Python", "s_0_ddot = -g/l*sin(s_0)"),
     "rows": (ROWS, "MATLAB", "z_1_ddot = (c*z_1_dot - k*z_1)/(m + M)"),
     "columns": (COLUMNS, "Python", "r_ddot = (u - k*r)/m"),
     "filled": (FILLED, "Python", "y_0_ddot = -k*y_0/m; y_1_ddot = -k*y_1/m - g"),

@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
+from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.syntax.trees import (
     Expression,
+    Name,
     NumberLiteral,
     OperatorExpression,
     Result,
+    replaced,
 )
 
 Term = tuple[int, Expression]
@@ -74,6 +77,48 @@ def total(line: int, found: Sequence[Term]) -> Expression:
         else:
             result = OperatorExpression(line, "+" if sign > 0 else "-", (result, term))
     return result or NumberLiteral(line, "0")
+
+
+def joined(found: Sequence[Term]) -> list[Term]:
+    """The terms of a sum, equal ones as one: two halves are the whole."""
+    groups: dict[tuple[Expression, ...], list[tuple[Term, float, list[Expression], bool]]] = {}
+    for term in found:
+        size, rest, has_sum = _sized(*term)
+        groups.setdefault(tuple(map(_bare, rest)), []).append((term, size, rest, has_sum))
+    result: list[Term] = []
+    for group in groups.values():
+        (first, _, rest, has_sum), *others = group
+        if not others and not has_sum:
+            result.append(first)
+            continue
+        line, size = first[1].line, sum(one[1] for one in group)
+        digits = f"{abs(size):.12g}"
+        number_of = [] if digits == "1" and rest else [NumberLiteral(line, digits)]
+        result.append((-1 if size < 0 else 1, product(line, [*number_of, *rest])))
+    return result
+
+
+def _bare(tree: Expression) -> Expression:
+    """A value without the calls that it comes from."""
+    if isinstance(tree, Result):
+        return _bare(tree.value)
+    return replaced(tree, tuple(map(_bare, tree.parts))) if tree.parts else tree
+
+
+def _sized(sign: int, term: Expression) -> tuple[float, list[Expression], bool]:
+    """A term as a number and other factors, and whether one of these was a sum of equal terms."""
+    size, rest, has_sum = float(sign), list[Expression](), False
+    for one in factors(term, lambda _: False):
+        own = [*terms(inner(one), lambda _: False)]
+        same = joined(own) if len(own) > 1 else []
+        if len(same) == 1:
+            has_sum = True
+            size *= same[0][0]
+        for part in factors(same[0][1], lambda _: False) if len(same) == 1 else (one,):
+            value = None if part == Name(0, "pi") else number(part)
+            size *= 1 if value is None else value
+            rest += [part] if value is None else []
+    return size, rest, has_sum
 
 
 def inner(tree: Expression) -> Expression:

@@ -13,7 +13,15 @@ from functools import cached_property
 from derive.reading.programs.evaluation.calls import VariableValue
 from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.numeric_values import number
-from derive.reading.programs.evaluation.sums import Term, factors, inner, product, terms, total
+from derive.reading.programs.evaluation.sums import (
+    Term,
+    factors,
+    inner,
+    joined,
+    product,
+    terms,
+    total,
+)
 from derive.reading.programs.syntax.trees import (
     Array,
     Choice,
@@ -237,7 +245,7 @@ class Updates:
             quotient = total(velocity.line, whole), step or NO_STEP
             return OperatorExpression(velocity.line, "/", quotient), frozenset(used)
         divided = [(sign, self._restored(term, used)) for sign, term in result if term]
-        value = total(velocity.line, divided)
+        value = total(velocity.line, joined(divided))
         return product(value.line, [value, *factor]) if factor else value, frozenset(used)
 
     def _without_mass(
@@ -252,7 +260,8 @@ class Updates:
         rest = [one for one in parts if one not in own]
         values = [self._restored(one, set()) for _, one in velocity.increment]
         is_used = any(velocity.variable in {*names(one)} for one in values)
-        if not own or is_used or any(number(one) is not None or self._moves(one) for one in rest):
+        is_number = all(number(one) is not None for one in own)
+        if is_number or is_used or any(number(one) is not None or self._moves(one) for one in rest):
             return step, []
         return product(step.line, own), rest
 
