@@ -2,6 +2,7 @@
 
 import pytest
 
+from derive.reading.programs.program import Finding
 from derive.reading.programs.program_reader import read_program
 
 MATRICES = r"""
@@ -105,6 +106,18 @@ while t < end:
     r = r + v * dt
     v = P / m
 """
+SHARED = """
+function one(x, v, h) {
+  const rate = (w) => w
+  const turn = (a, w) => -(g / L) * Math.sin(a) - b * w
+  const p1 = rate(v), q1 = turn(x, v)
+  const p2 = rate(v + 0.5*h*q1), q2 = turn(x + 0.5*h*p1, v + 0.5*h*q1)
+  const p3 = rate(v + 0.5*h*q2), q3 = turn(x + 0.5*h*p2, v + 0.5*h*q2)
+  const p4 = rate(v + h*q3), q4 = turn(x + h*p3, v + h*q3)
+  return [x + h/6*(p1 + 2*p2 + 2*p3 + p4), v + h/6*(q1 + 2*q2 + 2*q3 + q4)]
+}
+for (let i = 0; i < n; i++) { [x, v] = one(x, v, h) }
+"""
 OBJECT = """
 class Model:
     def __init__(self, angle, rate, dt):
@@ -135,11 +148,35 @@ PROGRAMS = {
     "limits": (LIMITS, "MATLAB", "x_1_ddot = u_1/m - g"),
     "parts": (PARTS, "JavaScript", "x_ddot = -k*x/m; y_ddot = -k*y/m"),
     "momentum": (MOMENTUM, "Python", "r_0_ddot = -k*r_0/m; r_1_ddot = -k*r_1/m"),
+    "shared": (SHARED, "JavaScript", "x_ddot = -g/L*sin(x) - b*x_dot"),
     "object": (OBJECT, "Python", ""),
 }
+
+
+def methods(text: str, language: str) -> list[Finding]:
+    found = read_program(text, language).findings
+    return [one for one in found if one.kind in ("runge_kutta", "mixed_update")]
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_equations_are_those_that_a_person_reads(name: str) -> None:
     text, language, expected = PROGRAMS[name]
     assert "; ".join(one.text for one in read_program(text, language).equations) == expected
+
+
+def test_weights_without_brackets_lack_the_step_size() -> None:
+    text = """
+f = @(s) [s(2); -g/L*sin(s(1))]';
+k = zeros(4, 2);
+for i = 2:n
+    k(1, :) = f(s(i-1, :));
+    k(2, :) = f(s(i-1, :) + h/2*k(1, :));
+    k(3, :) = f(s(i-1, :) + h/2*k(2, :));
+    k(4, :) = f(s(i-1, :) + h*k(3, :));
+    s(i, :) = s(i-1, :) + h/6*(k(1, :) + 2*k(2, :) + 2*k(3, :) + k(4, :));
+end
+"""
+    assert [one.is_fault for one in methods(text, "MATLAB")] == [False]
+    (wrong,) = methods(text.replace("h/6*(", "h/6*").replace("k(4, :));", "k(4, :);"), "MATLAB")
+    assert wrong.is_fault
+    assert "weights 0.1667, 2, 2, 1," in wrong.text

@@ -34,7 +34,7 @@ MAX_STAGES = 16
 class Method:
     """The coefficients of an explicit method for a step of size 1."""
 
-    A: tuple[tuple[float, ...], ...]
+    A: tuple[tuple[float, ...], ...]  # the known ones, where the weights are wrong
     b: tuple[float, ...]
 
     @property
@@ -46,6 +46,8 @@ class Method:
     def order(self) -> int:
         """The order, up to 4; 0 if the weights do not sum to 1."""
         b, A = self.b, self.A
+        if len(A) < len(b):
+            return 0
         c = [sum(row) for row in A]
         ac = [sum(a * x for a, x in zip(row, c, strict=True)) for row in A]
         acc = [sum(a * x * x for a, x in zip(row, c, strict=True)) for row in A]
@@ -71,6 +73,7 @@ def method(increment: Expression) -> tuple[Method, Expression] | None:
 
     None if it is no method of several stages.
     """
+    increment = inner(increment)  # that a function returns
     calls = _with_earlier(_calls(increment))
     if not 1 < len(calls) <= MAX_STAGES:
         return None
@@ -78,17 +81,18 @@ def method(increment: Expression) -> tuple[Method, Expression] | None:
     if weights is None or abs(value_at(increment, {}, calls)) > TOLERANCE:
         return None
     rows = [_row(call, calls) for call in calls]
-    if None in rows or not any(any(row) for row in rows if row):
+    doubled = _coefficients(increment, calls, 2.0) or ()
+    ratios = {round(y / x, 9) for x, y in zip(weights, doubled, strict=False) if x}
+    is_partial = len(ratios) > 1 and 1 in ratios  # the step size is not in all weights
+    if not any(any(row) for row in rows if row) or (None in rows and not is_partial):
         return None
-    doubled = _coefficients(increment, calls, 2.0)
-    is_letter = doubled is not None and all(
-        abs(y - 2 * x) <= 1e-9 * abs(x) for x, y in zip(weights, doubled, strict=True)
-    )
-    if not is_letter and (size := sum(weights)):  # the step size is a number, or one by a letter
+    size = sum(weights)
+    if ratios != {2} and not is_partial and size:  # the step is a number, or one by a letter
         weights = tuple(x / size for x in weights)
         rows = [tuple(x / size for x in row) if row else row for row in rows]
-    order = sorted(range(len(calls)), key=lambda i: sum(map(bool, rows[i] or ())))
-    A = tuple(tuple((rows[i] or ())[j] for j in order) for i in order)
+    order = sorted(range(len(calls)), key=lambda i: sum(map(bool, rows[i] or weights)))
+    known = [row for i in order if (row := rows[i]) is not None]
+    A = tuple(tuple(row[j] for j in order) for row in known)
     result = Method(A, tuple(weights[i] for i in order))
     return result, _result(increment, calls[order[0]]) or increment
 
@@ -104,7 +108,7 @@ def value_at(
     tree: Expression, names: Mapping[str, float], calls: Sequence[FunctionCall] = ()
 ) -> float:
     """A combination at values of names, 1 for others, with 0 for the values of calls."""
-    return _number(tree, calls, [0.0] * len(calls), names)
+    return _number(inner(tree), calls, [0.0] * len(calls), names)
 
 
 def called(tree: Expression) -> FunctionCall | None:
@@ -197,9 +201,15 @@ def _number(
     names: Mapping[str, float],
 ) -> float:
     """A combination with `values` of calls, and of names; that of others is names[""] or 1."""
-    if (call := called(tree)) is not None:
-        return values[calls.index(call)] if call in calls else 0.0
+    if (call := called(tree)) is not None and call in calls:
+        return values[calls.index(call)]
     match tree:
+        case Result(call=FunctionCall(arguments=arguments), value=value) if (
+            not calls and value in arguments
+        ):
+            return _number(value, calls, values, names)  # the rate of a coordinate
+        case _ if call is not None:
+            return 0.0
         case NumberLiteral(digits=digits):
             return float(digits)
         case Name(path=path):
