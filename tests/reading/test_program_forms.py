@@ -125,6 +125,34 @@ class Model:
         self.dt = dt
         self.half = dt / 2
 """
+HEUN = """
+def step(x, v, h):
+    a1 = -omega**2 * sin(x)
+    v2 = v + h * a1
+    a2 = -omega**2 * sin(x + h * v)
+    x = x + h / 2 * (v + v2)
+    v = v + h / 2 * (a1 + a2)
+    return x, v
+"""
+STAGES = """
+program swing
+real :: x, v
+do i = 1, n
+  if (i > 1) then
+    x1 = h*v
+    v1 = h*(-c*v - g/l*sin(x))
+    x2 = h*(v + v1/2)
+    v2 = h*(-c*(v + v1/2) - g/l*sin(x + x1/2))
+    x3 = h*(v + v2/2)
+    v3 = h*(-c*(v + v2/2) - g/l*sin(x + x2/2))
+    x4 = h*(v + v3)
+    v4 = h*(-c*(v + v3) - g/l*sin(x + x3))
+    x = x + (x1 + 2*x2 + 2*x3 + x4)/6
+    v = v + (v1 + 2*v2 + 2*v3 + v4)/6
+  end if
+end do
+end program swing
+"""
 #: Programs with their language and their equations, as read by eye.
 PROGRAMS = {
     "matrices": (
@@ -150,6 +178,8 @@ PROGRAMS = {
     "momentum": (MOMENTUM, "Python", "r_0_ddot = -k*r_0/m; r_1_ddot = -k*r_1/m"),
     "shared": (SHARED, "JavaScript", "x_ddot = -g/L*sin(x) - b*x_dot"),
     "object": (OBJECT, "Python", ""),
+    "Heun": (HEUN, "Python", "x_ddot = -omega**2*sin(x)"),
+    "stages": (STAGES, "Fortran", "x_ddot = -c*x_dot - g/l*sin(x)"),
 }
 
 
@@ -162,6 +192,17 @@ def methods(text: str, language: str) -> list[Finding]:
 def test_equations_are_those_that_a_person_reads(name: str) -> None:
     text, language, expected = PROGRAMS[name]
     assert "; ".join(one.text for one in read_program(text, language).equations) == expected
+
+
+def test_stages_without_functions_have_the_coefficients_of_a_method() -> None:
+    # the order follows from the conditions on the coefficients
+    right = methods(STAGES, "Fortran") + methods(HEUN, "Python")
+    assert [(one.is_fault, one.text.split(" is ")[0][-7:]) for one in right] == [
+        (False, "order 4"),
+        (False, "order 2"),
+    ]
+    for old, new in (("2*v2 + 2*v3", "v2 + 2*v3"), ("1/2", "1")):
+        assert any(one.is_fault for one in methods(STAGES.replace(old, new), "Fortran"))
 
 
 def test_weights_without_brackets_lack_the_step_size() -> None:
@@ -180,3 +221,36 @@ end
     (wrong,) = methods(text.replace("h/6*(", "h/6*").replace("k(4, :));", "k(4, :);"), "MATLAB")
     assert wrong.is_fault
     assert "weights 0.1667, 2, 2, 1," in wrong.text
+
+
+def test_stages_change_the_state_and_not_the_rate() -> None:
+    text = """
+while t < end:
+    a1 = -g/l*sin(x)
+    a2 = -g/l*sin(x) - 0.5*a1
+    a3 = -g/l*sin(x) - 0.5*a2
+    a4 = -g/l*sin(x) - a3
+    v = v + dt/6*(a1 + 2*(a2 + a3) + a4)
+    x = x + v*dt
+"""
+    (wrong,) = methods(text, "Python")
+    assert wrong.is_fault
+    assert wrong.line == 4
+
+
+def test_a_half_of_leapfrog_has_all_of_a_position_at_one_time() -> None:
+    text = """
+for _ in range(n):
+    r = sqrt(x**2 + y**2)
+    u -= 0.5*dt*K*x/r**3
+    v -= 0.5*dt*K*y/r**3
+    x += u*dt
+    y += v*dt
+    AGAIN
+    u -= 0.5*dt*K*x/r**3
+    v -= 0.5*dt*K*y/r**3
+"""
+    right = text.replace("AGAIN", "r = sqrt(x**2 + y**2)")
+    assert not methods(right, "Python")
+    old = [(one.line, one.is_fault) for one in methods(text.replace("AGAIN", "pass"), "Python")]
+    assert old == [(9, True), (10, True)]

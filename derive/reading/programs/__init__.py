@@ -10,7 +10,8 @@ becomes statements, statements become values of variables, and these become equa
 `values`, `calls`, `following`         the values of variables, statement by statement
 `arrays`, `mathematics`, `sums`        operations and functions that these values contain
 `context`, `regions`, `counted_loops`  functions, loops, constants, and names assigned once
-`rates`, `updates`, `runge_kutta`      functions of rates; variables changed step by step
+`rates`, `updates`,                    functions of rates; variables changed step by step
+`runge_kutta`, `stages`
 `function_equations`, `formula_text`   equations in the syntax of formulas
 `step_methods`, `degrees`              findings
 `program_findings`                     all of them, each once

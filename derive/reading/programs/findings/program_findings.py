@@ -1,7 +1,7 @@
 """The equations and findings of all regions of a program, each of them once."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from derive.reading.programs.evaluation.arrays import entries
@@ -27,7 +27,7 @@ from derive.reading.programs.findings.step_methods import (
     written_methods,
     written_pairs,
 )
-from derive.reading.programs.findings.updates import Updates, without_time
+from derive.reading.programs.findings.updates import Pair, Updates, without_time
 from derive.reading.programs.findings.updates import names as paths
 from derive.reading.programs.program import (
     Finding,
@@ -178,6 +178,7 @@ class Findings:
         self._findings += euler_findings(
             pairs, used, region, self._context.constants, names.in_program
         )
+        self._findings += _misuses(updates, pairs, region.name, names.in_program)
         self._findings += [
             Finding(
                 value.line, "verlet", region.name, f"Verlet's method without the velocity of {q}"
@@ -251,6 +252,19 @@ class Findings:
             if own and not any(_is_part(own, other.equations) for other in self._functions):
                 result.append(replace(function, equations=own))
         return tuple(result)
+
+
+def _misuses(
+    updates: Updates, pairs: tuple[Pair, ...], function: str, shown: Callable[[str], str]
+) -> Iterator[Finding]:
+    """Values of the wrong time in a method."""
+    for pair in pairs:
+        for line, path in updates.mixed(pair) if pair.uses_middle_velocity else ():
+            text = f"a half of leapfrog has {shown(path)} both before and after its change"
+            yield Finding(line, "mixed_update", function, text, True)
+    for line in updates.misplaced:
+        text = "a stage of a Runge-Kutta method adds another to the rate, not to the state"
+        yield Finding(line, "runge_kutta", function, text, True)
 
 
 def _is_part(rates: tuple[ProgramEquation, ...], others: tuple[ProgramEquation, ...]) -> bool:

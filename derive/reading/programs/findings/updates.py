@@ -22,6 +22,7 @@ from derive.reading.programs.evaluation.sums import (
     terms,
     total,
 )
+from derive.reading.programs.findings.stages import Stages
 from derive.reading.programs.syntax.trees import (
     Array,
     Choice,
@@ -77,6 +78,15 @@ class Updates:
         for path, value in follower.variables.items():
             for part in _parts(VariableValue(0, path, value), follower):
                 final[part.path] = part.value
+        changed = {step.path for step in self._steps}
+        stages = Stages(
+            self._steps,
+            [self._chosen(value, path) for path, value in final.items() if path in changed],
+        )
+        #: Lines of stages that add others to the rate, instead of to the state.
+        self.misplaced = stages.misplaced
+        self._steps = [VariableValue(one.line, one.path, stages(one.value)) for one in self._steps]
+        final = {path: stages(value) for path, value in final.items()}
         is_timed = any(TIMED.fullmatch(step.path) for step in self._steps)
         values = [step.value for step in self._steps] if is_timed else []
         used = {path for value in values for path in names(value)}
@@ -247,6 +257,34 @@ class Updates:
         divided = [(sign, self._restored(term, used)) for sign, term in result if term]
         value = total(velocity.line, joined(divided))
         return product(value.line, [value, *factor]) if factor else value, frozenset(used)
+
+    def mixed(self, pair: Pair) -> list[tuple[int, str]]:
+        """The coordinates that a term of an acceleration has before and after their change."""
+        coordinates = {one.coordinate.variable for one in self.pairs}
+        return [
+            (term.line, path)
+            for _, term in pair.velocity.increment
+            for path in sorted(self._mixed(term, coordinates))
+        ]
+
+    def _mixed(self, tree: Expression, coordinates: Set[str]) -> set[str]:
+        if self._owners.get(id(tree)) in coordinates:
+            return set()
+        result = {path for part in tree.parts for path in self._mixed(part, coordinates)}
+        match tree:
+            case OperatorExpression(operator="+" | "-"):
+                return result  # the mean of two accelerations
+        ages = [one for part in tree.parts for one in {*self._ages(part)}]
+        return result | {path for path in coordinates if {(path, 0), (path, 1)} <= {*ages}}
+
+    def _ages(self, tree: Expression) -> Iterator[tuple[str, int]]:
+        """The variables in a value, with 0 before and 1 after their change."""
+        owner = tree.path if isinstance(tree, Name) else self._owners.get(id(tree))
+        if owner in self.updates:
+            yield owner, int(not isinstance(tree, Name))
+            return
+        for part in tree.parts:
+            yield from self._ages(part)
 
     def _without_mass(
         self, velocity: Update, step: Expression | None
