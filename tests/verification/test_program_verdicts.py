@@ -4,6 +4,7 @@ import pytest
 
 from derive.reading.programs.program_reader import read_program
 from derive.verification.documents.program_judgement import judge_program
+from derive.verification.documents.statements import WORD
 
 CHAIN = """
 class Chain:
@@ -227,3 +228,8 @@ for i in range(100):
 def test_methods_are_named_and_no_fault_is_seen_in_them(text: str, kind: str) -> None:
     findings = read_program(text, "Python").findings
     assert {(one.kind, one.is_fault) for one in findings} == {(kind, False)}
+
+
+def test_the_exponent_of_a_number_is_no_letter() -> None:
+    # a letter e could stand for a force, with which any formula would hold
+    assert WORD.findall("e1 + 6.67e-11*m*x_dot + 1.e3*e") == ["e1", "m", "x_dot", "e"]

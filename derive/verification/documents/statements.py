@@ -33,7 +33,7 @@ from derive.verification.documents.formula_translation import (
     stem,
 )
 
-WORD = re.compile(r"[A-Za-z_]\w*")
+WORD = re.compile(r"(?<![\d.])[A-Za-z_]\w*")
 #: Names of Cartesian components.
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 #: The square of a name.
