@@ -488,6 +488,20 @@ def rates(t, y):
     ]
 
 
+def test_declared_variables_of_a_called_function_are_not_those_of_its_caller() -> None:
+    text = """
+double force(double x) { double b = 2; return b*x; }
+void f(double *y, double *d) { double b = k; d[0] = y[1]; d[1] = -b*force(y[0]); }
+"""
+    assert [one.text for one in read_program(text, "C").equations] == ["y_0_ddot = -k*(b*y_0)"]
+    text = """
+function force(x) { const [a, b] = [x, x*x]; return b; }
+function f(t, y) { const b = k*y[0], p = force(y[0]); return [y[1], -b - p]; }
+"""
+    found = [one.text for one in read_program(text, "JavaScript").equations]
+    assert found == ["y_0_ddot = -k*y_0 - y_0*y_0"]
+
+
 COMPONENTS = """
 const int D = 2;
 double pull(double q[D], int i) { return -k*q[i]/pow(q[0]*q[0] + q[1]*q[1], 1.5); }

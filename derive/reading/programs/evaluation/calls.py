@@ -8,6 +8,7 @@ from derive.reading.programs.evaluation.context import (
     OWN_OBJECTS,
     ProgramContext,
     assigned,
+    declared,
 )
 from derive.reading.programs.evaluation.counted_loops import mapped
 from derive.reading.programs.evaluation.mathematics import split
@@ -54,8 +55,6 @@ class Calls(Values):
         self.other_returns: list[Return] = []
         self.calls: list[FunctionCall] = []
         self.declared: set[str] = set()
-        #: Names with one numeric value, which stay letters.
-        self.fixed: set[str] = set()
         self.depth = 0
 
     def run(self, body: tuple[Statement, ...]) -> None:
@@ -125,7 +124,7 @@ class Calls(Values):
         parameters = [one.name for one in function.parameters]
         if parameters[:1] in (["self"], ["obj"]) and isinstance(call.function, Member):
             parameters = parameters[1:]
-        own = {*parameters, *function.results}
+        own = {*parameters, *function.results, *declared(function.body)}
         if self.context.language.assigns_locals:
             own |= {path for path in assigned(function.body) if "." not in path}
         callee = type(self)(self.context, function.owner or self.owner)

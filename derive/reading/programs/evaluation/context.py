@@ -13,6 +13,7 @@ from derive.reading.programs.syntax.code import (
     ExpressionStatement,
     Loop,
     Statement,
+    VariableDeclaration,
 )
 from derive.reading.programs.syntax.trees import Array, Expression, FunctionCall, Item, Member, Name
 
@@ -97,6 +98,17 @@ def statements(body: tuple[Statement, ...], *, inner: bool) -> Iterator[Statemen
                 yield from statements(one.body, inner=inner)
             case Definition() if inner:
                 yield from statements(one.body, inner=inner)
+
+
+def declared(body: tuple[Statement, ...]) -> set[str]:
+    """The names that belong to a function by their declarations."""
+    result = set()
+    for one in statements(body, inner=False):
+        if isinstance(one, VariableDeclaration):
+            result.add(one.name)
+        elif isinstance(one, Assignment) and one.is_declaration:
+            result.update(map(static_path, targets(one.target)))
+    return {path for path in result if "." not in path}
 
 
 def assigned(body: tuple[Statement, ...], *, inner: bool = False) -> Counter[str]:

@@ -98,7 +98,7 @@ class Follower(Calls):
         """Give a target, or several, a value."""
         if isinstance(target, Array):
             for one, part in zip(target.items, self._parts(target, value), strict=True):
-                self.assign(line, one, part)
+                self.assign(line, one, part, is_declaration=is_declaration)
         elif isinstance(target, Item) and any(isinstance(i, Slice) for i in target.indices):
             self._assign_range(line, target, value)
         elif self._is_constant(target, value):

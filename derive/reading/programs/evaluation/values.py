@@ -42,6 +42,8 @@ class Values:
         #: Arrays that a caller passes, which the function changes.
         self.references: dict[str, str] = {}
         self._open: set[str] = set()
+        #: Names with one numeric value, which stay letters.
+        self.fixed: set[str] = set()
         #: Bounds of loops over bodies, and the indices of those that are followed, with their ends.
         self.counts: set[str] = set()
         self.indices: dict[str, int] = {}
@@ -111,7 +113,7 @@ class Values:
         if (value := constant(line, path)) is not None:
             return value
         shared = self.context.shared.get(path)
-        if shared is None or path in self._open or self._is_parameter(path):
+        if shared is None or path in self._open | self.fixed or self._is_parameter(path):
             return Name(line, path)
         self._open.add(path)
         value = self.value(shared)
