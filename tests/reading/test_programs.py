@@ -304,6 +304,11 @@ TEMPLATES = {
     "Fortran": "subroutine f(t, y, k, d)\n real :: y(2), d(2), t, k, x\n x = y(1)\n d(1) = y(2)\n"
     " d(2) = EXPRESSION\nend subroutine",
     "Julia": "function f(y, k, t)\n  x, v = y\n  [v, EXPRESSION]\nend",
+    "Java": "class A { double[] f(double[] y, double k) { double x = y[0];\n"
+    "  return new double[] {y[1], EXPRESSION}; } }",
+    "Go": "func f(y []float64, k float64) []float64 {\n  x, v := y[0], y[1]\n"
+    "  return []float64{v, EXPRESSION}\n}",
+    "Rust": "fn f(y: [f64; 2], k: f64) -> [f64; 2] {\n let [x, v] = y;\n [v, EXPRESSION]\n}",
 }
 MEANINGS = [
     ("Python", "-x**2 - -k", "-x**2 + k"),
@@ -326,6 +331,24 @@ MEANINGS = [
     ("Julia", "k + 3*(x + k)", "k + 3*(x + k)"),  # the grammar reads *(x + k)
     ("MATLAB", "k*cot(x)", "k*(cos(x)/sin(x))"),
     ("MATLAB", "sec(x)/csc(k)", "1/cos(x)/(1/sin(k))"),
+    ("Java", "1/2*x - (float) (k*Math.pow(x, 2))", "0*x - k*x**2"),
+    ("Java", "k*Math.sin(Math.toRadians(x))/1.5e1d", "k*sin(x*(pi/180))/1.5e1"),
+    ("Java", "x^2", ""),
+    ("Java", "k > 0 ? x : k", ""),
+    ("Processing", "-k*sq(x) + HALF_PI*float(2)", "-k*x**2 + 0.5*pi*2"),
+    ("Go", "float64(1)/2*x - k*math.Pow(x, 2)", "1/2*x - k*x**2"),
+    ("Go", "1/2*x + math.Pi*k", "0*x + pi*k"),
+    ("Go", "x^2", ""),
+    ("Go", "-k*math.Sqrt(math.Exp(x)) + 0x10", ""),
+    ("Rust", "-x.powi(2) - k as f64", "-x**2 - k"),
+    ("Rust", "-(x + k).sin().powf(1.5_f64)", "-sin(x + k)**1.5"),
+    ("Rust", "k*f64::ln(x) + 2f64*x.sqrt()", "k*log(x) + 2*sqrt(x)"),
+    ("Rust", "(2.0*x).mul_add(k, 1.0) - x.recip()", "2.0*x*k + 1.0 - 1/x"),
+    ("Rust", "std::f64::consts::PI*x + 1_000.0", "pi*x + 1000.0"),
+    ("Rust", "if k > 0.0 { x } else { k }", ""),
+    ("Rust", "x.atan2(k)", ""),
+    ("Rust", "x*(1/2) as f64", "x*0"),
+    ("Rust", "x^2", ""),
 ]
 
 
@@ -333,7 +356,8 @@ MEANINGS = [
 def test_expressions_have_the_meaning_of_their_language(
     language: str, expression: str, meaning: str
 ) -> None:
-    program = read_program(TEMPLATES[language].replace("EXPRESSION", expression), language)
+    template = TEMPLATES["Java" if language == "Processing" else language]
+    program = read_program(template.replace("EXPRESSION", expression), language)
     assert [one.text for one in program.equations] == [f"x_ddot = {meaning}"] * bool(meaning)
     assert bool(program.unread) != bool(meaning)
 
@@ -444,6 +468,94 @@ def test_forms_of_julia_are_followed(name: str) -> None:
     program = read_program(text, "Julia")
     assert [one.text for one in program.equations] == equations
     assert not program.unread
+
+
+#: Programs in the forms of other compiled languages, and their equations.
+COMPILED = {
+    "a new object has fields of its own": (
+        "Java",
+        "class S { double x, v; S(double a, double b) { x = a; v = b; }\n"
+        " void step(double k, double h) { S old = new S(0, 1); v -= h*k*x; x += h*v; } }",
+        ["x_ddot = -k*x"],
+    ),
+    "a member and a variable of one name": (
+        "Java",
+        "class S { double x, v, w; void step(double h) { double v = this.v;\n"
+        " this.v = v - h*k*x; this.w = w - h*v*w; x += h*v; } }",
+        [],
+    ),
+    "a method without a body is none": (
+        "Java",
+        "interface F { double of(double x); }\nclass G implements F {\n"
+        " public double of(double x) { return -3*x; }\n"
+        " void step(double h) { v += h*of(x); x += h*v; } }",
+        ["x_ddot = -3*x"],
+    ),
+    "a function that is not known fills an array": (
+        "Java",
+        "class A { double[] f(double[] y) {\n"
+        " double[] a = new double[1], d = new double[2];\n force.at(y, a);\n"
+        " d[0] = y[1]; d[1] = -y[0] + a[0]; return d; } }",
+        [],
+    ),
+    "the second arm of a condition": (
+        "Java",
+        "class A { void step(double h) {\n if (x > 9) { return; }\n"
+        " else { v -= h*k*x; x += h*v; } } }",
+        ["x_ddot = -k*x"],
+    ),
+    "a copy of a slice": (
+        "Go",
+        "func f(y []float64) []float64 {\n z := make([]float64, 2)\n copy(z, y)\n"
+        " return []float64{y[1], -k * z[0]}\n}",
+        ["y_0_ddot = -k*y_0"],
+    ),
+    "results with names": (
+        "Go",
+        "func f(x, v float64) (dx, dv float64) {\n dx, dv = v, -k*x\n return\n}",
+        ["x_ddot = -k*x"],
+    ),
+    "a declaration before a condition": (
+        "Go",
+        "func (s *S) step(h float64) {\n"
+        " if a := -k * s.x; h > 0 {\n  s.v += h * a\n  s.x += h * s.v\n }\n}",
+        ["x_ddot = -k*x"],
+    ),
+    "variables of one declaration": (
+        "Go",
+        "var v, x float64\nfunc step(h float64) {\n v -= h*k*x\n x += h*v\n}",
+        ["x_ddot = -k*x"],
+    ),
+    "a statement with no value at the end": (
+        "Rust",
+        "fn step(s: &mut S, h: f64) { s.v -= h*k*s.x; s.x += h*s.v; }",
+        ["x_ddot = -k*x"],
+    ),
+    "patterns of a caller and a called function": (
+        "Rust",
+        "fn g(y: &[f64; 2]) -> f64 { let (a, b) = (y[0], 2.0); a*b }\n"
+        "fn f(y: &[f64; 2]) -> [f64; 2] { let [a, b] = [3.0, k]; [y[1], -a*b*g(y)] }",
+        ["y_0_ddot = -a*k*(y_0*b)"],
+    ),
+    "functions of a type": (
+        "Rust",
+        "struct A; impl A { fn force(&self, x: f64) -> f64 { -5.0*x } }\n"
+        "struct B; impl B { fn force(&self, x: f64) -> f64 { -3.0*x }\n"
+        " fn rates(&self, y: [f64; 2]) -> [f64; 2] { [y[1], Self::force(self, y[0])] } }",
+        ["y_0_ddot = -3.0*y_0"],
+    ),
+    "several variables of a loop": (
+        "Rust",
+        "fn f(y: &[f64], d: &mut [f64]) { for (i, v) in y.iter().enumerate() { d[i] = -k*v; } }",
+        [],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", COMPILED)
+def test_forms_of_compiled_languages_are_followed_or_left_out(name: str) -> None:
+    language, text, equations = COMPILED[name]
+    assert [one.text for one in read_program(text, language).equations] == equations
 
 
 def test_a_copy_of_an_array_is_another_array() -> None:

@@ -17,8 +17,8 @@ def add_arguments(parser: ArgumentParser) -> None:
         "file is unreadable, and otherwise 3 if no formula of a document is judged."
     )
     meaning = (
-        "documents (.tex, .md, .txt, .rst, .html, .ipynb), programs (.py, .js, .c, .m, .f90, .jl), "
-        "TOML files, or systems with published equations (default: the report)"
+        "documents (.tex, .md, .txt, .rst, .html, .ipynb), programs (.py, .js, .c, .m, .f90, .jl, "
+        ".java, .go, .rs), TOML files, or systems with published equations (default: the report)"
     )
     parser.add_argument("equations", nargs="*", metavar="EQUATIONS", help=meaning)
     add_json(parser)

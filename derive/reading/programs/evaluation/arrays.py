@@ -167,6 +167,7 @@ FACTORED = {"ldlt", "llt", "lu", "partialPivLu", "fullPivLu", "householderQr"}
 FACTORED |= {"colPivHouseholderQr", "fullPivHouseholderQr"}
 #: Methods that return the array, perhaps in another shape or type.
 RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose", "astype", "item"}
+RESHAPED |= {"clone", "to_vec", "iter", "into_iter", "collect", "unwrap"}
 
 
 def of_arrays(
@@ -202,7 +203,7 @@ def of_arrays(
             return base
         case ("inv" | "pinv" | "inverse", (matrix,)):
             return OperatorExpression(call.line, "inverse", (matrix,))
-        case "sincos", (x,):
+        case "sincos" | "sin_cos", (x,):
             names = (Name(call.line, one) for one in ("sin", "cos"))
             return Array(call.line, tuple(FunctionCall(call.line, one, (x,)) for one in names))
         case "reshape", shape if is_method and base is not None:

@@ -9,9 +9,10 @@ from derive.reading.programs.evaluation.context import (
     ProgramContext,
     assigned,
     declared,
+    static_path,
 )
 from derive.reading.programs.evaluation.counted_loops import mapped
-from derive.reading.programs.evaluation.mathematics import split
+from derive.reading.programs.evaluation.mathematics import METHODS, split
 from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.values import Values, root
 from derive.reading.programs.syntax.code import Definition, Lambda, Return, Statement
@@ -30,6 +31,8 @@ from derive.reading.programs.syntax.trees import (
 
 #: Calls within calls that are followed.
 MAX_CALLS = 8
+#: Methods that return an entry of an array.
+ENTRIES = ("getEntry", "get")
 #: Nodes of the largest value of a function of values of functions.
 MAX_NESTED = 500
 CONDITION = "the value depends on a condition"
@@ -72,6 +75,8 @@ class Calls(Values):
             path = other.path  # another name of a function
         arguments = tuple(map(self.value, call.arguments))
         name = split(path)[1]
+        if not path and isinstance(call.function, Member):
+            name = call.function.name  # the method of a value without a name
         made = FunctionCall(call.line, call.function, arguments, call.keywords)
         self.calls.append(made)
         if (function := self._function(call.function, path)) is not None:
@@ -82,6 +87,24 @@ class Calls(Values):
             return self.value(Item(call.line, call.arguments[0], call.arguments[1:]))
         if (value := of_entries(call.line, path, arguments)) is not None:
             return value
+        if path == "copy" and len(arguments) == 2:  # of Go
+            self.assign(call.line, call.arguments[0], arguments[1])
+            return made
+        if name in ENTRIES and isinstance(call.function, Member) and len(arguments) == 1:
+            return self.value(Item(call.line, call.function.base, call.arguments))
+        if name == "new" and isinstance(call.function, Member):  # of a type of Rust
+            path = static_path(call.function.base)
+        if name in METHODS and isinstance(call.function, Member):
+            operands = (self.value(call.function.base), *arguments)
+            value = of_entries(call.line, name, operands)
+            value = value or of_arrays(
+                FunctionCall(call.line, Name(call.line, name), operands),
+                name,
+                None,
+                self.context.language,
+            )
+            if value is not None:
+                return value
         if name == "map" and isinstance(call.function, Member):
             match arguments:
                 case (Lambda(function=of_entry),):
@@ -91,9 +114,7 @@ class Calls(Values):
             last = Item(call.line, call.function.base, (NumberLiteral(call.line, "-1"),))
             self.assign(call.line, last, arguments[0])
             return made
-        if not path and isinstance(call.function, Member):
-            path = call.function.name  # the method of a value without a name
-        value = of_arrays(made, path, self._base(call), self.context.language)
+        value = of_arrays(made, path or name, self._base(call), self.context.language)
         return made if value is None else value
 
     def _base(self, call: FunctionCall) -> Expression | None:
@@ -123,7 +144,8 @@ class Calls(Values):
             return Opaque(call.line, f"calls of {function.name} within calls are not followed")
         parameters = [one.name for one in function.parameters]
         if parameters[:1] in (["self"], ["obj"]) and isinstance(call.function, Member):
-            parameters = parameters[1:]
+            is_of_class = call.function.base in (Name(0, function.owner), Name(0, "Self"))
+            parameters = parameters[not is_of_class :]
         own = {*parameters, *function.results, *declared(function.body)}
         if self.context.language.assigns_locals:
             own |= {path for path in assigned(function.body) if "." not in path}

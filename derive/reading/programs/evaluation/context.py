@@ -20,7 +20,7 @@ from derive.reading.programs.syntax.trees import Array, Expression, FunctionCall
 #: Expressions that are followed in one program.
 MAX_STEPS = 60_000
 #: Names of the object that a method belongs to.
-OWN_OBJECTS = ("self", "this", "obj")
+OWN_OBJECTS = ("self", "this", "obj", "Self")
 #: Methods that add an entry to an array.
 APPENDING = ("append", "push", "push_back", "emplace_back")
 
@@ -56,9 +56,10 @@ class ProgramContext:
     def function(self, path: str, owner: str) -> Definition | None:
         """The function that a name stands for in a class; None if there is none, or several."""
         base, _, name = path.rpartition(".")
-        if base not in ("", *OWN_OBJECTS, owner):
-            return None
         result = self.functions.get(name, [])
+        if base not in ("", *OWN_OBJECTS, owner):
+            result = [one for one in result if one.owner == base]  # of the class itself
+            owner = base
         own = [one for one in result if one.owner == owner]
         if len(own or result) != 1:
             return None

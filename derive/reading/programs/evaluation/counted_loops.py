@@ -138,18 +138,24 @@ class _NotElementwiseError(Exception):
 
 
 def elementwise(loop: Loop) -> tuple[Statement, ...] | None:
-    """The statements of a loop without its index; None if the index has another use."""
+    """The statements of a loop without its index; None if the index has another use.
+
+    Variables that the loop declares do not keep their values in the next round.
+    """
     if not loop.variable or not loop.body:
         return None
     result = []
     for one in loop.body:
-        if not isinstance(one, Assignment) or not isinstance(one.target, Item):
+        if not isinstance(one, Assignment):
+            return None
+        is_own = isinstance(one.target, Name) and one.is_declaration and not one.operator
+        if not isinstance(one.target, Item) and not is_own:
             return None
         try:
             target, value = (_without(tree, loop.variable) for tree in (one.target, one.value))
         except _NotElementwiseError:
             return None
-        result.append(Assignment(one.line, target, one.operator, value))
+        result.append(Assignment(one.line, target, one.operator, value, one.is_declaration))
     return tuple(result)
 
 

@@ -15,7 +15,7 @@ from derive.reading.programs.evaluation.counted_loops import (
     integer,
 )
 from derive.reading.programs.evaluation.numeric_values import constant, number
-from derive.reading.programs.evaluation.values import row_or_column, whole
+from derive.reading.programs.evaluation.values import is_zeros, row_or_column, whole
 from derive.reading.programs.syntax.code import (
     Assignment,
     Conditional,
@@ -69,7 +69,7 @@ class Follower(Calls):
                     self.returned = None if value is None else self.value(value)
                     self.has_ended = True
                 case ExpressionStatement(value=value):
-                    self.value(value)
+                    self._call(value)
                 case Conditional():
                     self._branch(one)
                 case Loop():
@@ -81,6 +81,23 @@ class Follower(Calls):
                     self.declared.add(name)
                 case Definition():
                     pass  # followed by itself
+
+    def _call(self, tree: Expression) -> None:
+        """Follow a call; a function that is not known may fill an empty array."""
+        value = self.value(tree)
+        if (
+            isinstance(value, FunctionCall)
+            and isinstance(tree, FunctionCall)
+            and not is_zeros(tree)
+        ):
+            for place in filter(None, map(self.place, tree.arguments)):
+                known = self.variables.get(place)
+                if known and is_zeros(known) and not self._has_entries(place):
+                    reason = "a function that is not followed may change the array"
+                    self.variables[place] = Opaque(tree.line, reason)
+
+    def _has_entries(self, place: str) -> bool:
+        return any(key.startswith(f"{place}[") for key in self.variables)
 
     def _assign(self, one: Assignment) -> None:
         value = self.value(one.value)

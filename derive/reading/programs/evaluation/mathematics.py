@@ -13,11 +13,16 @@ from derive.reading.programs.syntax.trees import (
 LIBRARIES = {
     "", "np", "numpy", "math", "Math", "std", "jnp", "cmath", "mp", "sp", "sympy", "torch", "tf",
     "cp", "onp", "npx", "Base", "jnp.numpy", "p5", "p", "this", "self", "sketch", "onp.numpy",
+    "StrictMath", "FastMath",
 }  # fmt: skip
 #: Functions of one argument, and their names in formulas.
 FUNCTIONS = {name: name for name in ("sin", "cos", "tan", "exp", "log", "sqrt")}
 FUNCTIONS |= {f"{name}{suffix}": name for name in FUNCTIONS for suffix in ("f", "l")}
 FUNCTIONS |= {f"d{name}": name for name in ("sin", "cos", "tan", "exp", "log", "sqrt")}
+FUNCTIONS |= {"ln": "log"}
+#: Functions that are methods of numbers, as in ``x.sin()`` of Rust.
+METHODS = {"sin", "cos", "tan", "exp", "ln", "sqrt", "powi", "powf", "pow", "abs", "hypot", "recip"}
+METHODS |= {"sin_cos", "to_radians", "to_degrees", "mul_add", "atan2", "signum", "clamp"}
 #: Functions whose argument is in degrees.
 DEGREES = {"sind": "sin", "cosd": "cos", "tand": "tan"}
 #: Functions that return their argument, or change nothing but its type.
@@ -26,6 +31,7 @@ IDENTITIES = {
     "Real", "static_cast", "copy", "deepcopy", "squeeze", "ravel", "flatten", "asarray", "array",
     "matrix", "Vector", "collect", "vec", "tolist", "SVector", "MVector", "SA", "list", "tuple",
     "vector", "Matrix", "atleast_1d", "Vector2d", "Vector3d", "Vector4d", "VectorXd", "state_type",
+    "float32", "copyOf", "ArrayRealVector", "Vector2", "Vector3", "Vector4", "Vec2", "Vec3", "Ok",
 }  # fmt: skip
 PI = {"pi", "PI", "M_PI", "π", "Pi", "M_PIl"}
 MULTIPLES = {"TWO_PI": "2", "TAU": "2", "HALF_PI": "0.5", "M_PI_2": "0.5"}
@@ -37,6 +43,8 @@ MULTIPLES |= {"math.tau": "2", "cmath.tau": "2"}
 def split(path: str) -> tuple[str, str]:
     """The library and the name of a path such as ``np.sin``."""
     library, _, name = path.rpartition(".")
+    if library == "math":  # Go has capital letters
+        name = name[:1].lower() + name[1:]
     return library, name
 
 
@@ -66,17 +74,21 @@ def applied(line: int, path: str, arguments: tuple[Expression, ...]) -> Expressi
             sine, cosine = (FunctionCall(line, Name(line, one), (x,)) for one in ("sin", "cos"))
             above = cosine if name == "cot" else NumberLiteral(line, "1")
             return OperatorExpression(line, "/", (above, cosine if name == "sec" else sine))
-        case "radians" | "deg2rad" | "toRadians", (x,):
+        case "radians" | "deg2rad" | "toRadians" | "to_radians", (x,):
             return radians(line, x)
-        case "degrees" | "rad2deg" | "toDegrees", (x,):
+        case "degrees" | "rad2deg" | "toDegrees" | "to_degrees", (x,):
             return OperatorExpression(line, "*", (x, _ratio(line, "180", "pi")))
-        case "pow" | "power" | "powf" | "float_power", (x, exponent):
+        case "recip", (x,):
+            return OperatorExpression(line, "/", (NumberLiteral(line, "1"), x))
+        case "mul_add", (x, factor, term):
+            return OperatorExpression(line, "+", (OperatorExpression(line, "*", (x, factor)), term))
+        case "pow" | "power" | "powf" | "powi" | "float_power", (x, exponent):
             return OperatorExpression(line, "**", (x, exponent))
         case "clip" | "constrain" | "clamp", (x, _, _):
             return x  # equations hold within the limits
         case "square" | "sq" | "abs2", (x,):
             return OperatorExpression(line, "**", (x, NumberLiteral(line, "2")))
-        case "sign" | "abs" | "fabs" | "atan2" | "asin" | "acos" | "atan", _:
+        case "sign" | "signum" | "abs" | "fabs" | "atan2" | "asin" | "acos" | "atan", _:
             return Opaque(line, f"the function {name} is not among those of formulas")
     return None
 

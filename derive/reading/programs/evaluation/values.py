@@ -291,7 +291,7 @@ def whole(text: str) -> int | None:
 
 def is_zeros(tree: Expression) -> bool:
     """Whether a value is an array of zeros, or one to be filled."""
-    names = ("zeros", "zeros_like", "empty", "empty_like", "similar", "zero", "fill", "Array")
+    names = "zeros zeros_like empty empty_like similar zero fill make Array".split()
     match tree:
         case FunctionCall(function=Name(path=path)) | FunctionCall(function=Member(name=path)):
             return path.rpartition(".")[2] in names

@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from tree_sitter import Node
 
 #: Digits with the suffixes of all languages, such as 9.81f, 1d0 and 2.0_dp.
-DIGITS = re.compile(r"(\d[\d_]*\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?(?:_\w+|[fFlLuU]*)")
+DIGITS = re.compile(
+    r"(\d[\d_]*\.?\d*|\.\d+)(?:[eEdD]([+-]?\d+))?(?:_\w+|[fiu](?:8|16|32|64|size)|[fFlLuUdD]*)"
+)
 #: Powers of powers in a row.
 MAX_POWERS = 20
 OPERATORS = {"^": "**", "\\": "solve", "×": "*", "÷": "/", "//": "//", "dot": "@"}
@@ -44,6 +46,8 @@ class ExpressionTranslator:
     def __init__(self, language: Language) -> None:
         self.language = language
         self._depth = 0
+        #: Variables of the function with the names of members, if these are written alone.
+        self._hiding: set[str] = set()
 
     def tree(self, node: "Node") -> Expression:
         """The expression at a node."""
@@ -109,10 +113,22 @@ class ExpressionTranslator:
     def _qualified_tree(self, node: "Node") -> Expression:
         return self.tree(self.children(node)[-1])
 
+    def _associated_tree(self, node: "Node") -> Expression:
+        """A name in a module, or a function of a type, such as ``Pendulum::new``."""
+        *path, name = self.children(node)
+        owner = text(path[-1]).rpartition("::")[2] if path else ""
+        if owner[:1].isupper() and node.parent and node.parent.type == "call_expression":
+            return Member(line(node), Name(line(node), owner), self.word(name))
+        return self.tree(name)
+
     def _member_tree(self, node: "Node") -> Expression:
         base, *_, name = self.children(node)
         if self.language.has_bare_members and text(base) == "this":
+            if self.word(name) in self._hiding:
+                return Opaque(line(node), f"{text(name)} is a member and a variable")
             return self.tree(name)
+        if text(name).isdigit():  # of a tuple of Rust
+            return Item(line(node), self.tree(base), (self.tree(name),))
         return Member(line(node), self.tree(base), self.word(name))
 
     def _item_tree(self, node: "Node") -> Expression:
@@ -127,13 +143,23 @@ class ExpressionTranslator:
     def _slice_tree(self, node: "Node") -> Expression:
         bounds: list[Expression | None] = [None]
         for child in node.children:
-            if child.type == ":":
+            if child.type in (":", "..", "..="):
                 bounds.append(None)
             elif child.is_named and child.type not in ("end_keyword", "spread_operator"):
                 bounds[-1] = self.tree(child)
         if len(bounds) > 2:
             return Opaque(line(node), "a range with a step is not followed")
-        return Slice(line(node), bounds[0], bounds[-1])
+        upper = bounds[-1]
+        if upper and any(child.type == "..=" for child in node.children):
+            upper = OperatorExpression(line(node), "+", (upper, NumberLiteral(line(node), "1")))
+        return Slice(line(node), bounds[0], upper)
+
+    def _part_tree(self, node: "Node") -> Expression:
+        """A range of entries of Go."""
+        base, lower, upper = map(node.child_by_field_name, ("operand", "start", "end"))
+        bounds = (self.tree(one) if one else None for one in (lower, upper))
+        whole = self.tree(base or node.children[0])
+        return Item(line(node), whole, (Slice(line(node), *bounds),))
 
     def _all_tree(self, node: "Node") -> Expression:
         return Slice(line(node), None, None)
@@ -150,6 +176,18 @@ class ExpressionTranslator:
         arguments = [one for one in nodes if self.role(one) != "keyword"]
         named = tuple((self.word(k), self.tree(v)) for k, v in map(self._pair, keywords))
         return FunctionCall(line(node), self.tree(function), self._trees(arguments), named)
+
+    def _invocation_tree(self, node: "Node") -> Expression:
+        """A call of a method or a constructor of Java."""
+        named = node.child_by_field_name("name") or node.child_by_field_name("type")
+        base, given = map(node.child_by_field_name, ("object", "arguments"))
+        word = text(named).partition("<")[0].rpartition(".")[2] if named else ""
+        function: Expression = Name(line(node), word)
+        if base:
+            function = Member(line(node), self.tree(base), word)
+        return FunctionCall(
+            line(node), function, self._trees(self.children(given) if given else ())
+        )
 
     def _arguments(self, node: "Node") -> list["Node"]:
         return self.children(node) if self.role(node) == "arguments" else [node]
@@ -229,7 +267,34 @@ class ExpressionTranslator:
         return OperatorExpression(line(node), "transpose", (self.tree(self.children(node)[0]),))
 
     def _array_tree(self, node: "Node") -> Expression:
+        if node.child_by_field_name("length"):  # [value; count] of Rust
+            value = self.tree(self.children(node)[0])
+            is_zero = isinstance(value, NumberLiteral) and float(value.digits) == 0
+            return self._zeros_tree(node) if is_zero else Opaque(line(node), "a repeated value")
         return Array(line(node), self._trees(self.children(node)))
+
+    def _zeros_tree(self, node: "Node") -> Expression:
+        return FunctionCall(line(node), Name(line(node), "zeros"), ())
+
+    def _values_tree(self, node: "Node") -> Expression:
+        """One value, or several, in a statement of Go."""
+        items = self._trees(self.children(node))
+        return items[0] if len(items) == 1 else Array(line(node), items)
+
+    def _literal_tree(self, node: "Node") -> Expression:
+        """The members of an object of Go with their names, or the entries of an array."""
+        has_names = any(self.role(one) == "pair" for one in self.children(node))
+        return self._record_tree(node) if has_names else self._array_tree(node)
+
+    def _branch_tree(self, node: "Node") -> Expression:
+        """A conditional as a value."""
+        first, second = map(node.child_by_field_name, ("consequence", "alternative"))
+        if not (first and second):
+            return Opaque(line(node), "a conditional without a second value")
+        return Choice(line(node), self.tree(second), self.tree(first))
+
+    def _otherwise_tree(self, node: "Node") -> Expression:
+        return self._block_tree(node)
 
     def _matrix_tree(self, node: "Node") -> Expression:
         rows = [
@@ -272,11 +337,16 @@ class ExpressionTranslator:
 
     def bounds(self, node: "Node", header: "Node") -> tuple[Expression, Expression] | None:
         """The first value of the index of a loop, and the one after the last; None if not known."""
-        condition, given = map(node.child_by_field_name, ("condition", "right"))
+        condition = node.child_by_field_name("condition")
+        condition = condition or header.child_by_field_name("condition")
         one = NumberLiteral(line(node), "1")
+        if header.type == "range_clause":  # of Go
+            array = header.child_by_field_name("right")
+            return (NumberLiteral(line(node), "0"), self._count(array)) if array else None
+        given = node.child_by_field_name("right") or node.child_by_field_name("value")
         if condition and self.role(condition) == "binary":
             _, sign, last = [part for part in condition.children if not part.is_extra][:3]
-            first = header
+            first = header.child_by_field_name("initializer") or header
             while self.children(first) and self.role(first) != "call":
                 first = self.children(first)[-1]
             end = self.tree(last)
@@ -292,10 +362,18 @@ class ExpressionTranslator:
             case (*_, FunctionCall(function=Name(path="range"), arguments=(lower, end))):
                 return lower, end
             case (*_, Slice(lower=Expression() as lower, upper=Expression() as upper)):
+                if self.language.is_half_open:
+                    return lower, upper
                 return lower, OperatorExpression(line(node), "+", (upper, one))
             case (lower, upper) if len(parts) == 3 and self.role(parts[1]):
                 return lower, OperatorExpression(line(node), "+", (upper, one))
         return None
+
+    def _count(self, node: "Node") -> Expression:
+        """A number, or the length of an array."""
+        if self.role(node) in ("number", "call"):
+            return self.tree(node)
+        return FunctionCall(line(node), Name(line(node), "len"), (self.tree(node),))
 
     def _record_tree(self, node: "Node") -> Expression:
         return Record(line(node), tuple(self._fields(node)))

@@ -49,6 +49,8 @@ ASSIGNED = re.compile(
     r"([^\W\d][\w.]{0,50})(?:\[[^\]]{0,30}\]|\([^)]{0,30}\))?\s{0,9}[-+*/^]?=(?!=)"
 )
 MAX_FAULT = 5_000
+#: Roles of several variables of a loop.
+SEVERAL = ("array", "values")
 #: The number of columns in the type of a matrix, such as Matrix2d.
 COLUMNS = re.compile(r"Matrix(\d)[df]?\Z")
 
@@ -130,23 +132,30 @@ class StatementTranslator(DefinitionTranslator):
             names = filter(None, map(self._name_in, self.children(node)[1:]))
             self._columns |= {text(name): int(columns[1]) for name in names}
         for child in self.children(node):
-            if self._is_assigned(child):
-                for one in self._statement(child):
-                    if isinstance(one, Assignment):
-                        one = Assignment(one.line, one.target, one.operator, one.value, True)
-                    yield one
+            if self.role(child) == "declaration":
+                yield from self._declaration_statements(child)
+            elif self._is_assigned(child):
+                yield from self.declared(self._statement(child))
             elif self.role(child) != "skip" and (name := self._name_in(child)):
-                yield VariableDeclaration(line(child), self.word(name))
+                for one in self._several(child) or [name]:
+                    yield VariableDeclaration(line(child), self.word(one))
 
-    def _name_in(self, node: "Node") -> "Node | None":
-        return node if self.role(node) == "name" else self._first(node, "name")
+    def _local_statements(self, node: "Node") -> Iterator[Statement]:
+        """A declaration with a value, such as ``x := 1`` of Go and ``let x = 1`` of Rust."""
+        name = node.child_by_field_name("pattern")
+        if name and not node.child_by_field_name("value"):
+            yield VariableDeclaration(line(node), self.word(name))
+        else:
+            yield from self.declared(self._assign_statements(node))
 
     def _is_assigned(self, node: "Node") -> bool:
-        return self.role(node) == "assign" and len(self.children(node)) > 1
+        is_name = node.child_by_field_name("name") and not node.child_by_field_name("value")
+        return self.role(node) == "assign" and len(self.children(node)) > 1 and not is_name
 
     def _class_statements(self, node: "Node") -> Iterator[Statement]:
-        name = node.child_by_field_name("name")
-        outer, self._owner = self._owner, self.word(name) if name else "?"
+        name = node.child_by_field_name("name") or node.child_by_field_name("type")
+        word = self.word(name).partition("<")[0] if name else "?"
+        outer, self._owner = self._owner, word
         body = node.child_by_field_name("body")
         if body:
             yield from self._statement(body)
@@ -171,7 +180,7 @@ class StatementTranslator(DefinitionTranslator):
         if left == right:
             return
         signs = [text(one) for one in node.children if one not in (left, right)]
-        operator = next((one[:-1].lstrip(".") for one in signs if one.endswith("=")), "")
+        operator = next((one[:-1].strip(".:") for one in signs if one.endswith("=")), "")
         if self.role(right) == "arguments":  # of a constructor of C++
             values = self.children(right)
             array = Array(line(right), self._trees(values))
@@ -181,10 +190,15 @@ class StatementTranslator(DefinitionTranslator):
         if self.role(right) == "assign":  # a = b = 1
             yield from self._statement(right)
             right = next(one for one in self.children(right) if self.role(one) != "skip")
+        if self.role(right) == "block" and len(self.children(right)) > 1:
+            *before, right = self.children(right)
+            yield from self.statements(before)
         target = self.tree(left)
+        if names := self._several(node):  # of Go
+            target = Array(line(node), self._trees(names))
         if text(left).startswith("(;") and isinstance(target, Array):  # members by their names
-            names = [(one.path, one) for one in target.items if isinstance(one, Name)]
-            target = Record(target.line, tuple(names))
+            members = [(one.path, one) for one in target.items if isinstance(one, Name)]
+            target = Record(target.line, tuple(members))
         yield from self.assigned(line(node), target, operator, self.tree(right))
 
     def assigned(
@@ -249,9 +263,16 @@ class StatementTranslator(DefinitionTranslator):
         yield Return(line(node), values[0] if len(values) == 1 else value)
 
     def _branch_statements(self, node: "Node") -> Iterator[Statement]:
-        condition, *rest = self.children(node)
-        body = self.statements([one for one in rest if self.role(one) != "otherwise"])
-        others = self._otherwise([one for one in rest if self.role(one) == "otherwise"])
+        before, other = map(node.child_by_field_name, ("initializer", "alternative"))
+        if before:  # of Go
+            yield from self._statement(before)
+        condition, *rest = [one for one in self.children(node) if one != before]
+        if other and self.role(other) != "otherwise":  # without a clause of its own
+            body = self.statements([one for one in rest if one != other])
+            others = self.statements([other])
+        else:
+            body = self.statements([one for one in rest if self.role(one) != "otherwise"])
+            others = self._otherwise([one for one in rest if self.role(one) == "otherwise"])
         if indices := INDICES.fullmatch(text(condition)[:MAX_CONDITION]):
             first, relation, second = indices.groups()
             arms = (body, others) if relation in UNEQUAL else (others, body)
@@ -280,10 +301,19 @@ class StatementTranslator(DefinitionTranslator):
         headers = headers or [one for one in self.children(node) if one not in nodes][:1] or [node]
         statements = self.statements(nodes)
         for header in reversed(headers):  # several in one line of Julia
-            name = self._name_in(header) if header != node else None
-            is_while = "while" in text(node)[:10].lower()
+            counted = header.child_by_field_name("left") or header
+            name = self._name_in(counted) if header != node else None
+            is_while = "while" in text(node)[:10].lower() or self.role(header) == "binary"
             variable = "" if is_while or name is None else self.word(name)
             bounds = self.bounds(node, header) if variable else None
+            if len(names := self.children(counted)) > 1 and self.role(counted) in SEVERAL:
+                given = header.child_by_field_name("right")
+                if header.type == "range_clause" and given:  # i, value := range array, of Go
+                    entry = Item(line(given), self.tree(given), (Name(line(given), variable),))
+                    first = Assignment(entry.line, self.tree(names[1]), "", entry, True)
+                    statements = (first, *statements)
+                else:
+                    variable, bounds = "", None
             statements = (Loop(line(node), variable, statements, bounds),)
         yield from statements
 

@@ -1,0 +1,102 @@
+"""Java, and the sketches of Processing."""
+
+import re
+
+from derive.reading.programs.languages.language import Language
+
+#: Conversions and colours of Processing.
+CONVERSION = re.compile(r"\b(float|int)\(")
+COLOUR = re.compile(r"#([0-9a-fA-F]{6})\b")
+
+
+def prepared(text: str) -> str:
+    """The words of Processing in those of Java."""
+    return COLOUR.sub(r"0x\1", CONVERSION.sub(r"(\1) (", text))
+
+
+language = Language(
+    name="Java",
+    suffixes=(".java", ".pde"),
+    module="tree_sitter_java",
+    other_names=("Processing",),
+    prepared=prepared,
+    assigns_locals=False,
+    has_bare_members=True,
+    has_whole_quotients=True,
+    roles={
+        "program": "block",
+        "block": "block",
+        "class_body": "block",
+        "interface_body": "block",
+        "constructor_body": "block",
+        "expression_statement": "block",
+        "labeled_statement": "block",
+        "synchronized_statement": "block",
+        "static_initializer": "block",
+        "try_statement": "block",
+        "try_with_resources_statement": "block",
+        "finally_clause": "block",
+        "class_declaration": "class",
+        "interface_declaration": "class",
+        "record_declaration": "class",
+        "field_declaration": "declaration",
+        "constant_declaration": "declaration",
+        "local_variable_declaration": "declaration",
+        "method_declaration": "function",
+        "constructor_declaration": "function",
+        "lambda_expression": "lambda",
+        "variable_declarator": "assign",
+        "assignment_expression": "assign",
+        "update_expression": "update",
+        "ternary_expression": "conditional",
+        "return_statement": "return",
+        "if_statement": "branch",
+        "switch_expression": "choice",
+        "for_statement": "loop",
+        "enhanced_for_statement": "loop",
+        "while_statement": "loop",
+        "do_statement": "loop",
+        "package_declaration": "skip",
+        "import_declaration": "skip",
+        "enum_declaration": "skip",
+        "annotation_type_declaration": "skip",
+        "explicit_constructor_invocation": "skip",
+        "catch_clause": "skip",
+        "resource_specification": "skip",
+        "modifiers": "skip",
+        "dimensions": "skip",
+        "type_arguments": "skip",
+        "type_parameters": "skip",
+        "superclass": "skip",
+        "super_interfaces": "skip",
+        "throws": "skip",
+        "void_type": "skip",
+        "boolean_type": "skip",
+        "integral_type": "skip",
+        "floating_point_type": "skip",
+        "type_identifier": "skip",
+        "scoped_type_identifier": "skip",
+        "generic_type": "skip",
+        "array_type": "skip",
+        "identifier": "name",
+        "this": "name",
+        "super": "name",
+        "decimal_integer_literal": "number",
+        "decimal_floating_point_literal": "number",
+        "string_literal": "text",
+        "field_access": "member",
+        "array_access": "item",
+        "method_invocation": "invocation",
+        "object_creation_expression": "invocation",
+        "argument_list": "arguments",
+        "parenthesized_expression": "wrapper",
+        "cast_expression": "wrapper",
+        "array_creation_expression": "wrapper",
+        "dimensions_expr": "zeros",
+        "binary_expression": "binary",
+        "unary_expression": "unary",
+        "array_initializer": "array",
+        "formal_parameters": "parameters",
+        "inferred_parameters": "parameters",
+    },
+)
