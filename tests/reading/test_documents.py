@@ -313,3 +313,26 @@ def test_outputs_of_notebooks_are_not_read(tmp_path: Path) -> None:
     cell = {"cell_type": "code", "source": "x", "outputs": [output]}
     text = json.dumps({"cells": [cell, {"cell_type": "markdown", "source": "$$x = 1$$"}]})
     assert [one.latex for one in read(tmp_path, "a.ipynb", text).displays] == ["x = 1"]
+
+
+def test_boxes_of_myst_hold_text_and_code(tmp_path: Path) -> None:
+    text = """````{dropdown} Steps
+$$a = 1$$
+
+```{note}
+$$b = 2$$
+```
+
+```python
+"$$c = 3$$"
+```
+
+```{code-block} python
+"$$d = 4$$"
+```
+````
+
+$$e = 5$$
+"""
+    displays = read(tmp_path, "a.md", text).displays
+    assert [one.latex for one in displays] == ["a = 1", "b = 2", "e = 5"]

@@ -7,6 +7,7 @@ import pytest
 from derive.system.files.system_catalogue import load
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
+from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.numbers.matching import Match
 
@@ -69,3 +70,11 @@ def test_forces_act_on_one_coordinate_or_on_none() -> None:
 )
 def test_names_of_rates_have_a_stem_and_an_order(name: str, whole: str, number: int) -> None:
     assert (stem(name), order(name)) == (whole, number)
+
+
+def test_one_letter_can_stand_for_a_length_and_an_amplitude() -> None:
+    parameters, numbers = {"l": "a", "a": "a", "c": "b"}, {"m": "1", "Omega": "1", "g": "1"}
+    system = load("driven_pendulum")
+    driven = replace(USUAL, system=system, parameters=parameters, numbers=numbers)
+    own = system_letters(driven).system
+    assert {symbol.name: symbol.is_positive for symbol in own.params} == {"a": True, "b": None}

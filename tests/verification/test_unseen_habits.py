@@ -420,3 +420,50 @@ $$(1 + 16 a^2 x^6)\ddot x + 48 a^2 x^5\dot x^2 + 4 g a x^3 = 0$$"""
     assert verdicts(tmp_path, text) == [*["definition"] * 2, *["verified"] * 3]
     found = verdicts(tmp_path, text.replace("4 g a x^3 =", "2 g a x^3 ="))
     assert [k for k, one in enumerate(found) if one == "wrong"] == [4]
+
+
+def test_a_name_has_another_value_at_a_right_angle(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12(M + m)\dot x^2 + m l\dot x\dot\theta\cos\theta + \frac12 m l^2\dot\theta^2$$
+$$V = m g l\cos\theta$$ $$D = M + m\sin^2\theta$$
+$$\ddot\theta = \frac{(M + m) g\sin\theta - m l\dot\theta^2\sin\theta\cos\theta}{l D}$$
+For the upright rod $D = M$, for the horizontal one $D = M + m$, and never is $D = M - m$."""
+    assert verdicts(tmp_path, text)[-4:] == ["verified", "context", "context", "wrong"]
+
+
+def test_units_in_which_parameters_are_1_keep_the_letter_of_a_force(tmp_path: Path) -> None:
+    text = r"""
+$$L = \frac12 m l^2\dot\theta^2 - m g l\cos\theta$$
+$$\frac{d}{dt}\frac{\partial L}{\partial\dot\theta} - \frac{\partial L}{\partial\theta} = u$$
+$$\ddot\theta = \frac gl\sin\theta + \frac{u}{m l^2}$$
+With $g/l = 1$ and $1/(m l^2) = 1$ this is $$\ddot\theta = \sin\theta + u$$"""
+    assert verdicts(tmp_path, text)[-1] == "context"
+    assert (
+        verdicts(tmp_path, text.replace(r"= \sin\theta + u", r"= -\sin\theta + u"))[-1] == "wrong"
+    )
+
+
+def test_dots_stand_for_terms(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 J(\dot\theta^2 + \dot\phi^2\sin^2\theta) + a\dot\phi\dot\theta\cos\theta
+  + \frac12 K\dot\phi^2$$
+$$V = m g l\cos\theta$$
+$$J\ddot\theta = m g l\sin\theta + J\dot\phi^2\sin\theta\cos\theta - a\ddot\phi\cos\theta$$
+$$\ddot\theta = \cdots + \dot\phi^2\sin\theta\cos\theta$$"""
+    assert verdicts(tmp_path, text)[-2:] == ["verified", "context"]
+
+
+def test_a_function_of_forces_is_no_potential_energy(tmp_path: Path) -> None:
+    text = r"""
+$$L = K + U$$ Others write $L = K - V$ with the potential energy $V$.
+$$K = \frac12 m\dot x^2$$ $$U = m g x - \frac12 k x^2$$ $$m\ddot x = m g - k x$$"""
+    expected = ["definition", "verified", "verified", "definition", "verified"]
+    assert verdicts(tmp_path, text) == expected
+    assert verdicts(tmp_path, text.replace("= m g - k x", "= m g + k x"))[-1] != "verified"
+
+
+def test_a_column_is_no_energy_of_a_part(tmp_path: Path) -> None:
+    text = r"""
+$$\vec{T_1} = T_1\begin{pmatrix}\sin\theta\\ -\cos\theta\end{pmatrix}$$
+$$m l\ddot\theta = -m g\sin\theta$$"""
+    assert "wrong" not in verdicts(tmp_path, text)

@@ -28,6 +28,9 @@ SERVICE = (
 IMAGE, ENCODED = "image", re.compile("%([0-7][0-9A-Fa-f])")
 #: Characters in which text beside a formula is looked for.
 NEAR = 100
+#: A fence of code, and the name of a box of MyST, such as a note or a proof, which holds text.
+FENCE = re.compile(MARGIN + r"(?P<mark>`{3,}|~{3,})[ \t]*+(?P<name>[^`\n]*+)$", re.MULTILINE)
+BOX = re.compile(r"\{(?!code|math|eval|jupyter|literal|mermaid|raw)[\w:-]++\}")
 #: A tag on one line.
 TAG = r"</?[A-Za-z][^<>$\n]*+>"
 
@@ -45,9 +48,11 @@ def _span_end(opening: re.Match[str]) -> str:
     return rf"(?P<end>(?<!`){opening.group()}(?!`))|(?P<stop>{BLANK_LINE})"
 
 
+MATH_BLOCK = Delimiter(
+    MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"
+)
+CODE_BLOCK = Delimiter(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end)
 TOKENS = (
-    Delimiter(MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"),
-    Delimiter(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end),
     Delimiter("<!--", "(?P<end>-->)"),
     Delimiter(rf"(?i:<img\b[^<>\n]{{0,200}}?src=\"){SERVICE}", r"(?P<end>\")|(?P<stop>\n)", IMAGE),
     Delimiter(
@@ -87,7 +92,9 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     indented = Delimiter(
         "^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code
     )
-    for result in scanned(text, (indented, *TOKENS)):
+    fences = _fences_of_boxes(text)
+    block = replace(CODE_BLOCK, applies=lambda one: one.start() not in fences)
+    for result in scanned(text, (indented, MATH_BLOCK, block, *TOKENS)):
         if isinstance(result, UnreadDisplay):
             yield result
         elif result.delimiter in ("$$", IMAGE):
@@ -128,6 +135,23 @@ def _indented_code(text: str) -> frozenset[int]:
                 is_code_allowed = False
         position += len(line) + 1
     return frozenset(starts)
+
+
+def _fences_of_boxes(text: str) -> frozenset[int]:
+    """Where the first and last lines of boxes start, in which there can be code and others."""
+    result, opened = list[int](), list[tuple[str, bool]]()
+    for fence in FENCE.finditer(text):
+        mark, name = fence["mark"], fence["name"].strip()
+        closes = bool(opened) and mark.startswith(opened[-1][0]) and not name
+        if closes:
+            _, is_box = opened.pop()
+        elif opened and not opened[-1][1]:
+            continue  # a line of code
+        else:
+            opened.append((mark, is_box := bool(BOX.match(name))))
+        if is_box:
+            result.append(fence.start())
+    return frozenset(result)
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:

@@ -101,6 +101,7 @@ class Judges:
         """
         letters = self.letters
         common = {*letters.coordinates, *letters.quantities, *letters.momenta, *OPERATORS}
+        common |= {name for name, _ in candidate.forces}
         is_alone = all(self._used[w] == 1 or stem(w) in common for w in formula.words)
         # an equation of motion, or a canonical one
         is_equation = order(formula.subject) or any(order(word) == 2 for word in formula.words)

@@ -45,6 +45,11 @@ def system_letters(candidate: SystemCandidate) -> SystemLetters:
         symbols[name] = sp.Symbol(valid_name(name), **_assumptions(candidate, i))
     units, defaults = dict[str, str](), dict[str, float]()
     values: dict[sp.Symbol, sp.Expr] = {}
+    assumptions: dict[str, dict[str, bool]] = {}  # of a letter for several parameters, those of all
+    for parameter in template.parameters:
+        letter = candidate.parameters.get(parameter.symbol.name)
+        if letter:
+            assumptions.setdefault(letter, {}).update(parameter.symbol._assumptions_orig)
     for parameter in template.parameters:
         own = parameter.symbol
         if own.name in candidate.numbers:
@@ -52,7 +57,7 @@ def system_letters(candidate: SystemCandidate) -> SystemLetters:
             continue
         letter = candidate.parameters.get(own.name)
         name = valid_name(letter) if letter else own.name + UNNAMED
-        values[own] = sp.Symbol(name, **own._assumptions_orig)
+        values[own] = sp.Symbol(name, **assumptions.get(letter or "", own._assumptions_orig))
         units[name] = parameter.unit
         defaults[name] = parameter.default
         if letter:

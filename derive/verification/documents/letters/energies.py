@@ -258,7 +258,7 @@ def _sums_of_parts(
         if name in words and name not in parts and not is_inner:
             with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
                 value = parse(formula.sides[-1].text, values)
-                if isinstance(value, sp.Expr):
+                if isinstance(value, sp.Expr) and not isinstance(value, sp.MatrixBase):
                     parts[name] = value, number
     sums = {"kinetic_energy": sp.S.Zero, "potential_energy": sp.S.Zero}
     for name, (value, _) in parts.items():

@@ -25,6 +25,8 @@ MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
 PARTNERS = {"K": ("P", "Pi")}
 #: A multiple of a quantity on the left, such as that in 2 T = m v**2.
 MULTIPLE = re.compile(r"\d+\*(\w+)")
+#: A sum or difference of two names, such as T - V.
+SUM_OF_ENERGIES = re.compile(r"(\w+) ([+-]) (\w+)\Z")
 #: The letter of gravity.
 GRAVITY = "g"
 
@@ -50,6 +52,7 @@ def quantities_of(
         if GRAVITY in WORD.findall(side.text)
     }
     subjects |= {match[1] for one in formulas if (match := MULTIPLE.fullmatch(one.sides[0].text))}
+    functions_of_forces = _functions_of_forces(formulas)
     quantities = {
         one: kind
         for one in stems
@@ -58,7 +61,7 @@ def quantities_of(
         and not (kind == "kinetic_energy" and _is_constant(one, formulas))
         and not (kind == "kinetic_energy" and one in {*transformed, *weights})
         and not (kind == "potential_energy" and _is_effective(one, formulas))
-        and one not in forces
+        and one not in {*forces, *functions_of_forces}
         and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }
     written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
@@ -76,15 +79,25 @@ def _quantity(name: str) -> str | None:
 def _combinations(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
     """Energies by statements such as L = K - P and H = T + U."""
     result: dict[str, str] = {}
-    pattern = re.compile(r"(\w+) ([+-]) (\w+)\Z")
     for formula in formulas:
         kind = _quantity(formula.subject)
         for side in formula.sides[1:]:
-            match = pattern.match(side.text)
+            match = SUM_OF_ENERGIES.match(side.text)
             signs = {"lagrangian": "-", "energy": "+", "hamiltonian": "+"}
             if match and signs.get(kind or "") == match[2]:
                 result |= {match[1]: "kinetic_energy", match[3]: "potential_energy"}
     return result
+
+
+def _functions_of_forces(formulas: Iterable[DocumentFormula]) -> set[str]:
+    """Names U of L = T + U in a document that states L = T - V as well: U is -V."""
+    partners = dict[str, set[str]]()
+    for formula in formulas:
+        for side in formula.sides[1:]:
+            match = SUM_OF_ENERGIES.match(side.text)
+            if match and _quantity(formula.subject) == "lagrangian":
+                partners.setdefault(match[2], set()).add(match[3])
+    return partners["+"] - partners["-"] if len(partners) == 2 else set()
 
 
 def _is_constant(name: str, formulas: Iterable[DocumentFormula]) -> bool:

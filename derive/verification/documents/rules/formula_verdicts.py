@@ -89,6 +89,8 @@ class Judge:
         result = self._verdict(formula)
         if formula.occurrence in self._stating and result.verdict.verdict in CORRECT:
             return plain("definition", formula, STATES)
+        if result.verdict.verdict == "wrong" and "dots" in formula.words:
+            return plain("context", formula, "dots stand for some of its terms")
         return result
 
     def _verdict(self, formula: DocumentFormula) -> SideVerdict:

@@ -114,6 +114,9 @@ class SideComparison:
                     return plain("verified", formula, "it holds for one sign of the root")
                 is_relation = result.kind == "euler_lagrange"
                 result = inside if inside.verdict.corrections and not is_relation else result
+        if state := self._state_of_value(formula, left, right):
+            q, angle = state
+            return plain("context", formula, f"it is its value at {q} = {angle}")
         if values := self._special_values(formula, first, left, right):
             text = ", ".join(f"{symbol} = {value}" for symbol, value in values.items())
             if any(values.values()) and {*values} <= right.free_symbols:  # for which none stands
@@ -164,6 +167,21 @@ class SideComparison:
             verdict = replace(result.verdict, corrections=(correction,))
             return SideVerdict(verdict, ((0, side),), "value")
         return result
+
+    def _state_of_value(
+        self, formula: DocumentFormula, left: Value, right: Value
+    ) -> tuple[sp.Symbol, sp.Expr] | None:
+        """A right angle, and its coordinate, at which a name with a definition has a value.
+
+        In the text, as in "at theta = 0, D = M".
+        """
+        if formula.occurrence.display or formula.subject not in self._namespace.defining:
+            return None
+        for q in self._namespace.derivation.system.q:
+            for k in range(4) if left.has(q) and not right.has(q) else ():
+                if self._model.agreement(left.subs(q, k * sp.pi / 2) - right) is not None:
+                    return q, k * sp.pi / 2
+        return None
 
     def _special_values(
         self, formula: DocumentFormula, first: FormulaText, left: Value, right: Value
