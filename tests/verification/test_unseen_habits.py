@@ -443,6 +443,15 @@ With $g/l = 1$ and $1/(m l^2) = 1$ this is $$\ddot\theta = \sin\theta + u$$"""
     )
 
 
+def test_stated_positions_do_not_leave_out_a_stated_spring(tmp_path: Path) -> None:
+    text = r"""
+$$X = x$$ $$Y = -a\cos(b x)$$ $$U = a g m\cos(b x) + \frac12 k x^2$$
+$$a^2 b^3 m\dot x^2\sin(b x)\cos(b x) - a b g m\sin(b x)
+  + m\ddot x(a^2 b^2\sin^2(b x) + 1) + k x = 0$$"""
+    assert verdicts(tmp_path, text) == ["definition"] * 2 + ["verified"] * 2
+    assert verdicts(tmp_path, text.replace(" + k x = 0", " = 0"))[-1] == "wrong"
+
+
 def test_dots_stand_for_terms(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 J(\dot\theta^2 + \dot\phi^2\sin^2\theta) + a\dot\phi\dot\theta\cos\theta

@@ -196,15 +196,18 @@ def _verticals(
 def _potentials(
     weight: sp.Expr, gravity: sp.Symbol | None, stated: Sequence[sp.Expr]
 ) -> Iterator[sp.Expr]:
-    """The weight, and the stated potential energies that contain it and springs."""
-    yield weight
+    """Yield the stated potential energies that contain the weight and springs, or the weight.
+
+    Beside springs, the weight alone is one if it is stated, too.
+    """
     known = [weight]
     for value in stated:
         rest = sp.expand(value - weight)
         is_new = all(sp.expand(value - one) != 0 for one in known)
         if is_new and (gravity is None or gravity not in rest.free_symbols):
             known.append(value)
-            yield value
+    is_stated = any(sp.expand(value - weight) == 0 for value in stated)
+    yield from known if is_stated or len(known) == 1 else known[1:]
 
 
 def _unit(name: str, letters: Letters) -> str:
