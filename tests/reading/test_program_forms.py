@@ -254,3 +254,9 @@ for _ in range(n):
     assert not methods(right, "Python")
     old = [(one.line, one.is_fault) for one in methods(text.replace("AGAIN", "pass"), "Python")]
     assert old == [(9, True), (10, True)]
+
+
+def test_a_limit_of_0_is_that_of_a_contact() -> None:
+    text = "def f(t, y, k):\n    x, v = y\n    return v, -k*max(x, 0)\n"
+    assert not read_program(text, "Python").equations
+    assert read_program(text.replace("0)", "1e-9)"), "Python").equations

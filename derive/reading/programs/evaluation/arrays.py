@@ -232,12 +232,15 @@ def of_entries(line: int, path: str, arguments: tuple[Expression, ...]) -> Expre
 
 
 def _extreme(name: str, given: Sequence[Expression]) -> Expression | None:
-    """The largest or the smallest of numbers, or a variable within limits; None for several."""
+    """The largest or the smallest of numbers, or a variable within limits; None for others.
+
+    A limit of 0 is that of a contact or a thread, which has another equation on its other side.
+    """
     values = [(value, one) for one in given if (value := number(one)) is not None]
     others = [one for one in given if number(one) is None]
     if not values or others:
-        is_name = len(others) == 1 and isinstance(others[0], Name)
-        return others[0] if values and is_name else None
+        is_limited = len(others) == 1 and isinstance(others[0], Name) and all(v for v, _ in values)
+        return others[0] if values and is_limited else None
     return (max if name.startswith("max") else min)(values, key=itemgetter(0))[1]
 
 
