@@ -452,6 +452,16 @@ $$a^2 b^3 m\dot x^2\sin(b x)\cos(b x) - a b g m\sin(b x)
     assert verdicts(tmp_path, text.replace(" + k x = 0", " = 0"))[-1] == "wrong"
 
 
+def test_a_further_lagrangian_for_small_angles_has_its_own_momenta(tmp_path: Path) -> None:
+    exact = r"""$$L = \frac12(M + m)\dot d^2 + \frac12 m R^2\dot\theta^2
+  + m R\dot d\dot\theta\cos\theta + m g R\cos\theta$$ """
+    small = r"""$$L_{PO} = \frac12(M + m)\dot d^2 + \frac12 m R^2\dot\theta^2
+  + m R\dot d\dot\theta - \frac12 m g R\theta^2$$ """
+    momentum = r"$$p_d = \frac{\partial L_{PO}}{\partial\dot d} = (M + m)\dot d + m R\dot\theta$$"
+    assert verdicts(tmp_path, exact + small + momentum)[1:] == ["definition", "context"]
+    assert verdicts(tmp_path, exact + momentum.replace("L_{PO}", "L"))[-1] == "wrong"
+
+
 def test_dots_stand_for_terms(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 J(\dot\theta^2 + \dot\phi^2\sin^2\theta) + a\dot\phi\dot\theta\cos\theta

@@ -3,6 +3,7 @@
 No right formula is to be called wrong: a verdict without enough evidence becomes `context`.
 """
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -34,6 +35,8 @@ OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "ha
 #: Verdicts on formulas that hold.
 HOLDING = ("verified", "equivalent")
 
+#: A Lagrangian or a Hamiltonian with a word as its index.
+FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
 #: The note on a formula whose dimensions contradict those of all others.
@@ -149,6 +152,8 @@ class _Evidence:
             return f"it contradicts the stated friction: {UNDECIDED}"
         if self._has_cases:
             return other_case
+        if any(index in word for index in self._other_indices for word in formula.words):
+            return other_case
         if self._is_weak or self._unsure & {*formula.words}:
             return UNSUPPORTED
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
@@ -201,6 +206,17 @@ class _Evidence:
             for k, (formula, one) in enumerate(self._results)
             if k not in stating and formula.subject
         )
+
+    @cached_property
+    def _other_indices(self) -> set[str]:
+        """Indices of further Lagrangians with another value, such as L_small for small angles."""
+        return {
+            f"_{match[1]}"
+            for formula, one in self._results
+            if (match := FURTHER.fullmatch(formula.subject))
+            and one.verdict.verdict not in HOLDING
+            and any(map(order, formula.words))
+        }
 
     @cached_property
     def _shown(self) -> set[str]:
