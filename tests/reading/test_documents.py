@@ -336,3 +336,9 @@ $$e = 5$$
 """
     displays = read(tmp_path, "a.md", text).displays
     assert [one.latex for one in displays] == ["a = 1", "b = 2", "e = 5"]
+
+
+def test_dollars_can_have_backslashes(tmp_path: Path) -> None:
+    text = "Then\n\\$$ a = 1 \\$$\nand\n\\$$b = 2,\\$$\nfor \\$5 and \\$$ alone"
+    displays = read(tmp_path, "a.md", text).displays
+    assert [one.latex.strip() for one in displays] == ["a = 1", "b = 2,"]

@@ -68,6 +68,8 @@ TOKENS = (
     # brackets whose backslash is escaped
     Delimiter(r"\\\\\[", r"\\{4}|(?P<end>\\\\\])|(?P<stop>\\\\\[)", r"\\["),
     Delimiter(r"\\\\\(", rf"\\{{4}}|(?P<end>\\\\\))|(?P<stop>\\\\\(|{BLANK_LINE})", r"\\(", True),
+    # dollars with a backslash each, as some sites need them
+    Delimiter(r"^[ \t>]*+\\\$\$", rf"(?P<end>\\\$\$)|(?P<stop>{BLANK_LINE})", "$$"),
     Delimiter(r"\\[\\$`]"),
     Delimiter(r"\$\$", r"\\.|(?P<end>\$\$)", "$$"),
     Delimiter(r"\\\[", r"\\\\|(?P<end>\\\])|(?P<stop>\\\[)", r"\["),
