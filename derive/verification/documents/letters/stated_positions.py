@@ -1,7 +1,7 @@
 """The system that a document states: positions of its masses, gravity, and its potential energy."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import product
 
 import sympy as sp
@@ -64,7 +64,7 @@ def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Ite
     axes = (-1, *_verticals(masses, gravity, energies))
     for axis, sign in product(axes, (1, -1) if gravity is not None else (0,)):
         weight = sp.Add(*(sign * (gravity or 0) * m.mass * m.position[axis] for m in masses))
-        for potential in _potentials(weight, gravity, energies):
+        for potential in _potentials(weight, gravity, energies, positions | weight.free_symbols):
             used = sp.Tuple(potential, *friction, *(m.mass for m in masses)).free_symbols
             used |= positions
             parameters = [
@@ -194,11 +194,11 @@ def _verticals(
 
 
 def _potentials(
-    weight: sp.Expr, gravity: sp.Symbol | None, stated: Sequence[sp.Expr]
+    weight: sp.Expr, gravity: sp.Symbol | None, stated: Sequence[sp.Expr], own: Set[sp.Basic]
 ) -> Iterator[sp.Expr]:
-    """Yield the stated potential energies that contain the weight and springs, or the weight.
+    """Yield the weight, and the stated potential energies that contain it and springs.
 
-    Beside springs, the weight alone is one if it is stated, too.
+    Beside springs with letters of their own, the weight alone is one only if it is stated, too.
     """
     known = [weight]
     for value in stated:
@@ -207,7 +207,8 @@ def _potentials(
         if is_new and (gravity is None or gravity not in rest.free_symbols):
             known.append(value)
     is_stated = any(sp.expand(value - weight) == 0 for value in stated)
-    yield from known if is_stated or len(known) == 1 else known[1:]
+    has_springs = any((value - weight).free_symbols - own for value in known[1:])
+    yield from known[1:] if has_springs and not is_stated else known
 
 
 def _unit(name: str, letters: Letters) -> str:

@@ -213,7 +213,8 @@ class _Evidence:
         return {
             f"_{match[1]}"
             for formula, one in self._results
-            if (match := FURTHER.fullmatch(formula.subject))
+            if not order(formula.subject)
+            and (match := FURTHER.fullmatch(formula.subject))
             and one.verdict.verdict not in HOLDING
             and any(map(order, formula.words))
         }
