@@ -412,6 +412,7 @@ def test_accelerations_with_values_after_the_step_are_reported() -> None:
     mixed = finding(program, "mixed_update")
     assert mixed.text == "the acceleration for w2 uses values after the step: w1"
     assert mixed.line == line_of(programs.MIXED, "w2 +=")
+    assert not mixed.is_fault  # a consistent step of the first order
     assert [one.text for one in program.equations] == [
         "t1_ddot = -sin(t1) - k*t2_dot",
         "t2_ddot = -sin(t2) - k*t1_dot",

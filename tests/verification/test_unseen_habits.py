@@ -462,6 +462,14 @@ def test_a_further_lagrangian_for_small_angles_has_its_own_momenta(tmp_path: Pat
     assert verdicts(tmp_path, exact + momentum.replace("L_{PO}", "L"))[-1] == "wrong"
 
 
+def test_a_total_lagrangian_is_no_further_one(tmp_path: Path) -> None:
+    text = r"""
+$$L_{tot} = \frac12 m\dot x^2 - \frac12 k x^2 - \frac15 b x^5 + c x\dot x^2$$
+$$m\ddot x + 2 c x\ddot x + c\dot x^2 = -k x - b x^4$$
+$$E_{tot} = \frac12 m\dot x^2 + \frac12 k x^2 - \frac15 b x^5 + c x\dot x^2$$"""
+    assert verdicts(tmp_path, text) == ["definition", "verified", "wrong"]
+
+
 def test_dots_stand_for_terms(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 J(\dot\theta^2 + \dot\phi^2\sin^2\theta) + a\dot\phi\dot\theta\cos\theta

@@ -189,14 +189,9 @@ def _state(
     return ", ".join(f"{name} = {number}" for name, number in numbers.items())
 
 
-def _closest_equation(value: sp.Expr, model: ReferenceSystem) -> sp.Expr | None:
-    """The derived equation of motion, times a factor, from which a wrong one differs least.
-
-    None if an equation has too many terms when it is expanded.
-    """
+def _closest_equation(value: sp.Expr, model: ReferenceSystem) -> sp.Expr:
+    """The derived equation of motion, times a factor, from which a wrong one differs least."""
     system, equations = model.derivation.system, model.derivation.euler_lagrange
-    if not all(is_expandable(one, waves=2) for one in (value, *equations)):
-        return None
     state = variables(system)
     printed = coefficients(value, state)
     factors = [closest_factor(printed, coefficients(e, state), system.qddot) for e in equations]

@@ -29,7 +29,7 @@ from derive.verification.judging.verdict import Verdict
 #: Verdicts on formulas that are no definitions and hold.
 HOLDING = ("verified", "equivalent")
 #: The note on a formula that holds in other units than the rest of a document.
-OWN_UNITS = "it holds in units in which the other parameters are 1, which nothing states"
+OWN_UNITS = "it holds in units in which the other parameters are 1"
 #: Formulas that contain an abbreviation.
 SEVERAL = 2
 #: Formulas that hold, from which on a complete known system decides which one is wrong.

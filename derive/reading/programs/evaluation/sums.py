@@ -15,8 +15,12 @@ from derive.reading.programs.syntax.trees import (
 Term = tuple[int, Expression]
 
 
+def _never(_: Expression) -> bool:
+    return False
+
+
 def terms(
-    tree: Expression, is_whole: Callable[[Expression], bool], sign: int = 1
+    tree: Expression, is_whole: Callable[[Expression], bool] = _never, sign: int = 1
 ) -> Iterator[Term]:
     """The terms of a sum and their signs; trees that are whole are not divided."""
     match tree:
@@ -31,7 +35,7 @@ def terms(
             yield sign, tree
 
 
-def factors(tree: Expression, is_whole: Callable[[Expression], bool]) -> list[Expression]:
+def factors(tree: Expression, is_whole: Callable[[Expression], bool] = _never) -> list[Expression]:
     """The factors of a product; a divisor stays with its numerator's first factor out."""
     match tree:
         case OperatorExpression(operator="*", operands=operands) if not is_whole(tree):
@@ -49,6 +53,34 @@ def factors(tree: Expression, is_whole: Callable[[Expression], bool]) -> list[Ex
                 *factors(operand, is_whole),
             ]
     return [tree]
+
+
+def quotients(sign: int, term: Expression) -> Iterator[Term]:
+    """The terms of a sum over a factor of some, such as (m*v + F*dt)/m; others as they are."""
+    match term:
+        case OperatorExpression(line=line, operator="/", operands=(above, below)) if (
+            len(found := [*terms(inner(above))]) > 1
+        ):
+            for own, one in found:
+                parts = factors(one)
+                if below in parts:
+                    parts.remove(below)
+                else:
+                    parts.append(OperatorExpression(line, "/", (NumberLiteral(line, "1"), below)))
+                yield from terms(product(one.line, parts), sign=sign * own)
+        case _:
+            yield sign, term
+
+
+def divisors(parts: Sequence[Expression]) -> Iterator[Expression]:
+    """Factors, with one for each factor of a divisor."""
+    for one in parts:
+        match one:
+            case OperatorExpression(line=line, operator="/", operands=(above, below)):
+                own = factors(below)
+                yield from (OperatorExpression(line, "/", (above, divisor)) for divisor in own)
+            case _:
+                yield one
 
 
 def product(line: int, found: Sequence[Expression]) -> Expression:
@@ -108,13 +140,13 @@ def _bare(tree: Expression) -> Expression:
 def _sized(sign: int, term: Expression) -> tuple[float, list[Expression], bool]:
     """A term as a number and other factors, and whether one of these was a sum of equal terms."""
     size, rest, has_sum = float(sign), list[Expression](), False
-    for one in factors(term, lambda _: False):
-        own = [*terms(inner(one), lambda _: False)]
+    for one in factors(term):
+        own = [*terms(inner(one))]
         same = joined(own) if len(own) > 1 else []
         if len(same) == 1:
             has_sum = True
             size *= same[0][0]
-        for part in factors(same[0][1], lambda _: False) if len(same) == 1 else (one,):
+        for part in factors(same[0][1]) if len(same) == 1 else (one,):
             value = None if part == Name(0, "pi") else number(part)
             size *= 1 if value is None else value
             rest += [part] if value is None else []

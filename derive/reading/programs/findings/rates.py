@@ -64,7 +64,7 @@ def _is_step(values: Mapping[str, Expression]) -> bool:
     return any(
         sign == 1 and inner(term) == Name(0, path)
         for path, value in values.items()
-        for sign, term in terms(inner(value), lambda _: False)
+        for sign, term in terms(inner(value))
     )
 
 

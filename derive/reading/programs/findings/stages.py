@@ -44,7 +44,7 @@ class Stages:
         self._known: dict[int, tuple[Expression, Expression]] = {}
         if len(families) < 2 or len({*map(len, families)}) > 1:
             return
-        first = [factors(one[0], lambda _: False) for one in families]
+        first = [factors(one[0]) for one in families]
         common = [one for one in first[0] if all(one in other for other in first[1:])]
         self._common = [one for one in common if isinstance(one, Name)]
         for stage, row in enumerate(zip(*families, strict=True)):
@@ -68,7 +68,7 @@ class Stages:
         """A stage without the step size."""
         if not self._common:
             return stage
-        parts = factors(stage, lambda _: False)
+        parts = factors(stage)
         return product(stage.line, [one for one in parts if one not in self._common])
 
     def __call__(self, tree: Expression) -> Expression:
@@ -137,7 +137,7 @@ def _within(tree: Expression) -> Iterator[int]:
 
 def adds(first: Expression, other: Expression) -> bool:
     """Whether a formula is another with multiples, by numbers, of stages added to it."""
-    start, result = ([*terms(one, lambda _: False)] for one in (first, other))
+    start, result = ([*terms(one)] for one in (first, other))
     rest = result[len(start) :]
     return (
         bool(rest)
@@ -162,7 +162,7 @@ def shifts(
     """Whether a formula is another with terms added to some variables, which are noted."""
     found = {} if found is None else found
     if isinstance(first, Name) and first != other:
-        is_shifted = any(sign == 1 and one == first for sign, one in terms(other, lambda _: False))
+        is_shifted = any(sign == 1 and one == first for sign, one in terms(other))
         return is_shifted and found.setdefault(first.path, other) == other
     if not first.parts or len(first.parts) != len(other.parts):
         return first == other

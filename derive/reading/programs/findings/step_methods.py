@@ -41,7 +41,7 @@ def written_methods(updates: Updates, returned: Expression | None) -> list[Writt
     ]
     value = None if returned is None else inner(returned)
     for entry in value.items if isinstance(value, Array) else () if value is None else (value,):
-        parts = [*terms(entry, lambda _: False)]
+        parts = [*terms(entry)]
         own = next((one for one in parts if one[0] == 1 and isinstance(one[1], Name)), None)
         if own and isinstance(own[1], Name):
             rest = [one for one in parts if one is not own]

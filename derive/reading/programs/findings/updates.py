@@ -15,10 +15,12 @@ from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.sums import (
     Term,
+    divisors,
     factors,
     inner,
     joined,
     product,
+    quotients,
     terms,
     total,
 )
@@ -292,7 +294,7 @@ class Updates:
         """The step size, and factors of a velocity that is a momentum, as 1/m of dt*p/m."""
         if step is None:
             return None, []
-        parts = [*_divisors(factors(step, self._is_whole))]
+        parts = [*divisors(factors(step, self._is_whole))]
         terms_of = [factors(term, self._is_whole) for _, term in velocity.increment]
         own = [one for one in parts if all(one in others for others in terms_of)]
         rest = [one for one in parts if one not in own]
@@ -327,44 +329,16 @@ class Updates:
         return tree if is_same else replaced(tree, parts)
 
 
-def quotients(sign: int, term: Expression) -> Iterator[Term]:
-    """The terms of a sum over a factor of some, such as (m*v + F*dt)/m; others as they are."""
-    match term:
-        case OperatorExpression(line=line, operator="/", operands=(above, below)) if (
-            len(found := [*terms(inner(above), lambda _: False)]) > 1
-        ):
-            for own, one in found:
-                parts = _factors(one)
-                if below in parts:
-                    parts.remove(below)
-                else:
-                    parts.append(OperatorExpression(line, "/", (NumberLiteral(line, "1"), below)))
-                yield from terms(product(one.line, parts), lambda _: False, sign * own)
-        case _:
-            yield sign, term
-
-
-def _divisors(parts: Sequence[Expression]) -> Iterator[Expression]:
-    """Factors, with one for each factor of a divisor."""
-    for one in parts:
-        match one:
-            case OperatorExpression(line=line, operator="/", operands=(above, below)):
-                own = factors(below, lambda _: False)
-                yield from (OperatorExpression(line, "/", (above, divisor)) for divisor in own)
-            case _:
-                yield one
-
-
 def _whole(steps: Sequence[Term]) -> Expression:
     """The sum of step sizes such as two halves of one."""
-    parts = [*_divisors(factors(steps[0][1], lambda _: False))]
+    parts = [*divisors(factors(steps[0][1]))]
     halves = [one for one in parts if (number(one) or 0) * len(steps) == 1]
     if halves and all(step == steps[0] for step in steps):
         parts.remove(halves[0])
         return product(steps[0][1].line, parts)
     size, line, rest = 0.0, steps[0][1].line, list[list[Expression]]()
     for sign, step in steps:
-        parts = factors(step, lambda _: False)
+        parts = factors(step)
         size += sign * math.prod(number(one) or 1 for one in parts)
         rest.append([one for one in parts if number(one) is None])
     if size == 1 and rest[0] and all(one == rest[0] for one in rest):
@@ -412,13 +386,13 @@ def recurrence(path: str, value: Expression, earlier: Set[str]) -> Expression | 
 
     `earlier` are the names of the coordinate one step before.
     """
-    result = [*terms(value, lambda _: False)]
+    result = [*terms(value)]
     twice = [one for one in result if _is_twice(one, path)]
     last = [(sign, one) for sign, one in result if isinstance(one, Name) and one.path in earlier]
     rest = [one for one in result if one not in (*twice, *last)]
     if len(twice) != 1 or [sign for sign, _ in last] != [-1] or not rest:
         return None
-    for step in _squares(_factors(rest[0][1])):
+    for step in _squares(factors(rest[0][1])):
         divided = [(sign, _divided(term, step)) for sign, term in rest]
         known = [(sign, term) for sign, term in divided if term]
         if len(known) == len(rest):
@@ -426,12 +400,8 @@ def recurrence(path: str, value: Expression, earlier: Set[str]) -> Expression | 
     return None
 
 
-def _factors(tree: Expression) -> list[Expression]:
-    return factors(tree, lambda _: False)
-
-
 def _is_twice(term: Term, path: str) -> bool:
-    parts = _factors(term[1])
+    parts = factors(term[1])
     numbers = [number(one) for one in parts if one != Name(0, path)]
     return term[0] == 1 and numbers == [2] and len(parts) == 2
 
@@ -448,7 +418,7 @@ def _squares(parts: Sequence[Expression]) -> Iterator[list[Expression]]:
 
 def _divided(term: Expression, step: Sequence[Expression]) -> Expression | None:
     """A term without the factors of a step; None if it lacks one of them."""
-    for parts in (factors(term, lambda tree: tree.line != term.line), _factors(term)):
+    for parts in (factors(term, lambda tree: tree.line != term.line), factors(term)):
         if all(one in parts for one in step):  # a value from another line stays whole
             for one in step:
                 parts.remove(one)

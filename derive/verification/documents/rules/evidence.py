@@ -65,7 +65,8 @@ def weighed(
     in the document. It is not if other formulas of the document fit the rest as well and agree with
     it, in which case neither these nor what holds with them alone is verified; nor if one of
     several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
-    it is the rate of a position that a system of energies or equations does not contain. A system
+    it has the index of a further Lagrangian, as of L_small; nor if it is the rate of a position
+    that a system of energies or equations does not contain. A system
     that is known from elsewhere must have a letter for each of its parameters in formulas that are
     judged, unless that is a factor of the Lagrangian, such as the mass of a single body, and the
     accelerations as written have no potential of their own; a letter for several of them, such as
@@ -212,8 +213,9 @@ class _Evidence:
         """Indices of further Lagrangians with another value, such as L_small for small angles."""
         return {
             f"_{match[1]}"
-            for formula, one in self._results
-            if not order(formula.subject)
+            for k, (formula, one) in enumerate(self._results)
+            if k not in self._candidate.stating
+            and not order(formula.subject)
             and (match := FURTHER.fullmatch(formula.subject))
             and one.verdict.verdict not in HOLDING
             and any(map(order, formula.words))
