@@ -73,12 +73,19 @@ class Jet:
 
     def __mul__(self, other: "Jet") -> "Jet":
         a, b = self._common(other)
-        orders = range(len(a))
-        return Jet(np.array([sum(a[j] * b[k - j] for j in range(k + 1)) for k in orders]))
+        if len(a) == 1:
+            return Jet(a * b)
+        orders = [a[0] * b[k] for k in range(len(a))]
+        for k in range(1, len(a)):
+            for j in range(1, k + 1):
+                orders[k] += a[j] * b[k - j]
+        return Jet(np.array(orders))
 
     def __truediv__(self, other: "Jet") -> "Jet":
         quotients: list[Array] = []
         a, b = self._common(other)
+        if len(a) == 1:
+            return Jet(a / b)
         for k in range(len(a)):
             rest = a[k] - sum(quotients[j] * b[k - j] for j in range(k))
             quotients.append(rest / b[0])
@@ -90,40 +97,52 @@ class Jet:
         orders = min(len(a), len(b))
         return a[:orders], b[:orders]
 
-    def function(self, value: Callable[[Array], tuple[Array, Array, Array]]) -> "Jet":
-        """A function of the quantity, from its value and first two derivatives."""
-        f, first, second = value(self.value)
+    def function(self, function: "Function") -> "Jet":
+        """A function of the quantity, with its first two derivatives as far as these are known."""
+        value, derivatives = function
         if len(self.coefficients) == 1:
-            return Jet(f[np.newaxis])
+            return Jet(value(self.coefficients))
+        first, second = derivatives(self.value)
         _, b, c = self.coefficients
-        return Jet(np.array([f, first * b, first * c + second * b**2 / 2]))
+        return Jet(np.array([value(self.value), first * b, first * c + second * b**2 / 2]))
 
     def power(self, exponent: float) -> "Jet":
         """The quantity to a constant power."""
-        return self.function(lambda x: _power(x, exponent))
+        return self.function(_power(exponent))
 
 
-def _power(x: Array, n: float) -> tuple[Array, Array, Array]:
-    first = n * x ** (n - 1) if n else 0 * x
-    second = n * (n - 1) * x ** (n - 2) if n * (n - 1) else 0 * x
-    return x**n, first, second
+#: A function, and its first two derivatives.
+Function: TypeAlias = tuple[Callable[[Array], Array], Callable[[Array], tuple[Array, Array]]]
 
 
-FUNCTIONS: dict[str, Callable[[Array], tuple[Array, Array, Array]]] = {
-    "sin": lambda x: (np.sin(x), np.cos(x), -np.sin(x)),
-    "cos": lambda x: (np.cos(x), -np.sin(x), -np.cos(x)),
-    "tan": lambda x: (np.tan(x), np.cos(x) ** -2.0, 2 * np.tan(x) * np.cos(x) ** -2.0),
-    "exp": lambda x: (np.exp(x),) * 3,
-    "log": lambda x: (np.log(x), 1 / x, -1 / x**2),
-    "sqrt": lambda x: _power(x, 0.5),
-    **dict.fromkeys(("Abs", "abs", "norm"), lambda x: (np.abs(x), np.sign(x), 0 * x)),
-    "sinh": lambda x: (np.sinh(x), np.cosh(x), np.sinh(x)),
-    "cosh": lambda x: (np.cosh(x), np.sinh(x), np.cosh(x)),
-    "tanh": lambda x: (np.tanh(x), np.cosh(x) ** -2.0, -2 * np.tanh(x) * np.cosh(x) ** -2.0),
-    "atan": lambda x: (np.arctan(x), 1 / (1 + x**2), -2 * x / (1 + x**2) ** 2),
-    "sign": lambda x: (np.sign(x), 0 * x, 0 * x),
-    "Heaviside": lambda x: ((np.sign(x) + 1) / 2, 0 * x, 0 * x),
-    "DiracDelta": lambda x: (0 * x, 0 * x, 0 * x),
+def _power(n: float) -> Function:
+    def derivatives(x: Array) -> tuple[Array, Array]:
+        first = n * x ** (n - 1) if n else 0 * x
+        second = n * (n - 1) * x ** (n - 2) if n * (n - 1) else 0 * x
+        return first, second
+
+    return lambda x: x**n, derivatives
+
+
+def _flat(x: Array) -> tuple[Array, Array]:
+    return 0 * x, 0 * x
+
+
+FUNCTIONS: dict[str, Function] = {
+    "sin": (np.sin, lambda x: (np.cos(x), -np.sin(x))),
+    "cos": (np.cos, lambda x: (-np.sin(x), -np.cos(x))),
+    "tan": (np.tan, lambda x: (np.cos(x) ** -2.0, 2 * np.tan(x) * np.cos(x) ** -2.0)),
+    "exp": (np.exp, lambda x: (np.exp(x),) * 2),
+    "log": (np.log, lambda x: (1 / x, -1 / x**2)),
+    "sqrt": _power(0.5),
+    **dict.fromkeys(("Abs", "abs", "norm"), (np.abs, lambda x: (np.sign(x), 0 * x))),
+    "sinh": (np.sinh, lambda x: (np.cosh(x), np.sinh(x))),
+    "cosh": (np.cosh, lambda x: (np.sinh(x), np.cosh(x))),
+    "tanh": (np.tanh, lambda x: (np.cosh(x) ** -2.0, -2 * np.tanh(x) * np.cosh(x) ** -2.0)),
+    "atan": (np.arctan, lambda x: (1 / (1 + x**2), -2 * x / (1 + x**2) ** 2)),
+    "sign": (np.sign, _flat),
+    "Heaviside": (lambda x: (np.sign(x) + 1) / 2, _flat),
+    "DiracDelta": (lambda x: 0 * x, _flat),
 }
 #: The larger and the smaller of two numbers.
 EXTREMES: dict[str, Callable[[Array, Array], Any]] = {

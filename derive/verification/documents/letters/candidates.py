@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import combinations, islice, permutations, product
-from math import pi
 from typing import Any, Literal, TypeAlias
 
 import sympy as sp
@@ -22,7 +21,7 @@ from derive.verification.judging.system_names import FACTORS
 STATED, BY_POTENTIAL, BY_EQUATIONS = "stated", "stated_potential", "stated_equations"
 BY_LAGRANGIAN = "stated_lagrangian"
 #: Largest number of candidates of one system.
-MAX_CANDIDATES = 3000
+MAX_CANDIDATES = 600
 #: The same of one with constraints, before those of the signs of multipliers.
 MAX_CONSTRAINED = 400
 #: Largest number of choices of parameters of one kind, and of all.
@@ -85,9 +84,7 @@ class SystemCandidate:
     @property
     def is_usual(self) -> bool:
         """Whether the coordinates are those of the system, but for the elongation of a spring."""
-        n = range(len(self.coordinates))
-        is_same = all(self.signs[i][j] == (i == j) for i in n for j in n)
-        return is_same and not any(isinstance(one, int) and one for one in self.offsets)
+        return _is_usual(self.signs, self.offsets)
 
     @property
     def is_turned(self) -> bool:
@@ -136,10 +133,12 @@ class SystemCandidate:
         """The number of constraints."""
         return len(self.system.conditions) + len(self.constraints)
 
-    def offset(self, index: int, values: Mapping[str, float]) -> float:
-        """The offset of a coordinate in numbers."""
-        offset = self.offsets[index]
-        return values[offset] if isinstance(offset, str) else offset * pi / 2
+
+@cache
+def _is_usual(signs: tuple[tuple[int, ...], ...], offsets: tuple[int | str, ...]) -> bool:
+    n = range(len(signs))
+    is_same = all(signs[i][j] == (i == j) for i in n for j in n)
+    return is_same and not any(isinstance(one, int) and one for one in offsets)
 
 
 def kind_of(parameter: Parameter) -> str:

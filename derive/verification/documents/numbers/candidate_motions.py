@@ -4,7 +4,7 @@ Arrays have the shape (candidates, states), or (candidates, states, coordinates)
 coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, cached_property
 
 import numpy as np
@@ -306,6 +306,13 @@ class CandidateMotions:
         value = evaluated(_text(expression), names).value
         return np.asarray(np.broadcast_to(value, self.shape))
 
+    def _offsets(self) -> Callable[[tuple[int | str, ...]], Sequence[float]]:
+        """A function for the values of offsets, which many candidates share."""
+        letters = self.parameters
+        return cache(
+            lambda own: [letters[one] if isinstance(one, str) else one * np.pi / 2 for one in own]
+        )
+
     def _parameter(self, candidate: SystemCandidate, name: str, default: float) -> float:
         """The value of a parameter of the system."""
         if name in candidate.numbers:
@@ -315,8 +322,7 @@ class CandidateMotions:
     def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
         """Coordinates, velocities and parameters of the system."""
         place, speed = (self._by_order(table) for table in (self.places, self.speeds))
-        offsets = [[one.offset(i, self.parameters) for i in range(len(one.offsets))]
-                   for one in self._tried]  # fmt: skip
+        offsets = [*map(self._offsets(), (one.offsets for one in self._tried))]
         q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
         qdot = np.einsum("bij,bjk->bik", self._signs, speed)
         time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates

@@ -119,9 +119,8 @@ def best_matches(
     agreeing = np.array([vote for *_, vote in votes])
     near = np.zeros_like(agreeing)
     if len(votes) <= FEW:
-        own = [one.letters for one in tried]
         for row, (index, side, vote) in enumerate(votes):
-            possible = ~vote & _uses_letters(own, letters, formulas[index])
+            possible = ~vote & _uses_letters(tried, letters, formulas[index])
             sides = formulas[index].sides[0].text, side
             rest, lacking = free[index]
             if lacking.all():
@@ -177,8 +176,13 @@ def _without_loads(
 
 
 def _uses_letters(
-    own: Sequence[frozenset[str]], letters: Letters, formula: DocumentFormula
+    tried: Sequence[SystemCandidate], letters: Letters, formula: DocumentFormula
 ) -> NDArray[np.bool_]:
     """For each candidate, whether the parameters of a formula have a meaning with it."""
     written = {*formula.words} & {*letters.parameters}
-    return np.array([written <= one for one in own])
+    shared = {id(one.parameters): one.parameters for one in tried}  # by many candidates
+    others = {key: written - {*own.values()} for key, own in shared.items()}
+    missing = (others[id(one.parameters)] for one in tried)
+    return np.array([
+        not rest or rest <= one.letters for one, rest in zip(tried, missing, strict=True)
+    ])

@@ -35,16 +35,24 @@ def is_near(
     with np.errstate(all="ignore"):
         arrays = [sign * one.value for (sign, _), one in zip(terms, jets, strict=True)]
         total = sum(np.broadcast_arrays(*arrays)) if len(arrays) > 1 else arrays[0]
-        result: Array | None = None
+        result = np.zeros(np.broadcast_shapes(*(one.shape[:1] for one in arrays)), bool)
         for (_, text), own in zip(terms, arrays, strict=True):
+            rest = own - total
             for other in _variants(text, own, value, velocities):
-                # NumPy reduces the first axis much faster than a short last one
-                ratio = np.ascontiguousarray(((own - total) / other).T)
-                middle = np.abs(ratio).mean(axis=0)
-                spread = np.where(np.isfinite(middle), np.ptp(ratio, axis=0), np.inf)
-                hit = (spread <= CONSTANT * middle) & np.isfinite(spread)
-                result = hit if result is None else result | hit
+                result |= _are_constant(rest, other)
     return result
+
+
+def _are_constant(values: Array, others: Array) -> Array:
+    """For each candidate, whether the ratio of two values is the same at all states."""
+    ratios = (values / others).T
+    first, last = ratios[0], ratios[-1]
+    if not np.any(np.abs(first - last) <= 2 * CONSTANT * np.abs(first)):  # as for most
+        return np.zeros(1, bool)
+    ratios = np.ascontiguousarray(ratios)  # reduced much faster along the first axis
+    middle = np.abs(ratios).mean(axis=0)
+    spread = np.where(np.isfinite(middle), np.ptp(ratios, axis=0), np.inf)
+    return (spread <= CONSTANT * middle) & np.isfinite(spread)
 
 
 def _terms(side: str) -> list[tuple[str, int]]:
