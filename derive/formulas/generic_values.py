@@ -26,11 +26,13 @@ MOST_ZEROS = 4
 
 def sample(symbols: Sequence[sp.Symbol], index: int) -> dict[sp.Symbol, sp.Expr]:
     """Values with sizes from 1 to 3 and the signs that assumptions allow; `index` < `STATES`."""
-    values = {}
-    for k, symbol in enumerate(symbols):
-        size = 1 + sp.Rational(int(Random(f"{k} {index}").random() * 2000) + 1, 1000)
-        values[symbol] = size * _sign(symbol, k, index)
-    return values
+    return {symbol: _size(k, index) * _sign(symbol, k, index) for k, symbol in enumerate(symbols)}
+
+
+@cache
+def _size(number: int, index: int) -> sp.Expr:
+    """A random size of a symbol at a state."""
+    return 1 + sp.Rational(int(Random(f"{number} {index}").random() * 2000) + 1, 1000)
 
 
 def near_zeros(

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import islice
 from typing import Self
 
@@ -26,6 +26,8 @@ LARGEST_INVERSE, LARGEST_DIAGONAL = 3, 7
 #: Factors of coordinates at states, tried until the Lagrangian is real: a thread limits
 #: coordinates from above, a wheel's axis from below.
 SIZES = (sp.S.One, sp.Rational(1, 20), sp.Integer(5))
+#: Functions of real numbers that are real and bounded, but near poles.
+WAVES = {sp.sin, sp.cos, sp.tan}
 #: The number of states near the turning arguments of a formula.
 MOST_TURNING = 60
 #: Factors of all variables, by which decisive numbers change their signs.
@@ -198,9 +200,10 @@ class ReferenceSystem:
         values = sample((*system.params, *moving), index)
         # at later states, angles exceed a right angle, so that sqrt(cos(x)**2) and cos(x) differ
         values |= {symbol: values[symbol] * scale * sp.Rational(1 + index, 5) for symbol in moving}
+        lagrangian = self.derivation.lagrangian
         for size in SIZES:
             state = values | {q: values[q] * size for q in system.q}
-            if _is_real(self.derivation.lagrangian, state):
+            if _is_real_everywhere(lagrangian) or _is_real(lagrangian, state):
                 break
         else:
             state = values
@@ -239,6 +242,13 @@ def euler_lagrange(system: System, lagrangian: sp.Expr) -> tuple[sp.Expr, ...]:
 def depends_on(value: Value, symbols: Collection[sp.Symbol]) -> bool:
     """Whether `value` contains one of `symbols`."""
     return bool(value.free_symbols & {*symbols})
+
+
+@cache
+def _is_real_everywhere(expression: sp.Expr) -> bool:
+    """Whether an expression has no parts that can be complex or very large."""
+    has_integers = all(power.exp.is_Integer for power in expression.atoms(sp.Pow))
+    return has_integers and {one.func for one in expression.atoms(sp.Function)} <= WAVES
 
 
 def _is_real(expression: sp.Expr, state: State) -> bool:
