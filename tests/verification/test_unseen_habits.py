@@ -494,3 +494,26 @@ def test_a_column_is_no_energy_of_a_part(tmp_path: Path) -> None:
 $$\vec{T_1} = T_1\begin{pmatrix}\sin\theta\\ -\cos\theta\end{pmatrix}$$
 $$m l\ddot\theta = -m g\sin\theta$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+TENSION = r"""
+$$\vec r = \begin{cases} x = l\sin\theta \\ y = -l\cos\theta \end{cases}$$
+$$E_k = \frac12 m l^2\dot\theta^2$$ $$E_p = -m g l\cos\theta$$
+$$\begin{cases} m\ddot x = T\sin\theta \\ m\ddot y = T\cos\theta - m g \end{cases}$$
+$$T = \frac{m\ddot x}{\sin\theta}$$
+$$\ddot y\sin\theta = \ddot x\cos\theta - g\sin\theta$$"""
+
+
+def test_a_tension_for_which_equations_are_solved_decides_nothing(tmp_path: Path) -> None:
+    # its sign is lost in the first of them; only what is left without it is shown to be wrong
+    document = judged(tmp_path, TENSION)
+    expected = ["definition"] * 2 + ["verified"] * 2 + ["context"] * 3 + ["wrong"]
+    assert [one.verdict for one in document.formulas] == expected
+    assert ";" not in document.system  # no system of the tension and the angle
+
+
+def test_positions_stand_in_rows_of_cases(tmp_path: Path) -> None:
+    text = r"""
+$$\vec r = \begin{cases} x = l\sin\theta \\ y = -2 l\cos\theta \end{cases}$$
+$$T = \frac12 m l^2\dot\theta^2 (\cos^2\theta + 4\sin^2\theta)$$"""
+    assert verdicts(tmp_path, text) == ["definition", "definition", "verified"]

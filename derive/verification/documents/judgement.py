@@ -160,12 +160,13 @@ def _judge(
                     results[formula.occurrence] = formula, result
                 break
             candidate = found.match.candidate
-            titles.append(candidate.title)
             moving.update(candidate.coordinates)
             own = found.judges.verdicts(candidate)
             is_stated, is_partial = hints is not None, work.left < 0
             verdicts = [*weighed(own, candidate, found.contradictions, is_stated, is_partial)]
-            conventions.append(convention(candidate))
+            if not titles or any(result.is_understood for _, result in verdicts):
+                titles.append(candidate.title)
+                conventions.append(convention(candidate))
             contrary = [*alternatives(found, verdicts, written)]
             others += contrary
             verdicts = [*unopposed(verdicts, contrary)]

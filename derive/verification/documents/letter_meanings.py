@@ -93,6 +93,7 @@ def interpretation(
     formulas, others for 1.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
+    letters = replace(letters, elsewhere=frozenset(known))
     judges, work = Judges(statements, letters), work or Work()
     if hints:
         return _best(judges, hints.candidates(letters), work, 0)

@@ -65,7 +65,10 @@ def flattened(tokens: list[Token]) -> list[Token]:
             elif token.text not in ROWS and token.text not in MATRICES:
                 raise UnreadError(f"the environment {token.text!r} is not known")
             elif token.text in ("cases", "dcases") and not _starts_statement(result):
-                kept |= {at, end}
+                if not _are_statements(tokens, at, end, partner):
+                    kept |= {at, end}
+                while result and at not in kept and result[-1].kind not in SEPARATORS:
+                    result.pop()  # the name of all rows, such as a vector of these components
             if token.text in ("multline", "multlined"):
                 joined |= set(inside(at, end, partner))
             if at not in kept:
@@ -82,6 +85,15 @@ def _starts_statement(tokens: list[Token]) -> bool:
     """Whether nothing stands before a place in its row but brackets."""
     before = next((t for t in reversed(tokens) if t.kind not in ("space", "&", "open")), None)
     return before is None or before.kind in SEPARATORS
+
+
+def _are_statements(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:
+    """Whether each of several rows has a relation, and no condition."""
+    kinds = [tokens[place].kind for place in inside(start, end, partner)]
+    while kinds and kinds[-1] in ("space", "row"):
+        kinds.pop()
+    rows = kinds.count("row") + 1
+    return rows > 1 and kinds.count("relation") >= rows and "&" not in kinds
 
 
 def _is_matrix(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:

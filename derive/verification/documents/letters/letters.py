@@ -94,6 +94,7 @@ class Letters:
     kinds: Mapping[str, str] = field(default_factory=dict)  # of parameters, if they are given
     multipliers: tuple[str, ...] = ()  # parameters that can be multipliers of constraints
     constraints: tuple[StatedConstraint, ...] = ()
+    elsewhere: frozenset[str] = frozenset()  # coordinates of other systems of the document
 
     @property
     def column(self) -> str:

@@ -183,6 +183,6 @@ def _uses_letters(
     shared = {id(one.parameters): one.parameters for one in tried}  # by many candidates
     others = {key: written - {*own.values()} for key, own in shared.items()}
     missing = (others[id(one.parameters)] for one in tried)
-    return np.array([
-        not rest or rest <= one.letters for one, rest in zip(tried, missing, strict=True)
-    ])
+    return np.array(
+        [not rest or rest <= one.letters for one, rest in zip(tried, missing, strict=True)]
+    )

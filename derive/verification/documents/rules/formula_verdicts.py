@@ -13,7 +13,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
-from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.formula_translation import FormulaText, stem
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
@@ -174,6 +174,8 @@ class Judge:
         """Whether a formula is an equation of motion but for terms with unknown letters."""
         system, letters = self._namespace.derivation.system, self._namespace.letters
         if {*unknown} & {*letters.multipliers}:  # all reactions would be correct
+            return False
+        if {*map(stem, unknown)} & letters.elsewhere:
             return False
         energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
         if any({*unknown} & {*one.words} for one in energies):  # of which they are no loads

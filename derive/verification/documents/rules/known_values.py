@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import takewhile
 from typing import Any
 
 import sympy as sp
@@ -17,7 +18,7 @@ from derive.mechanics.routhian import Routhian
 from derive.system.parts import Parameter
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.formula_translation import RATES, stem
+from derive.verification.documents.formula_translation import RATES, order, stem
 from derive.verification.documents.letters.document_system import (
     SystemLetters,
     energies_of,
@@ -330,6 +331,8 @@ class DocumentNamespace:
                 value = self.value(text)
             except ExpressionError:
                 continue
+            if depends_on(value, self._system.qddot) and self._is_reaction(name, formula):
+                continue
             self.defining[name] = formula, text
             self._add(name, value)
             point = COLUMN.match(name.removesuffix("_column"))
@@ -337,6 +340,22 @@ class DocumentNamespace:
                 for axis, entry in zip(AXES, value, strict=False):
                     if (component := f"{axis}_{point[1]}") not in self.all_names:
                         self._add(component, entry)
+
+    def _is_reaction(self, name: str, formula: DocumentFormula) -> bool:
+        """Whether equations before a formula with accelerations contain its name.
+
+        They are solved for a reaction, such as a tension: by its value each would hold, and none
+        that is solved for another one.
+        """
+        before = takewhile(lambda one: one is not formula, self.formulas)
+        equations = (one for one in before if name in one.words and one.subject != name)
+        return any(self._has_accelerations(word) for one in equations for word in one.words)
+
+    def _has_accelerations(self, word: str) -> bool:
+        value = self.all_names.get(word)
+        return order(word) == 2 or (
+            isinstance(value, sp.Expr | sp.MatrixBase) and depends_on(value, self._system.qddot)
+        )
 
     def _add(self, name: str, value: Value) -> None:
         """Add a name, and its rates unless they are known."""
