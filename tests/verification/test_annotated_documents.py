@@ -134,6 +134,7 @@ def test_the_page_marks_the_wrong_term_and_the_correct_one(tmp_path: Path) -> No
         (r"x = a (b + c)^2", "2", "<mn>2</mn>"),
         (r"x = a\left(b + c\right)", r"b + c", "<mi>b</mi>"),
         (r"b = x - b", "- b", "−</mo><mi>b</mi>"),
+        (r"x = -a + b", "-a", "−</mo><mi>a</mi>"),
         (r"x = l_1 \dot\theta_2", r"\dot\theta_2", "<mn>2</mn>"),
         (r"x = l_1 \dot\theta_2", r"_2", "<mi>θ</mi>"),  # the smallest part with a meaning
         (r"x = \frac{a}{b + c}", r"b + c", "<mi>c</mi>"),
