@@ -263,6 +263,9 @@ def test_events_and_limits_of_steps_work_across_samples(backend: str) -> None:
         (lambda: Held(0.1, lambda t, y: [1.0]), r"inputs at t = 0.0 has shape \(1,\)"),
         (lambda: Held(1e-9, feedback), "more than 10000000 samples"),
         (lambda: lambda t, y: {"F": np.nan}, r"F = nan must be"),
+        (lambda: lambda t, y: (10**400, 1.0), r"F = 10+ must be .* below 1.8e308"),
+        (lambda: lambda t, y: [True, 1.0], r"F = True must be"),
+        (lambda: lambda t, y: np.array([1.0]), r"inputs at t = 0.0 has shape \(1,\)"),
     ],
 )
 def test_invalid_inputs_are_refused(inputs: Any, message: str) -> None:

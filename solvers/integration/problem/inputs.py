@@ -1,6 +1,6 @@
 """Inputs that change during a motion: held between samples, or functions of time and state."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from math import isfinite
@@ -146,6 +146,19 @@ def controlled(module: GeneratedModule, controller: Controller, t: float, y: Arr
     return given(f"inputs at t = {t}", module, values, shape, t, nan=bool(shape))
 
 
+def _row(values: Any) -> Sequence[float] | None:
+    """Finite numbers in a usual form: one alone, or a tuple, list or array of them."""
+    if type(values) is np.ndarray and values.ndim == 1:
+        values = values.tolist()
+    row: Sequence[Any] = (values,) if type(values) in REAL else values
+    if type(row) not in (tuple, list) or not REAL.issuperset(map(type, row)):
+        return None
+    try:
+        return row if all(map(isfinite, row)) else None
+    except OverflowError:  # of an integer
+        return None
+
+
 def given(
     what: str,
     module: GeneratedModule,
@@ -165,9 +178,8 @@ def given(
             f"{module.SYSTEM} has no inputs, but {what} = {shortened(values)}: leave it out, or "
             "declare them, System(..., inputs=[Input(...)])"
         )
-    is_row = not shape and type(values) is tuple and len(values) == len(names)
-    if is_row and REAL.issuperset(map(type, values)) and all(map(isfinite, values)):
-        return np.array(values, float)  # at once, since controllers are called often
+    if not shape and (row := _row(values)) is not None and len(row) == len(names):
+        return np.array(row, float)  # at once, since controllers are called often
     if len(names) == 1 and not isinstance(values, Mapping) and np.shape(values) in ((), shape):
         values = [values]  # a single input may be a number
     defaults = dict.fromkeys(names, 0.0) | dict.fromkeys(motion_times(module), t)
