@@ -33,11 +33,6 @@ def test_formulas_that_do_not_hold_speak_against_a_meaning() -> None:
     assert Match(USUAL, 6, 8).score > Match(USUAL, 3, 3).score
 
 
-def test_offsets_are_right_angles_or_lengths() -> None:
-    assert UPRIGHT.offset(0, {}) == pytest.approx(3.14159265)
-    assert replace(USUAL, offsets=("d",)).offset(0, {"d": 0.7}) == 0.7
-
-
 def test_candidates_begin_with_the_usual_convention_and_the_same_indices() -> None:
     first = next(candidates(USUAL.system, LETTERS))
     assert first.is_usual

@@ -1,11 +1,14 @@
 """Habits of public derivations that were misread when they were first seen."""
 
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.numbers import resolution
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 
 
@@ -517,3 +520,47 @@ def test_positions_stand_in_rows_of_cases(tmp_path: Path) -> None:
 $$\vec r = \begin{cases} x = l\sin\theta \\ y = -2 l\cos\theta \end{cases}$$
 $$T = \frac12 m l^2\dot\theta^2 (\cos^2\theta + 4\sin^2\theta)$$"""
     assert verdicts(tmp_path, text) == ["definition", "definition", "verified"]
+
+
+FALL = r"""
+$$m\frac{d^2x}{dt^2} = -\frac{\partial V}{\partial x}; \qquad
+m\frac{d^2y}{dt^2} = -\frac{\partial V}{\partial y}; \qquad
+m\frac{d^2z}{dt^2} = -\frac{\partial V}{\partial z}$$
+
+$x = r\sin\theta\cos\varphi \Rightarrow \dot{x} = \dot{r}\sin\theta\cos\varphi
++ \dot{\theta} r\cos\theta\cos\varphi - \dot{\varphi} r \sin\theta\sin\varphi$, etc.
+
+$$\mathcal{L}(x, y, z, \dot{x}, \dot{y}, \dot{z}) = \frac{1}{2} m(\dot{x}^2 + \dot{y}^2 + \dot{z}^2)
+- mgz$$
+
+$$\frac{d}{dt}(m\dot{x}) = 0\, ; \qquad \frac{d}{dt}(m\dot{y}) = 0\, ; \qquad
+\frac{d}{dt}(m\dot{z}) = -mg$$"""
+
+
+def test_the_search_for_meanings_of_letters_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    counts, meaning = Counter[tuple[str, ...]](), resolution._meaning
+
+    def counted(names: tuple[str, ...], *arguments: Any) -> Any:
+        counts[names] += 1
+        assert counts[names] < 100
+        return meaning(names, *arguments)
+
+    monkeypatch.setattr(resolution, "_meaning", counted)
+    assert "wrong" not in verdicts(tmp_path, FALL)
+
+
+def test_energies_in_coordinates_of_two_kinds_are_not_accused(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 m(\dot x^2 + \dot y^2 + \dot z^2)
+  = \frac12 m(\dot r^2 + r^2\dot\theta^2 + r^2\sin^2\theta\,\dot\varphi^2)$$
+$$V = m g z = m g r\cos\theta$$
+$$\mathcal{L} = \frac12 m(\dot x^2 + \dot y^2 + \dot z^2) - m g z$$
+$$\mathcal{L} = \frac12 m(\dot r^2 + r^2\dot\theta^2 + r^2\sin^2\theta\,\dot\varphi^2)
+  - m g r\cos\theta$$
+$$\frac{d}{dt}(m\dot x) = 0$$ $$\frac{d}{dt}(m\dot y) = 0$$ $$\frac{d}{dt}(m\dot z) = -m g$$
+$$\frac{d}{dt}(m\dot r) = m r\dot\theta^2 + m r\sin^2\theta\,\dot\varphi^2 - m g\cos\theta$$
+$$\frac{d}{dt}(m r^2\dot\theta) = m r^2\sin\theta\cos\theta\,\dot\varphi^2 + m g r\sin\theta$$
+$$\frac{d}{dt}(m r^2\sin^2\theta\,\dot\varphi) = 0$$"""
+    assert "wrong" not in verdicts(tmp_path, text)

@@ -56,8 +56,9 @@ def resolved(
             f: u
             for f in formulas
             if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN
-            and not {*u} & {*letters.multipliers}
-        }  # which would hold with any reaction
+            # with a reaction all would hold, and other coordinates are those of other systems
+            and not {*map(stem, u)} & {*letters.multipliers, *others}
+        }
         result = next((m for u in dict.fromkeys(unknown.values())
                       if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],
                                         candidate, numbers, constants))), None)  # fmt: skip
