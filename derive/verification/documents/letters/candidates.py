@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, cached_property
 from itertools import combinations, islice, permutations, product
 from typing import Any, Literal, TypeAlias
 
@@ -108,7 +108,7 @@ class SystemCandidate:
         """Whether equations of motion of the document state the system."""
         return self.system.name in (BY_POTENTIAL, BY_EQUATIONS)
 
-    @property
+    @cached_property
     def letters(self) -> frozenset[str]:
         """The parameters of the document that have a meaning, or can have one in constraints."""
         own: set[str] = {*self.parameters.values(), *self.reactions}

@@ -108,10 +108,12 @@ class CandidateMotions:
         """The values of letters of multipliers."""
         reactions = self._solution[..., len(self._system.q) :]
         values: dict[str, Array] = {}
+        number = cache(float)  # of the few factors, which many candidates share
         for b, one in enumerate(self._tried):
             for name, index, factor in one.multipliers:
-                table = values.setdefault(name, np.full(self.shape, np.nan))
-                table[b] = float(factor) * reactions[b, :, index]
+                if name not in values:
+                    values[name] = np.full(self.shape, np.nan)
+                values[name][b] = number(factor) * reactions[b, :, index]
             for name, value in one.reactions.items():
                 values.setdefault(name, np.full(self.shape, np.nan))[b] = self._numbers(value)[b]
         return values
