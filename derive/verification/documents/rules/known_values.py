@@ -342,11 +342,13 @@ class DocumentNamespace:
                         self._add(component, entry)
 
     def _is_reaction(self, name: str, formula: DocumentFormula) -> bool:
-        """Whether equations before a formula with accelerations contain its name.
+        """Whether equations before a formula with accelerations contain its subject.
 
-        They are solved for a reaction, such as a tension: by its value each would hold, and none
-        that is solved for another one.
+        They are solved for a reaction, such as a tension: by its value the one would hold, and not
+        the others where one of them is wrong.
         """
+        if formula.subject != name:
+            return False
         before = takewhile(lambda one: one is not formula, self.formulas)
         equations = (one for one in before if name in one.words and one.subject != name)
         return any(self._has_accelerations(word) for one in equations for word in one.words)
