@@ -522,6 +522,13 @@ $$T = \frac12 m l^2\dot\theta^2 (\cos^2\theta + 4\sin^2\theta)$$"""
     assert verdicts(tmp_path, text) == ["definition", "definition", "verified"]
 
 
+@pytest.mark.parametrize("separator", [", ", r"\quad ", r" & ", r"\text{ if }"])
+def test_conditions_of_cases_are_no_statements(separator: str, tmp_path: Path) -> None:
+    rows = rf"0{separator}x = 0 \\ k x{separator}x = 1"
+    (one,) = judged(tmp_path, rf"$$V = \begin{{cases}} {rows} \end{{cases}}$$").formulas
+    assert one.note == "a definition by cases"
+
+
 FALL = r"""
 $$m\frac{d^2x}{dt^2} = -\frac{\partial V}{\partial x}; \qquad
 m\frac{d^2y}{dt^2} = -\frac{\partial V}{\partial y}; \qquad

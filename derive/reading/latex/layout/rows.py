@@ -88,12 +88,15 @@ def _starts_statement(tokens: list[Token]) -> bool:
 
 
 def _are_statements(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:
-    """Whether each of several rows has a relation, and no condition."""
-    kinds = [tokens[place].kind for place in inside(start, end, partner)]
-    while kinds and kinds[-1] in ("space", "row"):
-        kinds.pop()
-    rows = kinds.count("row") + 1
-    return rows > 1 and kinds.count("relation") >= rows and "&" not in kinds
+    """Whether several rows are statements, and not values with conditions behind a separator."""
+    rows: list[list[str]] = [[]]
+    for place in inside(start, end, partner):
+        if tokens[place].kind == "row":
+            rows.append([])
+        else:
+            rows[-1].append(tokens[place].kind)
+    heads = [[*takewhile(lambda kind: kind not in SEPARATORS, row)] for row in rows if row]
+    return len(heads) > 1 and all("relation" in head for head in heads)
 
 
 def _is_matrix(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:

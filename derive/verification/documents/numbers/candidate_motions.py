@@ -4,7 +4,7 @@ Arrays have the shape (candidates, states), or (candidates, states, coordinates)
 coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
 
 import numpy as np
@@ -308,13 +308,6 @@ class CandidateMotions:
         value = evaluated(_text(expression), names).value
         return np.asarray(np.broadcast_to(value, self.shape))
 
-    def _offsets(self) -> Callable[[tuple[int | str, ...]], Sequence[float]]:
-        """A function for the values of offsets, which many candidates share."""
-        letters = self.parameters
-        return cache(
-            lambda own: [letters[one] if isinstance(one, str) else one * np.pi / 2 for one in own]
-        )
-
     def _parameter(self, candidate: SystemCandidate, name: str, default: float) -> float:
         """The value of a parameter of the system."""
         if name in candidate.numbers:
@@ -324,8 +317,12 @@ class CandidateMotions:
     def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
         """Coordinates, velocities and parameters of the system."""
         place, speed = (self._by_order(table) for table in (self.places, self.speeds))
-        offsets = [*map(self._offsets(), (one.offsets for one in self._tried))]
-        q = np.einsum("bij,bjk->bik", self._signs, place) + np.array(offsets)[:, :, None]
+        known = {  # many candidates share their offsets
+            own: [self.parameters[x] if isinstance(x, str) else x * np.pi / 2 for x in own]
+            for own in {one.offsets for one in self._tried}
+        }
+        offsets = np.array([known[one.offsets] for one in self._tried])
+        q = np.einsum("bij,bjk->bik", self._signs, place) + offsets[:, :, None]
         qdot = np.einsum("bij,bjk->bik", self._signs, speed)
         time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates
         names: dict[str, Value] = {"t": Jet.of(time, 1.0), "pi": Jet.of(np.array([[np.pi]]))}

@@ -35,11 +35,11 @@ def is_near(
     with np.errstate(all="ignore"):
         arrays = [sign * one.value for (sign, _), one in zip(terms, jets, strict=True)]
         total = sum(np.broadcast_arrays(*arrays)) if len(arrays) > 1 else arrays[0]
-        result = np.zeros(np.broadcast_shapes(*(one.shape[:1] for one in arrays)), bool)
+        result = np.zeros(1, bool)
         for (_, text), own in zip(terms, arrays, strict=True):
             rest = own - total
             for other in _variants(text, own, value, velocities):
-                result |= _are_constant(rest, other)
+                result = result | _are_constant(rest, other)
     return result
 
 
