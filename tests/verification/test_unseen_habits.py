@@ -515,6 +515,19 @@ def test_a_tension_for_which_equations_are_solved_decides_nothing(tmp_path: Path
     assert ";" not in document.system  # no system of the tension and the angle
 
 
+def test_a_load_that_an_equation_states_is_no_reaction(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 m l^2\dot\theta^2 + \frac12 I(\dot\theta + \dot\phi)^2$$ $$V = m g l\cos\theta$$
+$$\mathcal{L} = \frac12 m l^2\dot\theta^2 + \frac12 I(\dot\theta + \dot\phi)^2 - m g l\cos\theta$$
+$$(m l^2 + I)\ddot\theta + I\ddot\phi + m g l\sin\theta = -\tau$$
+$$I(\ddot\theta + \ddot\phi) = \tau$$ For small angles
+$$(m l^2 + I)\ddot\theta + I\ddot\phi + m g l\theta = -\tau$$
+$$I(\ddot\theta + \ddot\phi) = \tau$$
+$$\ddot\theta = -\frac{g}{l}\theta - \frac{2}{m l^2}\tau$$"""
+    energy, _, _, wrong, *_ = verdicts(tmp_path, text)
+    assert (energy, wrong) == ("definition", "wrong")
+
+
 def test_positions_stand_in_rows_of_cases(tmp_path: Path) -> None:
     text = r"""
 $$\vec r = \begin{cases} x = l\sin\theta \\ y = -2 l\cos\theta \end{cases}$$
