@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -24,6 +25,22 @@ Defaults: TypeAlias = Mapping[str, float | Array]
 
 class NotFiniteNumberError(ValueError, ArithmeticError):
     """NaN or infinity in place of a number; from a user's function, it ends a run that began."""
+
+
+def finite_row(values: Any) -> Sequence[float] | None:
+    """Finite numbers in a usual form: one alone, or a tuple, list or array of them; else None.
+
+    Functions that are called often accept these at once.
+    """
+    if type(values) is np.ndarray and values.ndim == 1:
+        values = values.tolist()
+    row: Sequence[Any] = (values,) if type(values) in REAL else values
+    if type(row) not in (tuple, list) or not REAL.issuperset(map(type, row)):
+        return None
+    try:
+        return row if all(map(isfinite, row)) else None
+    except OverflowError:  # of an integer
+        return None
 
 
 def real_numbers(

@@ -3,7 +3,7 @@
 import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import isfinite, ulp
+from math import ulp
 from struct import Struct
 from typing import Any, TypeAlias
 
@@ -17,7 +17,7 @@ from solvers.equations.module import (
     parameter_names,
 )
 from solvers.equations.module import inputs as input_names
-from solvers.equations.number_checks import REAL, Values
+from solvers.equations.number_checks import REAL, Values, finite_row
 from solvers.equations.signature_checks import known_names
 from solvers.equations.singularities import check_condition
 from solvers.integration.checks.accuracy_warnings import accuracy_warnings
@@ -229,15 +229,11 @@ class Prepared:
 
     def _set_params(self, params: Numbers) -> None:
         self._assembly = None
-        try:
-            values: list[Any] = list(params)
-            are_signed = all(values[k] >= 0 for k in self._positive)
-            if are_signed and REAL.issuperset(map(type, values)) and all(map(isfinite, values)):
-                self._params[:] = values
-                return
-        except (TypeError, ValueError, LookupError, OverflowError):
-            pass  # a mapping, or invalid
-        self._params[:] = self._checked_params(params)
+        row: Any = finite_row(params)
+        is_complete = row is not None and len(row) == len(self._params)
+        if row is None or not is_complete or not all(row[k] >= 0 for k in self._positive):
+            row = self._checked_params(params)
+        self._params[:] = row
 
     def _checked_params(self, params: Any) -> list[Any]:
         form = self._problem.form
@@ -245,17 +241,10 @@ class Prepared:
 
     def _set_inputs(self, inputs: Any) -> None:
         self._assembly = None
-        try:
-            values: list[Any] = list(inputs)
-            count = len(values)
-            is_complete = 0 < count == self._inputs
-            if is_complete and REAL.issuperset(map(type, values)) and all(map(isfinite, values)):
-                self._params[-count:] = values
-                return
-        except (TypeError, OverflowError):
-            pass  # a mapping, one number, or invalid
-        array = given("inputs", self._problem.form.module, inputs)
-        self._params[-len(array) :] = array.tolist()
+        row: Any = finite_row(inputs)
+        if not row or len(row) != self._inputs:
+            row = given("inputs", self._problem.form.module, inputs).tolist()
+        self._params[-len(row) :] = row
 
     def _checked(self, y0: Any) -> list[Any]:
         form, t = self._problem.form, self._span_start

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import islice
 from typing import Self
 
@@ -26,8 +26,6 @@ LARGEST_INVERSE, LARGEST_DIAGONAL = 3, 7
 #: Factors of coordinates at states, tried until the Lagrangian is real: a thread limits
 #: coordinates from above, a wheel's axis from below.
 SIZES = (sp.S.One, sp.Rational(1, 20), sp.Integer(5))
-#: Functions of real numbers that are real and bounded, but near poles.
-WAVES = {sp.sin, sp.cos, sp.tan}
 #: The number of states near the turning arguments of a formula.
 MOST_TURNING = 60
 #: Factors of all variables, by which decisive numbers change their signs.
@@ -200,14 +198,16 @@ class ReferenceSystem:
         values = sample((*system.params, *moving), index)
         # at later states, angles exceed a right angle, so that sqrt(cos(x)**2) and cos(x) differ
         values |= {symbol: values[symbol] * scale * sp.Rational(1 + index, 5) for symbol in moving}
-        lagrangian = self.derivation.lagrangian
-        for size in SIZES:
+        for size in SIZES if self._can_be_complex else ():
             state = values | {q: values[q] * size for q in system.q}
-            if _is_real_everywhere(lagrangian) or _is_real(lagrangian, state):
-                break
-        else:
-            state = values
-        return self._with_momenta(state)
+            if _is_real(self.derivation.lagrangian, state):
+                return self._with_momenta(state)
+        return self._with_momenta(values)
+
+    @cached_property
+    def _can_be_complex(self) -> bool:
+        """Whether the Lagrangian has roots, or functions other than sines and cosines."""
+        return bool(turning_arguments(self.derivation.lagrangian))
 
     def _with_momenta(self, state: State) -> State:
         evaluator = Evaluator({s: x for s, x in state.items() if s not in self.momenta})
@@ -242,13 +242,6 @@ def euler_lagrange(system: System, lagrangian: sp.Expr) -> tuple[sp.Expr, ...]:
 def depends_on(value: Value, symbols: Collection[sp.Symbol]) -> bool:
     """Whether `value` contains one of `symbols`."""
     return bool(value.free_symbols & {*symbols})
-
-
-@cache
-def _is_real_everywhere(expression: sp.Expr) -> bool:
-    """Whether an expression has no parts that can be complex or very large."""
-    has_integers = all(power.exp.is_Integer for power in expression.atoms(sp.Pow))
-    return has_integers and {one.func for one in expression.atoms(sp.Function)} <= WAVES
 
 
 def _is_real(expression: sp.Expr, state: State) -> bool:

@@ -1,16 +1,21 @@
 """Inputs that change during a motion: held between samples, or functions of time and state."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from math import isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solvers.equations.module import GeneratedModule, inputs, motion_times
-from solvers.equations.number_checks import REAL, Values, positive, quantities, real_numbers
+from solvers.equations.number_checks import (
+    Values,
+    finite_row,
+    positive,
+    quantities,
+    real_numbers,
+)
 from solvers.io.suggestion import shortened
 from solvers.runge_kutta.stepper import Array
 
@@ -146,19 +151,6 @@ def controlled(module: GeneratedModule, controller: Controller, t: float, y: Arr
     return given(f"inputs at t = {t}", module, values, shape, t, nan=bool(shape))
 
 
-def _row(values: Any) -> Sequence[float] | None:
-    """Finite numbers in a usual form: one alone, or a tuple, list or array of them."""
-    if type(values) is np.ndarray and values.ndim == 1:
-        values = values.tolist()
-    row: Sequence[Any] = (values,) if type(values) in REAL else values
-    if type(row) not in (tuple, list) or not REAL.issuperset(map(type, row)):
-        return None
-    try:
-        return row if all(map(isfinite, row)) else None
-    except OverflowError:  # of an integer
-        return None
-
-
 def given(
     what: str,
     module: GeneratedModule,
@@ -178,7 +170,7 @@ def given(
             f"{module.SYSTEM} has no inputs, but {what} = {shortened(values)}: leave it out, or "
             "declare them, System(..., inputs=[Input(...)])"
         )
-    if not shape and (row := _row(values)) is not None and len(row) == len(names):
+    if not shape and (row := finite_row(values)) is not None and len(row) == len(names):
         return np.array(row, float)  # at once, since controllers are called often
     if len(names) == 1 and not isinstance(values, Mapping) and np.shape(values) in ((), shape):
         values = [values]  # a single input may be a number

@@ -65,10 +65,11 @@ def flattened(tokens: list[Token]) -> list[Token]:
             elif token.text not in ROWS and token.text not in MATRICES:
                 raise UnreadError(f"the environment {token.text!r} is not known")
             elif token.text in ("cases", "dcases") and not _starts_statement(result):
-                if not _are_statements(tokens, at, end, partner):
+                if _are_statements(tokens, at, end, partner):
+                    while not _starts_statement(result):
+                        result.pop()  # the name of all rows, such as a vector of these components
+                else:
                     kept |= {at, end}
-                while result and at not in kept and result[-1].kind not in SEPARATORS:
-                    result.pop()  # the name of all rows, such as a vector of these components
             if token.text in ("multline", "multlined"):
                 joined |= set(inside(at, end, partner))
             if at not in kept:

@@ -180,9 +180,4 @@ def _uses_letters(
 ) -> NDArray[np.bool_]:
     """For each candidate, whether the parameters of a formula have a meaning with it."""
     written = {*formula.words} & {*letters.parameters}
-    shared = {id(one.parameters): one.parameters for one in tried}  # by many candidates
-    others = {key: written - {*own.values()} for key, own in shared.items()}
-    missing = (others[id(one.parameters)] for one in tried)
-    return np.array(
-        [not rest or rest <= one.letters for one, rest in zip(tried, missing, strict=True)]
-    )
+    return np.array([written <= one.letters for one in tried])

@@ -18,7 +18,7 @@ from derive.mechanics.routhian import Routhian
 from derive.system.parts import Parameter
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.formula_translation import RATES, order, stem
+from derive.verification.documents.formula_translation import RATES, stem
 from derive.verification.documents.letters.document_system import (
     SystemLetters,
     energies_of,
@@ -331,7 +331,7 @@ class DocumentNamespace:
                 value = self.value(text)
             except ExpressionError:
                 continue
-            if depends_on(value, self._system.qddot) and self._is_reaction(name, formula):
+            if name == formula.subject and self._is_reaction(formula, value):
                 continue
             self.defining[name] = formula, text
             self._add(name, value)
@@ -341,23 +341,19 @@ class DocumentNamespace:
                     if (component := f"{axis}_{point[1]}") not in self.all_names:
                         self._add(component, entry)
 
-    def _is_reaction(self, name: str, formula: DocumentFormula) -> bool:
+    def _is_reaction(self, formula: DocumentFormula, value: Value) -> bool:
         """Whether equations before a formula with accelerations contain its subject.
 
         They are solved for a reaction, such as a tension: by its value the one would hold, and not
         the others where one of them is wrong.
         """
-        if formula.subject != name:
+        name, qddot = formula.subject, self._system.qddot
+        if not depends_on(value, qddot):
             return False
         before = takewhile(lambda one: one is not formula, self.formulas)
         equations = (one for one in before if name in one.words and one.subject != name)
-        return any(self._has_accelerations(word) for one in equations for word in one.words)
-
-    def _has_accelerations(self, word: str) -> bool:
-        value = self.all_names.get(word)
-        return order(word) == 2 or (
-            isinstance(value, sp.Expr | sp.MatrixBase) and depends_on(value, self._system.qddot)
-        )
+        known = (self.names.get(word) for one in equations for word in one.words)
+        return any(isinstance(one, sp.Basic) and depends_on(one, qddot) for one in known)
 
     def _add(self, name: str, value: Value) -> None:
         """Add a name, and its rates unless they are known."""
