@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import sympy as sp
 from damage import toml
 from mutation import Mutation
 
-from derive import Derivation, load, names
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load, names
 from derive.system.files.shipped import large_names
 from derive.system.files.system_catalogue import published
 from derive.verification import hand_derivation_files, quantity_verdicts
@@ -171,6 +172,18 @@ def test_invalid_files_are_rejected(text: str, words: str, tmp_path: Path) -> No
 def test_misleading_equations_are_judged_correctly(kind: str, text: str, verdict: str) -> None:
     model = ReferenceSystem(Derivation(load("single_pendulum")), {})
     assert judge_formula(model, "", text, kind, "theta").verdict == verdict
+
+
+def test_at_all_states_the_lagrangian_is_real() -> None:
+    x, (m, radius, g) = sp.Symbol("x", real=True), sp.symbols("m R g", positive=True)
+    height = -sp.sqrt(radius**2 - x**2)
+    parameters = [Parameter(m, "kg", 1.0, ""), Parameter(radius, "m", 1.0, "")]
+    bead = System("bead", "Bead on a circle", [Coordinate(x, "m", "")],
+        [*parameters, Parameter(g, "m/s^2", 9.81, "")],
+        [PointMass(m, (x, height))], potential=m * g * height)  # fmt: skip
+    model = ReferenceSystem(Derivation(bead), {})
+    values = [value(model.derivation.lagrangian) for value in model.context.evaluators]
+    assert all(value.rounded().is_real for value in values)
 
 
 def test_keys_can_use_the_names_of_the_source(tmp_path: Path) -> None:

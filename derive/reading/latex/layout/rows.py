@@ -89,7 +89,7 @@ def _starts_statement(tokens: list[Token]) -> bool:
 
 
 def _are_statements(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:
-    """Whether several rows are statements, and not values with conditions behind a separator."""
+    """Whether all rows are statements, and not values with conditions behind a separator."""
     rows: list[list[str]] = [[]]
     for place in inside(start, end, partner):
         if tokens[place].kind == "row":
@@ -97,7 +97,7 @@ def _are_statements(tokens: list[Token], start: int, end: int, partner: dict[int
         else:
             rows[-1].append(tokens[place].kind)
     heads = [[*takewhile(lambda kind: kind not in SEPARATORS, row)] for row in rows if row]
-    return len(heads) > 1 and all("relation" in head for head in heads)
+    return all("relation" in head for head in heads)
 
 
 def _is_matrix(tokens: list[Token], start: int, end: int, partner: dict[int, int]) -> bool:
