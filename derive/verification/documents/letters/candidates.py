@@ -280,19 +280,35 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
     groups: dict[str, list[str]] = {}
     for parameter in system.parameters:
         groups.setdefault(kind_of(parameter), []).append(parameter.symbol.name)
-    for choice in _likeliest(*(_choices(kind, names, letters) for kind, names in groups.items())):
+    spare = _spare(groups, letters)
+    choices = (_choices(kind, names, letters, spare) for kind, names in groups.items())
+    for choice in _likeliest(*choices):
         used = [letter for one in choice for letter in {*one.values()}]
         if len({*used}) == len(used):  # no letter has two units
             yield {name: letter for one in choice for name, letter in one.items()}
 
 
-def _choices(kind: str, names: Sequence[str], letters: Letters) -> list[dict[str, str]]:
+def _spare(groups: Mapping[str, Sequence[str]], letters: Letters) -> list[str]:
+    """Letters that are of no kind by their names, or of one with more letters than parameters."""
+    named = {kind: letters.of_kind(kind) for kind in {*UNITS.values()}}
+    kinds = {p: [kind for kind, own in named.items() if p in own] for p in letters.parameters}
+    return [
+        p
+        for p, own in kinds.items()
+        if all(len(named[kind]) > len(groups.get(kind, ())) > 0 for kind in own)
+    ]
+
+
+def _choices(
+    kind: str, names: Sequence[str], letters: Letters, spare: Sequence[str]
+) -> list[dict[str, str]]:
     """The letters of parameters of one kind: their own, the same indices, one for all.
 
-    Of springs, some can be absent.
+    Of springs, some can be absent. Where no name is of this kind, they are `spare` ones.
     """
     own = {name: name for name in names if name in letters.parameters}
     usual = letters.of_kind(kind) if kind else list(letters.parameters)
+    usual = usual or spare
     if len(usual) >= len(names):
         orders: Iterator[Sequence[str]] = permutations(usual, len(names))
     else:

@@ -12,7 +12,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.files.part_tables import TomlTable, read
 from derive.system.system import System
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, kind_of
-from derive.verification.documents.letters.further_systems import named
+from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letters import Letters
 from solvers.io.suggestion import did_you_mean
 from solvers.io.toml_input import InputError

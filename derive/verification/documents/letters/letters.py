@@ -51,7 +51,7 @@ KINDS: dict[str, tuple[str, ...]] = {
     "inertia": ("I", "J", "Theta"),
     "frequency": ("omega", "Omega", "w", "nu"),
     "damping": ("b", "c", "d", "gamma", "beta", "mu", "nu", "delta", "B", "eta", "h", "Kd", "kd"),
-    "force": ("F", "u", "f", "tau", "Q"),
+    "force": ("F", "u", "f", "tau", "Q", "U", "T"),
 }
 
 #: Parts of longer names, as programs have them.

@@ -1,0 +1,1 @@
+"""Systems that are known from elsewhere, in one file for each use."""

@@ -1,0 +1,78 @@
+"""The known systems that are tried for the letters of a document."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from derive.system.files.system_catalogue import load
+from derive.system.parts import Parameter
+from derive.system.system import System
+from derive.verification.documents.letters.known_systems.free_bodies import free_bodies
+from derive.verification.documents.letters.known_systems.in_fields import systems_in_fields
+from derive.verification.documents.letters.known_systems.mechanisms import mechanisms
+from derive.verification.documents.letters.known_systems.of_documents import systems_of_documents
+from derive.verification.documents.letters.known_systems.oscillating import oscillating_systems
+from derive.verification.documents.letters.known_systems.uniform_rods import uniform_rods
+
+#: Systems that ship and are tried, the commonest first.
+SHIPPED = (
+    "double_pendulum single_pendulum cart_1 elastic_pendulum spherical_pendulum chain_3 cart_2 "
+    "double_bar_pendulum swinging_atwood rotating_hoop driven_pendulum coupled_pendulums "
+    "henon_heiles foucault_pendulum"
+).split()
+#: The same where no energy is stated.
+SHIPPED_OF_PROGRAMS = "furuta_pendulum heavy_top duffing".split()
+
+
+def templates(
+    count: int, has_rods: bool = True, is_free: bool = False, has_energies: bool = True
+) -> Iterator[System]:
+    """Yield the systems with so many coordinates.
+
+    With uniform rods, free bodies, or those of programs, in which no energy is stated; or without.
+    """
+    groups = [_free()] if is_free else []
+    groups += [_usual(), *([_rods()] if has_rods else [])]
+    groups += [] if has_energies else [_of_programs()]
+    yield from (one for group in groups for one in group if len(one.coordinates) == count)
+
+
+def named(name: str | Path) -> System:
+    """The system of a name, also one that does not ship, or of a path.
+
+    Inputs are parameters, since a document has letters for both.
+    """
+    shipped = {*SHIPPED, *SHIPPED_OF_PROGRAMS}
+    own = () if name in shipped else (*_free(), *_usual(), *_rods(), *_of_programs())
+    return next((one for one in own if one.name == name), None) or _with_letters(load(name))
+
+
+def _with_letters(system: System) -> System:
+    inputs = [Parameter(one.symbol, one.unit, 1.0, one.meaning) for one in system.inputs]
+    return replace(system, parameters=(*system.parameters, *inputs), inputs=())
+
+
+@cache
+def _free() -> tuple[System, ...]:
+    return (*free_bodies(),)
+
+
+@cache
+def _usual() -> tuple[System, ...]:
+    return (*map(load, SHIPPED), *systems_of_documents())
+
+
+@cache
+def _rods() -> tuple[System, ...]:
+    return (*uniform_rods(),)
+
+
+@cache
+def _of_programs() -> tuple[System, ...]:
+    return (
+        *(_with_letters(load(one)) for one in SHIPPED_OF_PROGRAMS),
+        *oscillating_systems(),
+        *systems_in_fields(),
+        *mechanisms(),
+    )
