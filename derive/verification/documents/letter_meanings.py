@@ -100,13 +100,20 @@ def interpretation(
     is_further = not {*letters.coordinates} <= {*known}
     tried = _of_templates(letters, statements) if is_further else ()
     result = _best(judges, chain(_stated(letters, statements), tried), work)
-    if is_further and (result.match is None or result.match.holding < 1):
+    if is_further and _lacks_numbers(result.match, letters):
         numbers = {"gravity": _gravity(statements)}
         other = _best(judges, _of_templates(letters, statements, numbers), work)
         if other.match and (result.match is None or other.match.score > result.match.score):
             result = other
     number = inhomogeneous_formula(letters, statements.formulas, statements.derivatives)
     return result if number is None else _without_inhomogeneous(result, number)
+
+
+def _lacks_numbers(match: Match | None, letters: Letters) -> bool:
+    """Whether numbers in place of parameters can be meant: nothing holds, or not all without."""
+    if match is None or match.holding < 1:
+        return True
+    return bool(match.failed and match.candidate.lacking and not letters.quantities)
 
 
 def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretation:

@@ -1,5 +1,6 @@
 """Operations on arrays and functions of them, as far as their entries are known."""
 
+import math
 from collections.abc import Sequence
 from functools import reduce
 from operator import itemgetter
@@ -19,6 +20,9 @@ from derive.reading.programs.syntax.trees import (
     OperatorExpression,
     Result,
 )
+
+#: The largest limit of a denominator that only keeps it from zero.
+SMALL_LIMIT = 0.01
 
 
 def combined(
@@ -160,6 +164,8 @@ def _repeated(value: Expression, length: int, is_sum: bool, first: int) -> Seque
     return (value,) * length
 
 
+#: The largest limit of a denominator that only keeps it from zero.
+SMALL_LIMIT = 0.01
 #: Functions that place arrays one behind the other.
 STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
 #: Methods of a matrix of Eigen that return it in factors.
@@ -232,15 +238,18 @@ def of_entries(line: int, path: str, arguments: tuple[Expression, ...]) -> Expre
 
 
 def _extreme(name: str, given: Sequence[Expression]) -> Expression | None:
-    """The largest or the smallest of numbers, or a variable within limits; None for others.
+    """The largest or the smallest of numbers, or a value within limits; None for others.
 
-    A limit of 0 is that of a contact or a thread, which has another equation on its other side.
+    A limit of 0 is that of a contact or a thread, which has another equation on its other side;
+    that of an expression, which is no variable, must be one that only avoids a division by zero.
     """
     values = [(value, one) for one in given if (value := number(one)) is not None]
     others = [one for one in given if number(one) is None]
     if not values or others:
-        is_limited = len(others) == 1 and isinstance(others[0], Name) and all(v for v, _ in values)
-        return others[0] if values and is_limited else None
+        if len(others) != 1 or not values:
+            return None
+        most = math.inf if isinstance(others[0], Name) else SMALL_LIMIT
+        return others[0] if all(0 < abs(v) <= most for v, _ in values) else None
     return (max if name.startswith("max") else min)(values, key=itemgetter(0))[1]
 
 

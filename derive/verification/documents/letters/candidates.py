@@ -304,11 +304,11 @@ def _choices(
 ) -> list[dict[str, str]]:
     """The letters of parameters of one kind: their own, the same indices, one for all.
 
-    Of springs, some can be absent. Where no name is of this kind, they are `spare` ones.
+    Of springs, some can be absent. Where no name is of this kind, there is none or a `spare` one.
     """
     own = {name: name for name in names if name in letters.parameters}
-    usual = letters.of_kind(kind) if kind else list(letters.parameters)
-    usual = usual or spare
+    named = letters.of_kind(kind) if kind else list(letters.parameters)
+    usual = named or spare
     if len(usual) >= len(names):
         orders: Iterator[Sequence[str]] = permutations(usual, len(names))
     else:
@@ -322,7 +322,7 @@ def _choices(
     others = [*chosen, *(one for one in same if one not in chosen)]
     if len(own) == len(names):
         return [own, *(one for one in others if one != own)]
-    return others or [{}]
+    return others if named else [{}, *others]
 
 
 def _index(name: str) -> str:

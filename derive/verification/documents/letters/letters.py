@@ -66,6 +66,9 @@ PARTS: dict[str, tuple[str, ...]] = {
     "force": ("force", "torque", "action"),
 }
 
+#: Letters that programs write with an index in one word, by the kind of the parameter.
+WITH_INDEX = {"mass": "mM", "length": "lLrR", "inertia": "IJ", "stiffness": "kK", "damping": "bB"}
+
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
 OPERATORS |= {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}
 #: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
@@ -131,9 +134,19 @@ class Letters:
         stems = {p: p.partition("_")[0].rstrip("0123456789") for p in self.parameters}
         named = [p for p in self.parameters if stems[p] in usual and p not in self.kinds]
         parts = PARTS.get(kind, ())
-        worded = [p for p in self.parameters if any(one in p.lower() for one in parts)]
+        worded = [
+            p
+            for p in self.parameters
+            if any(one in p.lower() for one in parts) or _has_index(stems[p], kind)
+        ]
         worded = [p for p in worded if p not in (*named, *self.kinds)]
         return [*given, *sorted(named, key=lambda p: (usual.index(stems[p]), p)), *worded]
+
+
+def _has_index(stem: str, kind: str) -> bool:
+    """Whether a name is a letter of a kind with a letter as its index, such as mp and Jr."""
+    usual = WITH_INDEX.get(kind, "")
+    return len(stem) == 2 and stem[0] in usual and stem not in KINDS["mass"]
 
 
 def energy_of_part(name: str) -> str | None:

@@ -176,7 +176,7 @@ class _Evidence:
         terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
         slips = max(self._misfits, len(terms) if self._has_energy else 0)
         few = max(1, min(self._holding, max(2, self._holding // 2)))
-        is_several = self._has_energy and len(self._wrong) > 1
+        is_several = len(self._wrong) > 1
         has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
         return self._is_known and (self._is_partial or not has_all or has_none or slips > few)
 

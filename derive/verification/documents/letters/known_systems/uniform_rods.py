@@ -14,7 +14,7 @@ from derive.verification.documents.letters.known_systems.symbols import coordina
 def uniform_rods() -> Iterator[System]:
     """Systems that are tried where a third or a twelfth of m l² can occur."""
     x, theta, theta1, theta2 = symbols("x theta theta1 theta2", real=True)
-    m, M, l, m1, m2, l1, l2 = symbols("m M l m1 m2 l1 l2", positive=True)
+    m, M, l, m1, m2, l1, l2, r1, r2 = symbols("m M l m1 m2 l1 l2 r1 r2", positive=True)
     for name, title, part in (
         ("uniform_rod", "Uniform rod on a hinge", 2),
         ("half_rod", "Uniform rod on a hinge, twice as long as its letter", 1),
@@ -53,4 +53,13 @@ def uniform_rods() -> Iterator[System]:
         [RigidBody(m1, (l1 * sin(theta1), -l1 * cos(theta1)), m1 * l1**2 / 3, theta1),
          RigidBody(m2, (2 * l1 * sin(theta1) + l2 * sin(theta2),
                         -2 * l1 * cos(theta1) - l2 * cos(theta2)), m2 * l2**2 / 3, theta2)],
+    )  # fmt: skip
+    yield System(
+        "two_rods_by_centres", "Two hinged uniform rods with letters for their centres",
+        coordinates((theta1, "rad"), (theta2, "rad")),
+        [*parameters(m1="kg", m2="kg", l1="m", l2="m", g="m/s^2"),
+         Parameter(r1, "m", 0.5, ""), Parameter(r2, "m", 0.5, "")],
+        [RigidBody(m1, (r1 * sin(theta1), -r1 * cos(theta1)), m1 * (l1**2 / 3 - r1**2), theta1),
+         RigidBody(m2, (l1 * sin(theta1) + r2 * sin(theta2), -l1 * cos(theta1) - r2 * cos(theta2)),
+                   m2 * (l2**2 / 3 - r2**2), theta2)],
     )  # fmt: skip
