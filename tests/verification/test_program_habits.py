@@ -192,14 +192,15 @@ def test_accelerations_can_be_known_by_their_names_alone() -> None:
     assert not judged(NAMED.replace("thdot", "rate")).formulas
 
 
-def test_a_ratio_of_masses_is_no_letter_for_both_of_them() -> None:
+def test_a_ratio_can_stand_for_two_masses() -> None:
     text = """
 def rates(t, y, g, mu):
     r, v, theta, omega = y
     a = (r*omega**2 + g*(np.cos(theta) - mu))/(1 + mu)
     return v, a, omega, -(2*v*omega + g*np.sin(theta))/r
 """
-    assert equations(judged(text)) == ["context", "verified"]
+    assert equations(judged(text)) == ["verified", "verified"]
+    assert equations(judged(text.replace("(1 + mu)", "(1 - mu)"))) == ["wrong", "verified"]
 
 
 def test_friction_can_have_the_name_of_a_gain() -> None:

@@ -17,8 +17,8 @@ from derive.verification.documents.judges import (
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.dimensions import inhomogeneous_formula, lost_dots
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
-from derive.verification.documents.letters.known_systems.templates import templates
 from derive.verification.documents.letters.hints import Hints, difference, is_crossed, names_of
+from derive.verification.documents.letters.known_systems.templates import templates
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_equations import StatedEquations

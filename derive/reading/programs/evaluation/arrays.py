@@ -164,8 +164,6 @@ def _repeated(value: Expression, length: int, is_sum: bool, first: int) -> Seque
     return (value,) * length
 
 
-#: The largest limit of a denominator that only keeps it from zero.
-SMALL_LIMIT = 0.01
 #: Functions that place arrays one behind the other.
 STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "vstack"}
 #: Methods of a matrix of Eigen that return it in factors.

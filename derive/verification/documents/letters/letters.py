@@ -68,6 +68,7 @@ PARTS: dict[str, tuple[str, ...]] = {
 
 #: Letters that programs write with an index in one word, by the kind of the parameter.
 WITH_INDEX = {"mass": "mM", "length": "lLrR", "inertia": "IJ", "stiffness": "kK", "damping": "bB"}
+WITH_INDEX |= {"frequency": "w"}
 
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
 OPERATORS |= {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}

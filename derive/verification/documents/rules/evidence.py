@@ -167,18 +167,24 @@ class _Evidence:
     def _is_weak(self) -> bool:
         """Whether a system that is known from elsewhere fits too little."""
         lacking = {*_lacking(self._results, self._candidate)}
-        has_all = not lacking or (
-            self._misfits == 0 < self._holding
-            and lacking == {*_scales(self._candidate, lacking)}
-            and not _is_conservative([formula for formula, _ in self._results])
-        )
+        scales = {*_scales(self._candidate, lacking)}
+        has_all = not lacking or (self._misfits == 0 < self._holding and lacking == scales)
+        if lacking or self._candidate.numbers:
+            has_all = has_all and not _is_conservative([formula for formula, _ in self._results])
         # an energy and an equation that contradict the system alike speak against the system
         terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
         slips = max(self._misfits, len(terms) if self._has_energy else 0)
         few = max(1, min(self._holding, max(2, self._holding // 2)))
-        is_several = len(self._wrong) > 1
+        is_several = (self._has_energy or self._changes_loads) and len(self._wrong) > 1
         has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
         return self._is_known and (self._is_partial or not has_all or has_none or slips > few)
+
+    @property
+    def _changes_loads(self) -> bool:
+        """Whether a correction changes a force or friction, the letter of which can be another."""
+        loads = {name for name, _ in (*self._candidate.forces, *self._candidate.friction)}
+        terms = (t for one in self._wrong for t in one.verdict.corrections)
+        return any(loads & {*WORD.findall(f"{t.wrong} {t.correct}")} for t in terms)
 
     @property
     def _is_guess(self) -> bool:

@@ -8,7 +8,10 @@ from sympy import cos, sin, symbols
 from derive.system.parts import PointMass
 from derive.system.rigid_body import RigidBody
 from derive.system.system import System
-from derive.verification.documents.letters.known_systems.symbols import coordinates, parameters
+from derive.verification.documents.letters.known_systems.parts_by_name import (
+    coordinates,
+    parameters,
+)
 
 
 def free_bodies() -> Iterator[System]:

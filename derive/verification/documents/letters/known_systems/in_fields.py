@@ -8,7 +8,7 @@ from sympy import Expr, Symbol, cos, sin, sqrt, symbols
 from derive.system.parts import PointMass
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
-from derive.verification.documents.letters.known_systems.symbols import g, lengths, parameters
+from derive.verification.documents.letters.known_systems.parts_by_name import g, lengths, parameters
 
 x, y, z = symbols("x y z", real=True)
 m, M, G, k, l, c, mu, q, B = symbols("m M G k l c mu q B", positive=True)

@@ -8,7 +8,11 @@ from derive.system.orientation import rotations
 from derive.system.parts import PointMass
 from derive.system.rigid_body import RigidBody
 from derive.system.system import System
-from derive.verification.documents.letters.known_systems.symbols import coordinates, g, parameters
+from derive.verification.documents.letters.known_systems.parts_by_name import (
+    coordinates,
+    g,
+    parameters,
+)
 
 x, y, theta, phi, psi, q1, q2 = symbols("x y theta phi psi q1 q2", real=True)
 m, M, m1, m2, l, L, l1, R = symbols("m M m1 m2 l L l1 R", positive=True)

@@ -8,7 +8,11 @@ from sympy import cos, sin, symbols
 from derive.system.parts import PointMass
 from derive.system.rigid_body import RigidBody
 from derive.system.system import System
-from derive.verification.documents.letters.known_systems.symbols import coordinates, g, parameters
+from derive.verification.documents.letters.known_systems.parts_by_name import (
+    coordinates,
+    g,
+    parameters,
+)
 
 
 def systems_of_documents() -> Iterator[System]:

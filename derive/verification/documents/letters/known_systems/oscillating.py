@@ -7,7 +7,7 @@ from sympy import Expr, cos, sin, symbols
 from derive.system.parts import PointMass
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
-from derive.verification.documents.letters.known_systems.symbols import (
+from derive.verification.documents.letters.known_systems.parts_by_name import (
     coordinates,
     g,
     lengths,
