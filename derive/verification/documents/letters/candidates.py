@@ -79,6 +79,8 @@ class SystemCandidate:
     multipliers: tuple[tuple[str, int, sp.Rational], ...] = ()
     #: Numbers of formulas that state the system, beside constraints.
     stating: frozenset[int] = frozenset()
+    #: Whether a letter has a meaning that letters of this name have nowhere.
+    is_guess: bool = False
     #: Letters of reactions along the motion, with their values in the symbols of the system.
     reactions: Mapping[str, sp.Expr] = field(default_factory=dict)
 
@@ -159,8 +161,9 @@ def candidates(
         own = {*letters.multipliers}
         others = (one for one in letters.parameters if one not in own)
         letters = replace(letters, parameters=tuple(others))
+    most = MAX_CONSTRAINED if system.conditions or letters.constraints else MAX_CANDIDATES
     choices = _likeliest(
-        [*_conventions(system, letters)],
+        [*islice(_conventions(system, letters), most)],
         sorted(
             letters.orders([one.unit == "rad" for one in system.coordinates]),
             key=lambda order: _mixed([one.symbol.name for one in system.coordinates], order),
@@ -172,13 +175,20 @@ def candidates(
         loads(letters, "force", n),
         frictions(letters, n),
     )
-    most = MAX_CONSTRAINED if system.conditions or letters.constraints else MAX_CANDIDATES
+    names = {kind: {*letters.of_kind(kind)} for kind in {*UNITS.values()}}
+    kinds = {one.symbol.name: names.get(kind_of(one)) for one in system.parameters}
     for (signs, offsets), order, (mapping, stated), forces, friction in islice(choices, most):
         if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
             continue  # the letter of a force of the system
         if numbers is None or stated:
             one = SystemCandidate(system, order, signs, offsets, mapping, forces, friction, stated)
-            yield from constrained(one, letters)
+            yield from constrained(replace(one, is_guess=_is_guess(mapping, kinds)), letters)
+
+
+def _is_guess(mapping: Mapping[str, str], kinds: Mapping[str, set[str] | None]) -> bool:
+    """Whether a parameter of a kind with usual letters has another letter."""
+    usual = ((kinds[name], letter) for name, letter in mapping.items())
+    return any(names is not None and letter not in names for names, letter in usual)
 
 
 def _mixed(names: Sequence[str], letters: Sequence[str]) -> int:
@@ -291,12 +301,9 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
 def _spare(groups: Mapping[str, Sequence[str]], letters: Letters) -> list[str]:
     """Letters that are of no kind by their names, or of one with more letters than parameters."""
     named = {kind: letters.of_kind(kind) for kind in {*UNITS.values()}}
-    kinds = {p: [kind for kind, own in named.items() if p in own] for p in letters.parameters}
-    return [
-        p
-        for p, own in kinds.items()
-        if all(len(named[kind]) > len(groups.get(kind, ())) > 0 for kind in own)
-    ]
+    scarce = {kind for kind, names in groups.items() if len(named.get(kind, ())) <= len(names)}
+    taken = {p for kind in scarce for p in named.get(kind, ())}
+    return [p for p in letters.parameters if p not in taken]
 
 
 def _choices(
@@ -318,11 +325,18 @@ def _choices(
         parts = permutations(names, len(usual))
         chosen += [dict(zip(part, usual, strict=True)) for part in islice(parts, MAX_CHOICES)]
     same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
+    same = [one for one in same if not _has_partner(one[names[0]], usual)]
     chosen.sort(key=lambda one: sum(_index(name) != _index(one[name]) for name in one))
     others = [*chosen, *(one for one in same if one not in chosen)]
     if len(own) == len(names):
         return [own, *(one for one in others if one != own)]
     return others if named else [{}, *others]
+
+
+def _has_partner(letter: str, usual: Sequence[str]) -> bool:
+    """Whether a letter with an index stands beside the same one with another, as r1 beside r2."""
+    stem = letter.rstrip("0123456789")
+    return any(one != letter and one.rstrip("0123456789") == stem for one in usual)
 
 
 def _index(name: str) -> str:
@@ -331,18 +345,31 @@ def _index(name: str) -> str:
 
 
 def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ...]]:
-    """The coordinates on which each letter of a force acts: none, or one of them."""
-    usual = letters.of_kind(kind)[:MAX_FORCES]
+    """The coordinates on which each letter of a force acts: none, or one of them.
+
+    Where no energy is stated, a letter stands in an equation, and most likely acts.
+    """
+    usual = _letters_of_loads(letters, kind)
     choices = product(*([None, *range(n)] for _ in usual))
-    return [
+    result = [
         tuple((name, index) for name, index in zip(usual, choice, strict=True) if index is not None)
         for choice in choices
     ]
+    return result if letters.quantities else sorted(result, key=len, reverse=True)
 
 
 def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
     """What letters of friction damp: one coordinate each, or one of them everything."""
     one_each: list[tuple[tuple[str, Damped], ...]] = [*loads(letters, "damping", n)]
-    names = letters.of_kind("damping")[:MAX_FORCES]
+    names = _letters_of_loads(letters, "damping")
     everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
     return [*one_each, *(((name, damped),) for name in names for damped in everything)]
+
+
+def _letters_of_loads(letters: Letters, kind: str) -> list[str]:
+    """Letters of a kind of loads; of friction else those of no kind, if no energy is stated."""
+    usual = letters.of_kind(kind)
+    if not usual and kind == "damping" and not letters.quantities:
+        known = {p for one in {*UNITS.values()} for p in letters.of_kind(one)}
+        usual = [p for p in letters.parameters if p not in known]
+    return usual[:MAX_FORCES]

@@ -175,9 +175,11 @@ class _Evidence:
         terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
         slips = max(self._misfits, len(terms) if self._has_energy else 0)
         few = max(1, min(self._holding, max(2, self._holding // 2)))
-        is_several = (self._has_energy or self._changes_loads) and len(self._wrong) > 1
+        is_unsure = self._has_energy or self._changes_loads or self._are_signs
+        is_several = is_unsure and len(self._wrong) > 1
         has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
-        return self._is_known and (self._is_partial or not has_all or has_none or slips > few)
+        is_open = self._is_partial or self._candidate.is_guess
+        return self._is_known and (is_open or not has_all or has_none or slips > few)
 
     @property
     def _changes_loads(self) -> bool:
@@ -185,6 +187,12 @@ class _Evidence:
         loads = {name for name, _ in (*self._candidate.forces, *self._candidate.friction)}
         terms = (t for one in self._wrong for t in one.verdict.corrections)
         return any(loads & {*WORD.findall(f"{t.wrong} {t.correct}")} for t in terms)
+
+    @property
+    def _are_signs(self) -> bool:
+        """Whether all corrections are of signs, as with another direction of a coordinate."""
+        terms = [t for one in self._wrong for t in one.verdict.corrections]
+        return all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
 
     @property
     def _is_guess(self) -> bool:
@@ -259,6 +267,10 @@ class _Evidence:
             and k not in self._candidate.stating
             and formula.subject not in self._shown
         }
+
+
+def _unsigned(term: str) -> str:
+    return term.lstrip("+- ").removeprefix("(").removesuffix(")").replace(" ", "")
 
 
 def _noted(result: SideVerdict, note: str) -> SideVerdict:
