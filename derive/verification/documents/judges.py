@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import chain, product
 from typing import TypeAlias
 
+from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
@@ -59,6 +60,14 @@ class Judges:
         if id(candidate) not in self._judges:
             self._judges[id(candidate)] = candidate, self._judge(candidate)
         return self._judges[id(candidate)][1]
+
+    def has_motions(self, candidate: SystemCandidate) -> bool:
+        """Whether the constraints of a candidate can be satisfied."""
+        try:
+            self.judge(candidate)
+        except ExpressionError:
+            return False
+        return True
 
     def _judge(self, candidate: SystemCandidate) -> Judge:
         statements, formulas = self.statements, self.statements.formulas

@@ -185,7 +185,8 @@ def _best(
         basis = -1 if has_absent_parts else BASES.index(match.candidate.basis)
         return match.score, -len(match.failed), basis
 
-    best = max(supported, key=rank, default=None)  # the first of several with the same rank
+    supported.sort(key=rank, reverse=True)  # the first of several with the same rank
+    best = next((one for one in supported if judges.has_motions(one.candidate)), None)
     if best is None:
         # of a stated system another formula can follow, such as for small angles
         stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]

@@ -363,7 +363,9 @@ def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
     one_each: list[tuple[tuple[str, Damped], ...]] = [*loads(letters, "damping", n)]
     names = _letters_of_loads(letters, "damping")
     everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
-    return [*one_each, *(((name, damped),) for name in names for damped in everything)]
+    alone = [((name, damped),) for name in names for damped in everything]
+    full = sum(len(one) == len(names) for one in one_each) if one_each[0] else 0
+    return [*one_each[:full], *alone, *one_each[full:]]
 
 
 def _letters_of_loads(letters: Letters, kind: str) -> list[str]:

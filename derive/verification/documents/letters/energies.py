@@ -154,7 +154,7 @@ def stated_system(
     own = sorted((s for s in used if s.name in names and s not in q), key=str)
     masses = [s for s in own if names[s.name] in letters.of_kind("mass")]
     for largest in (None, *masses):
-        with suppress(SystemDefinitionError, ValueError):
+        with suppress(SystemDefinitionError, NotImplementedError, ValueError):
             system = System(
                 name, title, [Coordinate(one, "m", "a coordinate") for one in q],
                 [Parameter(s, "m" if is_length(names[s.name]) else "1",

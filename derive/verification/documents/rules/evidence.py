@@ -29,6 +29,7 @@ from derive.verification.documents.rules.consequences import (
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import POINT, WORD, DocumentFormula
 from derive.verification.judging.engine import joined
+from derive.verification.judging.verdict import Correction
 
 #: Kinds of formulas that no other case of the system gives.
 OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
@@ -159,8 +160,12 @@ class _Evidence:
             return other_case
         if any(index in word for index in self._other_indices for word in formula.words):
             return other_case
-        if self._is_weak or self._unsure & {*formula.words}:
+        if self._is_weak or self._unsure & {*formula.words} or self._is_of_loads(result):
             return UNSUPPORTED
+        if prescribed := self._prescribed(number):
+            return f"it can hold with line {prescribed}"
+        if formula.subject in self._restated:
+            return other_case
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
             return other_case if _is_driven(self._candidate) else ""
         if self._is_tie or _adds_letters(formula, result, self._candidate):
@@ -188,9 +193,44 @@ class _Evidence:
     @property
     def _changes_loads(self) -> bool:
         """Whether a correction changes a force or friction, the letter of which can be another."""
+        return any(self._loads_in(t) for one in self._wrong for t in one.verdict.corrections)
+
+    def _loads_in(self, term: Correction) -> set[str]:
+        """The letters of forces and friction in a term or in its correction."""
         loads = {name for name, _ in (*self._candidate.forces, *self._candidate.friction)}
-        terms = (t for one in self._wrong for t in one.verdict.corrections)
-        return any(loads & {*WORD.findall(f"{t.wrong} {t.correct}")} for t in terms)
+        return loads & {*WORD.findall(f"{term.wrong} {term.correct}")}
+
+    def _is_of_loads(self, result: SideVerdict) -> bool:
+        """Whether a known system differs in the letters of forces and friction alone."""
+        terms = result.verdict.corrections
+        return self._is_known and bool(terms) and all(map(self._loads_in, terms))
+
+    def _prescribed(self, number: int) -> int | None:
+        """The line of a special motion with which an equation can hold.
+
+        It gives a coordinate as a function of time, the rates of which the equation states, or of
+        other coordinates, which stand in its place.
+        """
+        formula, own = self._results[number][0], {*self._candidate.coordinates}
+        given = {*self._candidate.given, *self._candidate.stating}
+        for k, (other, result) in enumerate(self._results):
+            q = other.subject
+            if k in given or q not in own or result.verdict.verdict != "context":
+                continue
+            if order(formula.subject) and stem(formula.subject) == q and "t" in other.words:
+                return self._lines[k]
+            is_before = k < number and (own - {q}) & {*other.words}
+            if is_before and q not in map(stem, formula.words):
+                return self._lines[k]
+        return None
+
+    @cached_property
+    def _restated(self) -> set[str]:
+        """Positions that are stated again, of a system with which nothing else holds."""
+        if self._candidate.basis != "positions" or self._holding:
+            return set()
+        counts = Counter(formula.subject for formula, _ in self._results)
+        return {name for name, count in counts.items() if count > 1 and POINT.match(name)}
 
     @property
     def _are_signs(self) -> bool:

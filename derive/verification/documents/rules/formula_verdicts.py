@@ -49,6 +49,8 @@ DECIMAL = re.compile(r"\d\.\d")
 EITHER = f"it contradicts another component of the position: {UNDECIDED}"
 #: The note on formulas of which the system follows.
 STATES = "it states the system"
+#: An exponent that is no power.
+FIRST_POWER = re.compile(r"\*\*1(?![\d./])")
 
 
 class Judge:
@@ -86,18 +88,31 @@ class Judge:
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
-        result = self._verdict(formula)
+        try:
+            result = self._verdict(formula)
+        except (ExpressionError, NotImplementedError) as error:  # it has no value at a state
+            return plain("context", formula, f"not judged: {error}")
         if formula.occurrence in self._stating and result.verdict.verdict in CORRECT:
             return plain("definition", formula, STATES)
         if result.verdict.verdict == "wrong" and "dots" in formula.words:
             return plain("context", formula, "dots stand for some of its terms")
+        if result.verdict.verdict == "wrong" and self._differentiates_a_constant(formula):
+            return plain("context", formula, "a derivative can hold a constant of motion")
         return result
+
+    def _differentiates_a_constant(self, formula: DocumentFormula) -> bool:
+        """Whether a derivative contains a letter for a function of velocities, as ℓ of m r² φ̇."""
+        names, rates = self._namespace.all_names, self._namespace.derivation.system.qdot
+        own = {*formula.words} & {*self._namespace.defining}
+        return "diff" in formula.words and any(depends_on(names[word], rates) for word in own)
 
     def _verdict(self, formula: DocumentFormula) -> SideVerdict:
         if not formula.relations:
             return plain("context", formula, "it is no statement")
         if {*formula.relations} - {*EQUALITIES}:
             return plain("context", formula, "it is no equation")
+        if any(FIRST_POWER.search(side.text) for side in formula.sides):
+            return plain("context", formula, "its superscripts are indices")
         if formula.is_update:
             return plain("context", formula, "it is a step in time")
         if formula.subject in INDICES or self._others.states_value(formula):

@@ -38,11 +38,17 @@ class SmallMotions:
             return False
 
     def holds(
-        self, difference: sp.Expr, model: ReferenceSystem, *, is_displaced: bool = False
+        self,
+        difference: sp.Expr,
+        model: ReferenceSystem,
+        *,
+        is_displaced: bool = False,
+        is_first_order: bool = False,
     ) -> bool:
         """Whether a difference that is linear in the state vanishes along small motions.
 
-        With `is_displaced`, coordinates in it are displacements from the equilibrium.
+        With `is_displaced`, coordinates in it are displacements from the equilibrium; with
+        `is_first_order`, it need not be linear.
         """
         system = self._derivation.system
         state = (*system.q, *system.qdot, *system.qddot)
@@ -51,9 +57,13 @@ class SmallMotions:
             return False
         scaled, is_zero = self._scaled(difference), model.context.is_zero
         try:
-            if not is_zero(scaled.subs(EPSILON, 0)) or not is_zero(scaled.diff(EPSILON, 2)):
+            if not is_zero(scaled.subs(EPSILON, 0)):
+                return False
+            if not is_first_order and not is_zero(scaled.diff(EPSILON, 2)):
                 return False
             linear = sp.expand(scaled.diff(EPSILON).subs(EPSILON, 0))
+            if is_first_order and linear == 0:
+                return True
             if not linear.is_Add:
                 return False  # a term that vanishes by itself, as r_ddot does, has no right factor
             if self.accelerations is not None:
