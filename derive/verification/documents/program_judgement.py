@@ -1,10 +1,16 @@
 """Verdicts on the equations of programs, and on their methods of integration."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from derive.reading.latex.tree import Letter, Statement
-from derive.reading.programs.program import Finding, Program, ProgramEquation
+from derive.reading.programs.program import (
+    Finding,
+    Program,
+    ProgramEquation,
+    RateFunction,
+)
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letter_meanings import (
     Interpretation,
@@ -12,6 +18,7 @@ from derive.verification.documents.letter_meanings import (
     interpretation,
     unopposed,
 )
+from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.hints import Hints, convention, without_meaning
 from derive.verification.documents.pages.verdicts_in_place import (
     METHOD,
@@ -20,42 +27,117 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
 )
 from derive.verification.documents.rules.corrected_formulas import inserted, source_span
-from derive.verification.documents.rules.evidence import weighed
+from derive.verification.documents.rules.evidence import HOLDING, weighed
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.judging.verdict import VerdictName
 
 #: Names, numbers and signs of an equation.
 WORD_OR_SIGN = re.compile(r"\w+|\S")
+#: Names of angular velocities.
+ANGULAR = re.compile(r"(d?_?(omega|Omega|theta|phi|psi|alpha|beta|ang)|w\d*\b)")
 
 
 def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdicts:
     """Judge the equations of every function of a program, and its method of integration."""
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     judged: list[FormulaVerdict] = []
+    negative = {one.name for one in program.constants if one.value.startswith("-")}
     for function in program.functions:
-        equations, found = function.equations, _interpretation(function.equations, hints)
-        if found.match is None and len(function.short) == len(equations):
-            equations, found = function.short, _interpretation(function.short, hints)
-        if found.match is None:
+        best = _best(function, negative, hints)
+        if best is None:
             note = without_meaning(hints)
             judged += [_plain(equation, note) for equation in function.equations]
             continue
-        candidate = found.match.candidate
-        titles.append(candidate.system.title)
-        conventions.append(convention(candidate))
-        verdicts = found.judges.verdicts(candidate)
-        results = [*weighed(verdicts, candidate, found.contradictions, hints is not None)]
-        contrary = [*alternatives(found, results, {})]
-        others += contrary
-        pairs = zip(equations, unopposed(results, contrary), strict=True)
-        judged += [_judged(equation, result) for equation, (_, result) in pairs]
+        titles.append(best.candidate.system.title)
+        conventions.append(convention(best.candidate))
+        others += best.others
+        judged += best.verdicts
     judged += [_finding(one) for one in program.findings]
     judged.sort(key=lambda one: one.line)
     title, letters = ("; ".join(filter(None, dict.fromkeys(one))) for one in (titles, conventions))
     notes = tuple(_notes(program))
     return DocumentVerdicts(
         program.file, "program", title, tuple(judged), notes, letters, tuple(others)
+    )
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """The verdicts on equations with the meaning of their letters."""
+
+    candidate: SystemCandidate
+    verdicts: tuple[FormulaVerdict, ...]
+    others: tuple[Alternative, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether all equations hold."""
+        return all(one.verdict in HOLDING for one in self.verdicts)
+
+
+def _best(
+    function: RateFunction, negative: Collection[str], hints: Hints | None
+) -> _Reading | None:
+    """The first meaning with which all equations hold, or else the first of all.
+
+    Other spellings only show that equations hold.
+    """
+    best = _reading(function.equations, hints)
+    if best is None and len(function.short) == len(function.equations):
+        best = _reading(function.short, hints)
+    for equations in () if best and best.holds else _spellings(function, negative):
+        other = _reading(equations, hints)
+        if other and other.holds:
+            pairs = zip(other.verdicts, function.equations, strict=True)
+            return replace(other, verdicts=tuple(replace(a, latex=b.text) for a, b in pairs))
+    return best
+
+
+def _reading(equations: Sequence[ProgramEquation], hints: Hints | None) -> _Reading | None:
+    found = _interpretation(equations, hints)
+    if found.match is None:
+        return None
+    candidate = found.match.candidate
+    verdicts = found.judges.verdicts(candidate)
+    results = [*weighed(verdicts, candidate, found.contradictions, hints is not None)]
+    contrary = (*alternatives(found, results, {}),)
+    pairs = zip(equations, unopposed(results, contrary), strict=True)
+    judged = tuple(_judged(equation, result) for equation, (_, result) in pairs)
+    return _Reading(candidate, judged, contrary)
+
+
+def _spellings(
+    function: RateFunction, negative: Collection[str]
+) -> Iterator[tuple[ProgramEquation, ...]]:
+    """Other texts of the equations of a function with the same meaning.
+
+    With names of constants that others define; with velocities, of which nothing is the
+    coordinate, as rates; with negative constants as positive ones with a sign.
+    """
+    equations = function.equations
+    if len(function.short) == len(equations):
+        yield function.short
+    kinds = {one.kind for one in equations}
+    rates = [one.coordinate for one in equations if one.kind == "rate"]
+    if len(kinds) > 1 and rates:
+        turns = {q: ANGULAR.match(q) is not None for q in rates}
+        names = {q: f"{'phi' if turns[q] else 'x'}_of_{q}" for q in rates}
+        pairs = {q: f"{name}_dot" for q, name in names.items()}
+        pairs |= {f"{q}_dot": f"{name}_ddot" for q, name in names.items()}
+        yield _respelled(equations, pairs)
+    if signed := {new: f"(-{new})" for old, new in function.names.items() if old in negative}:
+        yield _respelled(equations, signed)
+
+
+def _respelled(
+    equations: Sequence[ProgramEquation], names: Mapping[str, str]
+) -> tuple[ProgramEquation, ...]:
+    """Equations with other names; their parts have no lines of their own."""
+    word = re.compile("|".join(rf"\b{name}\b" for name in names))
+    return tuple(
+        replace(one, text=word.sub(lambda match: names[match[0]], one.text), origins=())
+        for one in equations
     )
 
 

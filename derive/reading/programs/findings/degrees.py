@@ -4,12 +4,14 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 
+from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.program import Finding
-from derive.reading.programs.syntax.trees import Expression, FunctionCall, Name
+from derive.reading.programs.syntax.trees import Expression, FunctionCall, Member, Name
 
 IN_DEGREES = re.compile(r"(_|\b)deg(ree)?s?$|[a-z\d](Deg|Degrees)$|_deg_", re.IGNORECASE)
 CIRCULAR = ("sin", "cos", "tan")
+CONVERSIONS = ("radians", "deg2rad", "toRadians", "to_radians")
 
 
 def named_in_degrees(value: Expression, function: str) -> Iterator[Finding]:
@@ -23,7 +25,11 @@ def named_in_degrees(value: Expression, function: str) -> Iterator[Finding]:
 
 
 def starts_in_degrees(
-    path: str, start: Expression, values: Mapping[str, Expression], function: str
+    path: str,
+    start: Expression,
+    values: Mapping[str, Expression],
+    function: str,
+    is_fault: bool = True,
 ) -> Iterator[Finding]:
     """An initial angle of more than a turn, such as 120, that is written without pi."""
     while isinstance(start, Name) and start.path in values:
@@ -31,7 +37,7 @@ def starts_in_degrees(
     value = number(start)
     if value is not None and abs(value) > 2 * math.pi and "pi" not in _names(start):
         text = f"{path} starts at {value:g}, and its sine is taken: degrees instead of radians"
-        yield Finding(start.line, "degrees", function, text, True)
+        yield Finding(start.line, "degrees", function, text, is_fault)
 
 
 def takes_degrees(call: FunctionCall) -> bool:
@@ -40,6 +46,16 @@ def takes_degrees(call: FunctionCall) -> bool:
         case FunctionCall(function=Name(path="angleMode"), arguments=(Name(path="DEGREES"),)):
             return True
     return False
+
+
+def is_converted(tree: Expression) -> bool:
+    """Whether an angle in degrees is converted to radians."""
+    match tree:
+        case FunctionCall(function=Name(path=path)) if split(path)[1] in CONVERSIONS:
+            return True
+        case FunctionCall(function=Member(name=name)) if name in CONVERSIONS:
+            return True
+    return any(map(is_converted, tree.parts))
 
 
 def angles(values: list[Expression]) -> set[str]:

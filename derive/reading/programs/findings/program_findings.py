@@ -12,6 +12,7 @@ from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.evaluation.values import root
 from derive.reading.programs.findings.degrees import (
     angles,
+    is_converted,
     named_in_degrees,
     starts_in_degrees,
     takes_degrees,
@@ -186,10 +187,11 @@ class Findings:
             for q, value in updates.recurrences
         ]
         angular = angles(values) & {q for q, *_ in result}
+        converted = {path for path, start in self._starts if is_converted(start)}
         for path, start in self._starts:
             if path in angular:
                 self._findings += starts_in_degrees(
-                    path, start, self._context.constants, region.name
+                    path, start, self._context.constants, region.name, path not in converted
                 )
 
     def _end(
