@@ -37,6 +37,7 @@ ACCELERATIONS = {
         "-omega0**2*x - epsilon*theta/(2*m)",
         "-omega0**2*theta - epsilon*x/(2*I)",
     ],
+    "falling_mass": ["-G*M/r**2"],
     "attracted_mass_2": ["-G*M*x/(x**2 + y**2)**(3/2)", "-G*M*y/(x**2 + y**2)**(3/2)"],
     "attracted_unit_mass_3": [f"-k*{q}/(x**2 + y**2 + z**2)**(3/2)" for q in "xyz"],
     "mass_on_spring_2": [

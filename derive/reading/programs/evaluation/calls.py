@@ -135,7 +135,7 @@ class Calls(Values):
         value = self.variables.get(path)
         if isinstance(value, Lambda):
             return value.function
-        return None if path in self.parameters else self.context.function(path, self.owner)
+        return self.context.function(path, self.owner)  # passed by its name, if a parameter
 
     def _inlined(
         self, call: FunctionCall, function: Definition, given: tuple[Expression, ...]

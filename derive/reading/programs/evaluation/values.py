@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from derive.reading.programs.evaluation.arrays import combined, entries, flat, transposed
-from derive.reading.programs.evaluation.context import ProgramContext
+from derive.reading.programs.evaluation.context import OWN_OBJECTS, ProgramContext, assigned
 from derive.reading.programs.evaluation.counted_loops import BODIES, bound, integer, mentions
 from derive.reading.programs.evaluation.mathematics import constant
 from derive.reading.programs.syntax.code import Lambda
@@ -112,6 +112,8 @@ class Values:
             return NumberLiteral(line, str(BODIES))
         if (value := constant(line, path)) is not None:
             return value
+        if (result := self._property(line, path)) is not None:
+            return result
         shared = self.context.shared.get(path)
         if shared is None or path in self._open | self.fixed or self._is_parameter(path):
             return Name(line, path)
@@ -119,6 +121,18 @@ class Values:
         value = self.value(shared)
         self._open.remove(path)
         return value
+
+    def _property(self, line: int, path: str) -> Expression | None:
+        """The value of a property, which a function without arguments gives; None for others."""
+        base, _, name = path.partition(".")
+        if base not in OWN_OBJECTS or not name.isidentifier() or path in self.context.variables:
+            return None
+        function = self.context.function(path, self.owner)
+        if function is None or len(function.parameters) > (base in ("self", "obj")):
+            return None
+        if any("." in one for one in assigned(function.body)):  # which may be passed on
+            return None
+        return self.called(FunctionCall(line, Member(line, Name(line, base), name), ()))
 
     def _is_parameter(self, path: str) -> bool:
         name = path.partition(".")[0]

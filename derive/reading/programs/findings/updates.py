@@ -68,6 +68,11 @@ class Pair:
     has_other_terms: bool
 
 
+def is_product(tree: Expression) -> bool:
+    """Whether a value is a product or a quotient."""
+    return isinstance(tree, OperatorExpression) and tree.operator in ("*", "/")
+
+
 class Updates:
     """The updates of a function or a loop; under conditions, without or with `is_met`."""
 
@@ -93,14 +98,15 @@ class Updates:
         values = [step.value for step in self._steps] if is_timed else []
         used = {path for value in values for path in names(value)}
         self._old = {step.path: previous(step.path, used) for step in self._steps}
+        before = {path for step in self._steps for path in names(step.value)}
         #: Values that variables take, by identity.
         self._owners: dict[int, str] = {}
         for step in self._steps:
             value = self._chosen(step.value, step.path)
             is_copy = id(value) in self._owners and LAST.fullmatch(step.path)
-            if not isinstance(value, Name | NumberLiteral) and not is_copy:
+            is_change = step.path not in before and is_product(value)  # such as dv = a*dt
+            if not isinstance(value, Name | NumberLiteral) and not (is_copy or is_change):
                 self._owners[id(value)] = self._old[step.path]
-        before = {path for step in self._steps for path in names(step.value)}
         for path, value in final.items():
             self._own_sums(self._old.get(path, path), value, before)
         result = (self._update(path, value) for path, value in final.items())
@@ -160,6 +166,10 @@ class Updates:
                 id(earlier)
             ) == old or earlier == Name(0, old):
                 damping, damping_line, value = factor, value.line, earlier
+            case OperatorExpression(
+                operator="*", operands=(Expression() as earlier, Name() | NumberLiteral() as factor)
+            ) if Name(0, old) in (one for _, one in terms(earlier, self._is_whole)):
+                damping, damping_line, value = factor, value.line, inner(earlier)
         line = value.line
         first = [*terms(value, lambda tree: self._owners.get(id(tree), old) != old)]
         if len(first) == 1 and first[0][1] != Name(0, old):

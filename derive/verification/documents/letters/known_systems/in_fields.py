@@ -11,12 +11,20 @@ from derive.system.system import System
 from derive.verification.documents.letters.known_systems.parts_by_name import g, lengths, parameters
 
 x, y, z = symbols("x y z", real=True)
-m, M, G, k, l, c, mu, q, B = symbols("m M G k l c mu q B", positive=True)
+m, M, G, k, l, c, mu, q, B, r = symbols("m M G k l c mu q B r", positive=True)
 Omega, latitude = symbols("Omega latitude", positive=True)
 
 
 def systems_in_fields() -> Iterator[System]:
     """Masses in fields: of centres, of each other, uniform ones."""
+    for name, strength, constants in (
+        ("mass", G * M * m, parameters(m="kg", M="kg", G="m^3/(kg s^2)")),
+        ("unit_mass", k * m, parameters(m="kg", k="m^3/s^2")),
+    ):
+        yield System(
+            f"falling_{name}", "Mass that falls to a centre", lengths(r), constants,
+            [PointMass(m, (r, 0))], potential=-strength / r,
+        )  # fmt: skip
     for place in ((x, y), (x, y, z)):
         yield from _about_a_centre(place)
         yield from _in_uniform_gravity(place)
@@ -42,20 +50,21 @@ def _distance(place: tuple[Symbol, ...]) -> Expr:
 
 
 def _about_a_centre(place: tuple[Symbol, ...]) -> Iterator[System]:
-    where, r, n = "in the plane" if len(place) == 2 else "in space", _distance(place), len(place)
+    where, n = "in the plane" if len(place) == 2 else "in space", len(place)
+    distance = _distance(place)
     yield System(
         f"attracted_mass_{n}", f"Mass {where}, in the field of another that is fixed",
         lengths(*place), parameters(m="kg", M="kg", G="m^3/(kg s^2)"), [PointMass(m, place)],
-        potential=-G * M * m / r,
+        potential=-G * M * m / distance,
     )  # fmt: skip
     yield System(
         f"attracted_unit_mass_{n}", f"Mass {where}, in the field of a centre", lengths(*place),
-        parameters(m="kg", k="m^3/s^2"), [PointMass(m, place)], potential=-k * m / r,
+        parameters(m="kg", k="m^3/s^2"), [PointMass(m, place)], potential=-k * m / distance,
     )  # fmt: skip
     yield System(
         f"mass_on_spring_{n}", f"Mass on a spring {where}, in gravity", lengths(*place),
         parameters(m="kg", k="N/m", l="m", g="m/s^2"), [PointMass(m, place)],
-        potential=k * (r - l)**2 / 2 + m * g * place[-1],
+        potential=k * (distance - l)**2 / 2 + m * g * place[-1],
     )  # fmt: skip
 
 
