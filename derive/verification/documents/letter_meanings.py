@@ -85,6 +85,7 @@ def interpretation(
     hints: Hints | None = None,
     work: Work | None = None,
     known: Collection[str] = (),
+    are_of_program: bool = False,
 ) -> Interpretation:
     """Find the meaning of letters for which most formulas hold; none where no `work` is left.
 
@@ -93,7 +94,7 @@ def interpretation(
     formulas, others for 1.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
-    letters = replace(letters, elsewhere=frozenset(known))
+    letters = replace(letters, elsewhere=frozenset(known), are_of_program=are_of_program)
     judges, work = Judges(statements, letters), work or Work()
     if hints:
         return _best(judges, hints.candidates(letters), work, 0)
@@ -113,7 +114,7 @@ def _lacks_numbers(match: Match | None, letters: Letters) -> bool:
     """Whether numbers in place of parameters can be meant: nothing holds, or not all without."""
     if match is None or match.holding < 1:
         return True
-    return bool(match.failed and match.candidate.lacking and not letters.quantities)
+    return bool(match.failed and match.candidate.lacking and letters.are_of_program)
 
 
 def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretation:

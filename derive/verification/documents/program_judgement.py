@@ -143,7 +143,7 @@ def _respelled(
 
 def _interpretation(equations: Sequence[ProgramEquation], hints: Hints | None) -> Interpretation:
     statements = Translated(tuple(map(_formula, equations)), (), {})
-    return interpretation(statements, hints)
+    return interpretation(statements, hints, are_of_program=True)
 
 
 def _formula(equation: ProgramEquation) -> DocumentFormula:

@@ -290,7 +290,7 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
     groups: dict[str, list[str]] = {}
     for parameter in system.parameters:
         groups.setdefault(kind_of(parameter), []).append(parameter.symbol.name)
-    spare = _spare(groups, letters)
+    spare = _spare(groups, letters) if letters.are_of_program else []
     choices = (_choices(kind, names, letters, spare) for kind, names in groups.items())
     for choice in _likeliest(*choices):
         used = [letter for one in choice for letter in {*one.values()}]
@@ -325,12 +325,13 @@ def _choices(
         parts = permutations(names, len(usual))
         chosen += [dict(zip(part, usual, strict=True)) for part in islice(parts, MAX_CHOICES)]
     same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
-    same = [one for one in same if not _has_partner(one[names[0]], usual)]
+    if letters.are_of_program:
+        same = [one for one in same if not _has_partner(one[names[0]], usual)]
     chosen.sort(key=lambda one: sum(_index(name) != _index(one[name]) for name in one))
     others = [*chosen, *(one for one in same if one not in chosen)]
     if len(own) == len(names):
         return [own, *(one for one in others if one != own)]
-    return others if named else [{}, *others]
+    return others if named and others else [{}, *others]
 
 
 def _has_partner(letter: str, usual: Sequence[str]) -> bool:
@@ -347,7 +348,7 @@ def _index(name: str) -> str:
 def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ...]]:
     """The coordinates on which each letter of a force acts: none, or one of them.
 
-    Where no energy is stated, a letter stands in an equation, and most likely acts.
+    A letter of a program stands in an equation of motion, and most likely acts.
     """
     usual = _letters_of_loads(letters, kind)
     choices = product(*([None, *range(n)] for _ in usual))
@@ -355,7 +356,7 @@ def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ..
         tuple((name, index) for name, index in zip(usual, choice, strict=True) if index is not None)
         for choice in choices
     ]
-    return result if letters.quantities else sorted(result, key=len, reverse=True)
+    return sorted(result, key=len, reverse=True) if letters.are_of_program else result
 
 
 def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
@@ -364,14 +365,14 @@ def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
     names = _letters_of_loads(letters, "damping")
     everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
     alone = [((name, damped),) for name in names for damped in everything]
-    full = sum(len(one) == len(names) for one in one_each) if one_each[0] else 0
-    return [*one_each[:full], *alone, *one_each[full:]]
+    full = sum(len(one) == len(names) > 0 for one in one_each) if letters.are_of_program else None
+    return [*one_each[:full], *alone, *(one_each[full:] if full is not None else ())]
 
 
 def _letters_of_loads(letters: Letters, kind: str) -> list[str]:
-    """Letters of a kind of loads; of friction else those of no kind, if no energy is stated."""
+    """Letters of a kind of loads; of friction in a program else those of no kind."""
     usual = letters.of_kind(kind)
-    if not usual and kind == "damping" and not letters.quantities:
+    if not usual and kind == "damping" and letters.are_of_program:
         known = {p for one in {*UNITS.values()} for p in letters.of_kind(one)}
         usual = [p for p in letters.parameters if p not in known]
     return usual[:MAX_FORCES]

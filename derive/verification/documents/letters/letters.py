@@ -99,6 +99,7 @@ class Letters:
     multipliers: tuple[str, ...] = ()  # parameters that can be multipliers of constraints
     constraints: tuple[StatedConstraint, ...] = ()
     elsewhere: frozenset[str] = frozenset()  # coordinates of other systems of the document
+    are_of_program: bool = False  # which states accelerations alone
 
     @property
     def column(self) -> str:

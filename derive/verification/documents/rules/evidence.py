@@ -15,9 +15,10 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.generic_values import is_nonzero
 from derive.formulas.syntax import ExpressionError
+from derive.system.parts import Parameter
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
-from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
 from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.rules.consequences import (
     FOLLOWS,
@@ -178,8 +179,12 @@ class _Evidence:
         lacking = {*_lacking(self._results, self._candidate)}
         scales = {*_scales(self._candidate, lacking)}
         has_all = not lacking or (self._misfits == 0 < self._holding and lacking == scales)
-        if lacking or self._candidate.numbers:
-            has_all = has_all and not _is_conservative([formula for formula, _ in self._results])
+        formulas = [formula for formula, _ in self._results]
+        has_units = bool(self._candidate.numbers) and any(
+            order(one.subject) == 2 for one in formulas
+        )
+        if lacking or has_units:  # other accelerations can have a potential of their own
+            has_all = has_all and not _is_conservative(formulas)
         # an energy and an equation that contradict the system alike speak against the system
         terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
         slips = max(self._misfits, len(terms) if self._has_energy else 0)
@@ -201,15 +206,18 @@ class _Evidence:
         return loads & {*WORD.findall(f"{term.wrong} {term.correct}")}
 
     def _is_of_loads(self, result: SideVerdict) -> bool:
-        """Whether a known system differs in the letters of forces and friction alone."""
+        """Whether a known system has other letters of forces and friction, and else agrees."""
         terms = result.verdict.corrections
-        return self._is_known and bool(terms) and all(map(self._loads_in, terms))
+        written = [{*WORD.findall(t.wrong)} & self._loads_in(t) for t in terms]
+        other = [{*WORD.findall(t.correct)} & self._loads_in(t) for t in terms]
+        is_other = all(a and b and a != b for a, b in zip(written, other, strict=True))
+        return self._is_known and bool(terms) and is_other
 
     def _prescribed(self, number: int) -> int | None:
         """The line of a special motion with which an equation can hold.
 
-        It gives a coordinate as a function of time, the rates of which the equation states, or of
-        other coordinates, which stand in its place.
+        It gives a coordinate as a function of time, the acceleration of which the equation states,
+        or of other coordinates, which stand in its place.
         """
         formula, own = self._results[number][0], {*self._candidate.coordinates}
         given = {*self._candidate.given, *self._candidate.stating}
@@ -217,7 +225,8 @@ class _Evidence:
             q = other.subject
             if k in given or q not in own or result.verdict.verdict != "context":
                 continue
-            if order(formula.subject) and stem(formula.subject) == q and "t" in other.words:
+            is_acceleration = order(formula.subject) == 2 and stem(formula.subject) == q
+            if is_acceleration and "t" in other.words:
                 return self._lines[k]
             is_before = k < number and (own - {q}) & {*other.words}
             if is_before and q not in map(stem, formula.words):
@@ -234,9 +243,16 @@ class _Evidence:
 
     @property
     def _are_signs(self) -> bool:
-        """Whether all corrections are of signs, as with another direction of a coordinate."""
+        """Whether all corrections are of the sign of gravity, as with angles from upright."""
+        own, words = self._candidate.parameters, Counter[str]()
+        gravity = {own.get(p.symbol.name, "") for p in _gravities(self._candidate)}
+        for formula, one in self._results:
+            if one.verdict.verdict == "wrong":
+                words.update(w for side in formula.sides for w in WORD.findall(side.text))
         terms = [t for one in self._wrong for t in one.verdict.corrections]
-        return all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
+        corrected = Counter(word for t in terms for word in WORD.findall(t.wrong))
+        is_whole = all(words[one] == corrected[one] for one in gravity)
+        return is_whole and all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
 
     @property
     def _is_guess(self) -> bool:
@@ -311,6 +327,11 @@ class _Evidence:
             and k not in self._candidate.stating
             and formula.subject not in self._shown
         }
+
+
+def _gravities(candidate: SystemCandidate) -> Iterator[Parameter]:
+    """The parameters of a system that are gravity."""
+    return (one for one in candidate.system.parameters if kind_of(one) == "gravity")
 
 
 def _unsigned(term: str) -> str:

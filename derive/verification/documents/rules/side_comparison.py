@@ -108,6 +108,7 @@ class SideComparison:
         if self._linear.holds(left - right, self._model):
             return plain("verified", formula, small)
         is_linear = first.text in self._namespace.defining and not right.atoms(sp.Function)
+        is_linear &= depends_on(right, self._namespace.derivation.system.qddot)
         if is_linear and self._linear.holds(left - right, self._model, is_first_order=True):
             return plain("verified", formula, small)
         match syntax_tree(side.text):
