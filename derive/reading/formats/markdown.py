@@ -13,6 +13,7 @@ KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
 MARGIN = r"^[ \t>]*+(?:(?:[-*+]|\d{1,9}[.)])[ \t]++)?"
 LIST_ITEM = re.compile(r"[ \t]*+(?:[-*+]|\d{1,9}[.)])[ \t]++(?=\S)")
 INDENTED = "    "
+INDENTED_ENVIRONMENT = re.compile(r"\s*+\\begin\{(?:equation|align|gather|multline)\*?\}\s*+$")
 QUOTED = re.compile(r"^[ \t]*+>[ \t>]*+", re.M)
 #: Backslashes that Markdown renderers remove, and the characters that they leave.
 SINGLE = r"(?<!\\)\\([_*])|\\\\(\\\\)"
@@ -115,8 +116,18 @@ def _is_in_sentence(text: str, excerpt: Excerpt) -> bool:
 
 
 def _indented_code(text: str) -> frozenset[int]:
-    """Where lines of indented code start: after an empty line, and four columns into the text."""
-    starts, position, margin = [], 0, 0
+    """Where lines of indented code start: after an empty line, and four columns into the text.
+
+    Environments of formulas are no code, nor is what stands between them.
+    """
+    starts = sorted(_indented_lines(text))
+    lines = [text[start : text.find("\n", start)] for start in starts]
+    has_formulas = any(INDENTED_ENVIRONMENT.match(line) for line in lines)
+    return frozenset() if has_formulas else frozenset(starts)
+
+
+def _indented_lines(text: str) -> list[int]:
+    starts, position, margin = list[int](), 0, 0
     is_code_allowed = True
     for line in text.split("\n"):
         spaced = line.expandtabs(4)
@@ -136,7 +147,7 @@ def _indented_code(text: str) -> frozenset[int]:
             else:
                 is_code_allowed = False
         position += len(line) + 1
-    return frozenset(starts)
+    return starts
 
 
 def _fences_of_boxes(text: str) -> frozenset[int]:

@@ -271,8 +271,7 @@ def _of_templates(
     """Candidates of one known system after another."""
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
-        is_free, has_energies = bool(letters.constraints), bool(letters.quantities)
-        for system in templates(count, has_rods, is_free, has_energies):
+        for system in templates(letters, count, has_rods):
             yield [*candidates(system, letters, numbers)]
 
 

@@ -49,6 +49,8 @@ DECIMAL = re.compile(r"\d\.\d")
 EITHER = f"it contradicts another component of the position: {UNDECIDED}"
 #: The note on formulas of which the system follows.
 STATES = "it states the system"
+#: A small angle in place of its sine.
+SMALL_ANGLE = re.compile(r"(?:sin|tan)\((\w+)\) = \1")
 #: An exponent that is no power.
 FIRST_POWER = re.compile(r"\*\*1(?![\d./])")
 
@@ -111,6 +113,8 @@ class Judge:
             return plain("context", formula, "it is no statement")
         if {*formula.relations} - {*EQUALITIES}:
             return plain("context", formula, "it is no equation")
+        if SMALL_ANGLE.fullmatch(" = ".join(side.text for side in formula.sides)):
+            return plain("context", formula, "it is an approximation")
         if any(FIRST_POWER.search(side.text) for side in formula.sides):
             return plain("context", formula, "its superscripts are indices")
         if formula.is_update:

@@ -14,6 +14,7 @@ from derive.verification.documents.letters.known_systems.mechanisms import mecha
 from derive.verification.documents.letters.known_systems.of_documents import systems_of_documents
 from derive.verification.documents.letters.known_systems.oscillating import oscillating_systems
 from derive.verification.documents.letters.known_systems.uniform_rods import uniform_rods
+from derive.verification.documents.letters.letters import Letters
 
 #: Systems that ship and are tried, the commonest first.
 SHIPPED = (
@@ -21,20 +22,27 @@ SHIPPED = (
     "double_bar_pendulum swinging_atwood rotating_hoop driven_pendulum coupled_pendulums "
     "henon_heiles foucault_pendulum"
 ).split()
-#: The same where no energy is stated.
+#: Systems of programs that are tried for documents as well, where no energy is stated.
+OF_EQUATIONS = frozenset(
+    "forced_pendulum_cosine scaled_forced_pendulum_cosine attracted_mass_2 attracted_unit_mass_2 "
+    "cubic_potential bodies_2_2".split()
+)
+#: Systems that ship and are tried for programs alone.
 SHIPPED_OF_PROGRAMS = "furuta_pendulum heavy_top duffing".split()
 
 
-def templates(
-    count: int, has_rods: bool = True, is_free: bool = False, has_energies: bool = True
-) -> Iterator[System]:
-    """Yield the systems with so many coordinates.
+def templates(letters: Letters, count: int, has_rods: bool = True) -> Iterator[System]:
+    """Yield the systems with so many coordinates, of uniform rods as well or without these.
 
-    With uniform rods, free bodies, or those of programs, in which no energy is stated; or without.
+    Free bodies are tried where constraints are stated; other systems of programs for these, and
+    some of them for documents that state no energy.
     """
-    groups = [_free()] if is_free else []
+    groups = [_free()] if letters.constraints else []
     groups += [_usual(), *([_rods()] if has_rods else [])]
-    groups += [] if has_energies else [_of_programs()]
+    if letters.are_of_program:
+        groups.append(_of_programs())
+    elif not letters.quantities:
+        groups.append(tuple(one for one in _of_programs() if one.name in OF_EQUATIONS))
     yield from (one for group in groups for one in group if len(one.coordinates) == count)
 
 
