@@ -260,3 +260,113 @@ def test_a_limit_of_0_is_that_of_a_contact() -> None:
     text = "def f(t, y, k):\n    x, v = y\n    return v, -k*max(x, 0)\n"
     assert not read_program(text, "Python").equations
     assert read_program(text.replace("0)", "1e-9)"), "Python").equations
+
+
+def test_a_small_limit_only_keeps_a_denominator_from_zero() -> None:
+    text = "def f(t, y, k, m, l):\n    x, v = y\n    return v, -k*x/max(m*l**2, LIMIT)\n"
+    (equation,) = read_program(text.replace("LIMIT", "1e-4"), "Python").equations
+    assert equation.text == "x_ddot = -k*x/(m*l**2)"
+    assert not read_program(text.replace("LIMIT", "0.5"), "Python").equations
+
+
+@pytest.mark.parametrize(
+    "change", ["v += a*dt\n    x += v*dt", "dv = a*dt\n    v += dv\n    dx = v*dt\n    x += dx"]
+)
+def test_changes_can_have_names(change: str) -> None:
+    text = f"x, v = 1.0, 0.0\nwhile x > 0:\n    a = -k*x/m\n    {change}\n"
+    assert [one.text for one in read_program(text, "Python").equations] == ["x_ddot = -k*x/m"]
+
+
+def test_a_velocity_can_be_damped_after_its_change() -> None:
+    text = """
+class Swing {
+    update() {
+        this.acc = (-this.g / this.l) * Math.sin(this.angle);
+        this.rate = (this.rate + this.acc) * this.damping;
+        this.angle += this.rate;
+    }
+}
+"""
+    program = read_program(text, "JavaScript")
+    assert [one.text for one in program.equations] == ["angle_ddot = -g/l*sin(angle)"]
+    assert "damping" in [one.kind for one in program.findings]
+
+
+PROPERTY = {
+    "Python": """
+class Swing:
+    @property
+    def acc(self):
+        return -self.g/self.l*np.sin(self.angle)
+
+    def step(self, dt):
+        self.rate += self.acc*dt
+        self.angle += self.rate*dt
+""",
+    "TypeScript": """
+class Swing {
+    get acc(): number {
+        return -this.g / this.l * Math.sin(this.angle);
+    }
+    step(): void {
+        this.rate += this.acc * this.dt;
+        this.angle += this.rate * this.dt;
+    }
+}
+""",
+}
+
+
+@pytest.mark.parametrize("language", PROPERTY)
+def test_properties_have_the_values_of_their_functions(language: str) -> None:
+    program = read_program(
+        PROPERTY[language], "JavaScript" if language == "TypeScript" else language
+    )
+    assert [one.text for one in program.equations] == ["angle_ddot = -g/l*sin(angle)"]
+
+
+def test_functions_can_be_passed_by_their_names() -> None:
+    text = """
+def dx(x, v):
+    return v
+
+def dv(x, v):
+    return -k*x
+
+def step(x, v, dx, dv, h):
+    k1, l1 = dx(x, v)*h, dv(x, v)*h
+    k2, l2 = dx(x + k1/2, v + l1/2)*h, dv(x + k1/2, v + l1/2)*h
+    k3, l3 = dx(x + k2/2, v + l2/2)*h, dv(x + k2/2, v + l2/2)*h
+    k4, l4 = dx(x + k3, v + l3)*h, dv(x + k3, v + l3)*h
+    x += (k1 + 2*k2 + 2*k3 + k4)/6
+    v += (l1 + 2*l2 + 2*l3 + l4)/6
+    return x, v
+"""
+    program = read_program(text, "Python")
+    assert [one.text for one in program.equations] == ["x_ddot = -k*x"]
+
+
+@pytest.mark.parametrize("first", ["60", "1.0"])
+def test_a_default_in_degrees_can_be_replaced_by_a_converted_angle(first: str) -> None:
+    text = f"""
+class Swing:
+    def __init__(self):
+        self.angle = {first}
+        self.rate = 0.0
+
+    def read(self):
+        self.angle = math.radians(float(input()))
+
+    def step(self, dt):
+        self.rate -= self.g/self.l*math.sin(self.angle)*dt
+        self.angle += self.rate*dt
+"""
+    faults = [
+        one.is_fault for one in read_program(text, "Python").findings if one.kind == "degrees"
+    ]
+    assert faults == [False] * (first == "60")
+    always = text.replace("math.radians(float(input()))", "float(input())")
+    faults = [
+        one.is_fault for one in read_program(always, "Python").findings if one.kind == "degrees"
+    ]
+    assert faults == [True] * (first == "60")

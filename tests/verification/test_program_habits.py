@@ -213,3 +213,78 @@ def rates(t, y, u, M, m, l, g, Kd):
 """
     assert equations(judged(text)) == ["verified"] * 2
     assert equations(judged(text.replace("+ a*np", "- a*np"))) == ["verified", "wrong"]
+
+
+SEGWAY = """
+function dy = rates(t, y)
+    theta = y(1); w = y(2); u = y(3);
+    a = (M + m)*r^2 + J;
+    b = m*r*l*cos(theta);
+    c = m*l^2 + I;
+    dy(1) = w;
+    dy(2) = (g*a*m*l*sin(theta) - b*m*r*l*sin(theta)*w^2 - (a + b)*tau)/(a*c - b^2);
+    dy(3) = (c*m*r*l*sin(theta)*w^2 - g*b*m*l*sin(theta) + (b + c)*tau)/(a*c - b^2);
+end
+"""
+
+
+def test_a_velocity_can_stand_without_its_coordinate() -> None:
+    program = judge_program(read_program(SEGWAY.replace("u = y(3)", "omega_r = y(3)"), "MATLAB"))
+    assert equations(program) == ["verified", "verified"]
+    assert [one.latex.partition(" = ")[0] for one in program.formulas] == [
+        "theta_ddot", "omega_r_dot",
+    ]  # fmt: skip
+
+
+THROWN = """
+g, k = -9.8, -0.01
+def rates(t, s):
+    x, y, u, v = s
+    speed = np.sqrt(u**2 + v**2)
+    return u, v, k*speed*u, g + k*speed*v
+"""
+
+
+def test_constants_can_be_negative() -> None:
+    assert equations(judged(THROWN)) == ["verified", "verified"]
+    positive = equations(judged(THROWN.replace("-0.01", "0.01")))
+    assert positive == ["context", "context"]
+
+
+def test_masses_can_have_any_letters_where_no_other_is_usual() -> None:
+    text = """
+def rates(t, y, r1, r2, l1, l2, g):
+    a, b, v, w = y
+    d = r1 + r2*sin(a - b)**2
+    p = -r2*l2*w**2*sin(a - b) - (r1 + r2)*g*sin(a)
+    q = l1*v**2*sin(a - b) - g*sin(b)
+    return v, w, (p - r2*cos(a - b)*q)/(l1*d), ((r1 + r2)*q - cos(a - b)*p)/(l2*d)
+"""
+    assert equations(judged(text)) == ["verified", "verified"]
+    # a guess of letters verifies, and accuses of nothing
+    slip = equations(judged(text.replace("(r1 + r2)*q", "(r1 + 2*r2)*q")))
+    assert "wrong" not in slip
+
+
+def test_a_length_with_an_index_is_not_that_of_another_rod() -> None:
+    text = """
+def rates(t, y, m1, m2, r1, r2, g):
+    a, b, v, w = y
+    d = m1 + m2*sin(a - b)**2
+    q = r1*v**2*sin(a - b) - g*sin(b)
+    p = -m2*r2*w**2*sin(a - b) - (m1 + m2)*g*sin(a)
+    return v, w, (p - m2*cos(a - b)*q)/(r1*d), ((m1 + m2)*q - cos(a - b)*p)/(r2*d)
+"""
+    assert equations(judged(text)) == ["verified", "verified"]
+    slip = judged(text.replace("-m2*r2*w**2", "-m2*r1*w**2"))
+    assert "verified" not in equations(slip)[:1]
+
+
+def test_friction_can_have_any_letter() -> None:
+    text = """
+def rates(t, y, g, length, res):
+    a, v = y
+    return v, -g/length*sin(a) - res*v
+"""
+    assert equations(judged(text)) == ["verified"]
+    assert equations(judged(text.replace("res*v", "res*a"))) != ["verified"]

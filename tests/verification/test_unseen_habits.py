@@ -584,3 +584,80 @@ $$\frac{d}{dt}(m\dot r) = m r\dot\theta^2 + m r\sin^2\theta\,\dot\varphi^2 - m g
 $$\frac{d}{dt}(m r^2\dot\theta) = m r^2\sin\theta\cos\theta\,\dot\varphi^2 + m g r\sin\theta$$
 $$\frac{d}{dt}(m r^2\sin^2\theta\,\dot\varphi) = 0$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+ROD_ON_CART = r"""
+$$T = \frac12 M\dot x^2 + \frac12 m(\dot x^2 - l\dot x\dot\theta\cos\theta
+ + \frac13 l^2\dot\theta^2)$$
+$$U = \frac12 m g l\cos\theta$$
+$$u = (M + m)\ddot x + \frac12 m l(-\ddot\theta\cos\theta + \dot\theta^2\sin\theta)$$
+"""
+
+
+@pytest.mark.parametrize(("formula", "expected"), [
+    (r"u = (M + m)\ddot x - \frac12 m l\ddot\theta", "verified"),
+    (r"u = (M + \frac14 m)\ddot x - \frac34 m g\theta", "verified"),  # without theta_ddot
+    (r"u = (M + m)\ddot x - m l\ddot\theta", "wrong"),
+])  # fmt: skip
+def test_a_force_can_have_its_value_for_small_motions(
+    formula: str, expected: str, tmp_path: Path
+) -> None:
+    assert verdicts(tmp_path, f"{ROD_ON_CART}$${formula}$$")[-1] == expected
+
+
+CHAIN = r"""
+$$L = m(\dot x_1^2 + \dot x_2^2 + \dot x_3^2) - \frac12 k(x_2 - x_1)^2 - \frac12 k(x_3 - x_2)^2$$
+$$2 m\ddot x_1 + k x_1 - k x_2 = 0$$
+"""
+
+
+def test_an_equation_can_hold_for_a_special_motion(tmp_path: Path) -> None:
+    formula = r"$$2 m\ddot x_1 + k x_1 + k(x_1 + x_3) = 0$$"
+    assert verdicts(tmp_path, CHAIN + formula)[-1] == "wrong"
+    given = r"With the centre of mass at rest $$x_2 = -(x_1 + x_3)$$ "
+    assert verdicts(tmp_path, CHAIN + given + formula)[-1] != "wrong"
+    mode = r"$$x_1 = A\cos(\omega t)$$ $$\ddot x_1 = -\omega^2 x_1$$"
+    assert verdicts(tmp_path, CHAIN + mode)[-1] == "context"
+
+
+def test_a_letter_in_a_derivative_can_be_a_constant_of_motion(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m(\dot r^2 + r^2\dot\phi^2)$$ $$V = -G\frac{m M}{r}$$
+$$m r^2\dot\phi = \ell$$
+$$m\ddot r = \frac{d}{dr}\left(G\frac{m M}{r} - \frac{\ell^2}{2 m r^2}\right)$$"""
+    assert verdicts(tmp_path, text)[-1] != "wrong"
+
+
+def test_positions_can_be_stated_again_in_space(tmp_path: Path) -> None:
+    text = r"""$$x = r\cos\phi$$ $$y = r\sin\phi$$ In space $$x = r\sin\theta\cos\phi$$
+$$y = r\sin\theta\sin\phi$$ $$z = r\cos\theta$$ $$\{x^1, x^2, x^3\} = \{r, \theta, \phi\}$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_an_angle_can_stand_for_its_sine(tmp_path: Path) -> None:
+    text = r"$$\ddot\theta = -\frac gl\sin\theta$$ $$\sin\theta = \theta$$"
+    assert verdicts(tmp_path, text) == ["verified", "context"]
+
+
+@pytest.mark.parametrize("formula", [
+    r"x_0 \approx \begin{pmatrix} 1 \\ 2 \end{pmatrix}",
+    r"\begin{pmatrix} \theta \\ \dot\theta \end{pmatrix} \approx 0",
+])  # fmt: skip
+def test_approximations_of_other_shapes_are_not_judged(formula: str, tmp_path: Path) -> None:
+    text = rf"$$\ddot\theta = -\frac gl\sin\theta$$ $${formula}$$"
+    assert verdicts(tmp_path, text)[0] == "verified"
+
+
+def test_environments_in_indented_blocks_are_formulas(tmp_path: Path) -> None:
+    text = r"""1. Motion
+
+    The forces give
+
+    \begin{equation}
+    \ddot\theta = -\frac gl\sin\theta
+    \end{equation}
+
+    which is known.
+"""
+    assert verdicts(tmp_path, text) == ["verified"]
+    code = text.replace(r"\begin{equation}", "x = [").replace(r"\end{equation}", "]")
+    assert not verdicts(tmp_path, code)

@@ -68,11 +68,6 @@ class Pair:
     has_other_terms: bool
 
 
-def is_product(tree: Expression) -> bool:
-    """Whether a value is a product or a quotient."""
-    return isinstance(tree, OperatorExpression) and tree.operator in ("*", "/")
-
-
 class Updates:
     """The updates of a function or a loop; under conditions, without or with `is_met`."""
 
@@ -104,8 +99,7 @@ class Updates:
         for step in self._steps:
             value = self._chosen(step.value, step.path)
             is_copy = id(value) in self._owners and LAST.fullmatch(step.path)
-            is_change = step.path not in before and is_product(value)  # such as dv = a*dt
-            if not isinstance(value, Name | NumberLiteral) and not (is_copy or is_change):
+            if not isinstance(value, Name | NumberLiteral) and not is_copy:
                 self._owners[id(value)] = self._old[step.path]
         for path, value in final.items():
             self._own_sums(self._old.get(path, path), value, before)
@@ -147,6 +141,13 @@ class Updates:
 
     def _is_whole(self, tree: Expression) -> bool:
         return id(tree) in self._owners
+
+    def _factors(self, term: Expression) -> list[Expression]:
+        """The factors of a change, which can have a name, such as dv = a*dt."""
+        whole = inner(term)
+        if self._owners.get(id(whole)) in self.updates:
+            return factors(term, self._is_whole)
+        return factors(term, lambda tree: tree is not whole and self._is_whole(tree))
 
     def _chosen(self, value: Expression, old: str) -> Expression:
         """A value without conditions: that which changes a variable, or one of two that do."""
@@ -199,7 +200,7 @@ class Updates:
 
     def _pair(self, coordinate: Update) -> Pair | None:
         for sign, term in coordinate.increment:
-            parts = factors(term, self._is_whole)
+            parts = self._factors(term)
             for part in parts:
                 velocity, is_new, is_part = self._velocity(inner(part))
                 if velocity is None or velocity is coordinate or sign < 0:
@@ -225,7 +226,7 @@ class Updates:
         """The step sizes of other changes by the same velocity; None if there are others."""
         result = []
         for sign, term in increments:
-            parts = factors(term, self._is_whole)
+            parts = self._factors(term)
             own = [one for one in parts if self._velocity(inner(one))[0] is velocity]
             if len(own) != 1:
                 return None
@@ -305,7 +306,7 @@ class Updates:
         if step is None:
             return None, []
         parts = [*divisors(factors(step, self._is_whole))]
-        terms_of = [factors(term, self._is_whole) for _, term in velocity.increment]
+        terms_of = [self._factors(term) for _, term in velocity.increment]
         own = [one for one in parts if all(one in others for others in terms_of)]
         rest = [one for one in parts if one not in own]
         values = [self._restored(one, set()) for _, one in velocity.increment]
@@ -319,7 +320,7 @@ class Updates:
         """A term without the step size; None if that is not a factor."""
         if step is None:
             return term
-        parts = factors(term, self._is_whole)
+        parts = self._factors(term)
         for one in factors(step, self._is_whole):
             if one not in parts:
                 return None
