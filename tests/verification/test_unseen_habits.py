@@ -616,7 +616,8 @@ def test_an_equation_can_hold_for_a_special_motion(tmp_path: Path) -> None:
     assert verdicts(tmp_path, CHAIN + formula)[-1] == "wrong"
     given = r"With the centre of mass at rest $$x_2 = -(x_1 + x_3)$$ "
     assert verdicts(tmp_path, CHAIN + given + formula)[-1] != "wrong"
-    mode = r"$$x_1 = A\cos(\omega t)$$ $$\ddot x_1 = -\omega^2 x_1$$"
+    mode = r"""$$x_1 = C\cos(\omega t + \phi)$$
+$$\ddot x_1 = -\omega^2 A_1\cos(\omega t + \phi) = -\omega^2 x_1$$"""
     assert verdicts(tmp_path, CHAIN + mode)[-1] == "context"
 
 

@@ -13,7 +13,6 @@ from itertools import combinations
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.formulas.generic_values import is_nonzero
 from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Parameter
 from derive.system.symbols import TIME
@@ -27,6 +26,7 @@ from derive.verification.documents.rules.consequences import (
     WithVerdict,
     opposed,
 )
+from derive.verification.documents.rules.mass_positions import is_no_rate
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import POINT, WORD, DocumentFormula
 from derive.verification.judging.engine import joined
@@ -117,7 +117,7 @@ class _Evidence:
             if own is not None:
                 return own
         is_wrong = result.verdict.verdict == "wrong"
-        if is_wrong and _is_no_rate(formula, self._candidate):
+        if is_wrong and is_no_rate(formula, self._candidate):
             return _noted(result, NO_RATE)
         if self._is_guess and (is_wrong or result.verdict.verdict in HOLDING):
             return plain("context", formula, UNSTATED)
@@ -349,36 +349,6 @@ def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> Si
     result = plain("wrong", formula, INHOMOGENEOUS)
     verdict = replace(result.verdict, corrections=contradictions.lost_dots)
     return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
-
-
-def _is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
-    """Whether a formula states the rate of a component of a position that no function has.
-
-    Coordinates whose rates it does not contain can be constant there.
-    """
-    name = formula.subject.removesuffix("_dot")
-    if name == formula.subject or not POINT.match(name) or name in candidate.coordinates:
-        return False
-    words = {*candidate.coordinates, *(f"{q}_dot" for q in candidate.coordinates)}
-    words |= candidate.letters - {"t"}
-    if not {*WORD.findall(formula.sides[-1].text)} <= {*words, *FUNCTIONS, "t"}:
-        return False  # such as speeds by name
-    symbols = {word: sp.Symbol(word) for word in words}
-    try:
-        value = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS, "t": TIME})
-    except ExpressionError:
-        return False
-    pairs = [(symbols[q], symbols[f"{q}_dot"]) for q in candidate.coordinates]
-    if not isinstance(value, sp.Expr):
-        return False
-    slopes = [(q, value.diff(v)) for q, v in pairs]
-    if any(is_nonzero(slope.diff(v)) for _, slope in slopes for _, v in pairs):
-        return True
-    resting = value.xreplace({v: sp.S.Zero for _, v in pairs})
-    if any(is_nonzero(resting.diff(q)) for q, _ in pairs):  # a term has lost its rate
-        return True
-    slopes = [(q, slope) for q, slope in slopes if slope] + [(TIME, resting)]
-    return any(is_nonzero(a.diff(p) - b.diff(q)) for (q, a), (p, b) in combinations(slopes, 2))
 
 
 def _is_driven(candidate: SystemCandidate) -> bool:

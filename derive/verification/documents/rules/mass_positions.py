@@ -2,15 +2,18 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from itertools import permutations
+from itertools import combinations, permutations
 
 import sympy as sp
 
-from derive.formulas.expression import Value
+from derive.formulas.expression import FUNCTIONS, Value, parse
+from derive.formulas.generic_values import is_nonzero
 from derive.formulas.syntax import ExpressionError
+from derive.system.symbols import TIME
+from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.stated_positions import COLUMN
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.statements import POINT, DocumentFormula
+from derive.verification.documents.statements import POINT, WORD, DocumentFormula
 from derive.verification.judging.reference_system import time_derivative
 
 #: The components of a point: names and values. An entry of a column has that column's name.
@@ -170,3 +173,33 @@ def _points(namespace: DocumentNamespace) -> Iterator[Point]:
         elif match := POINT.match(name):
             points.setdefault(match[2] or "", []).append((name, 0, value))
     yield from (point for point in points.values() if len(point) > 1)
+
+
+def is_no_rate(formula: DocumentFormula, candidate: SystemCandidate) -> bool:
+    """Whether a formula states the rate of a component of a position that no function has.
+
+    Coordinates whose rates it does not contain can be constant there.
+    """
+    name = formula.subject.removesuffix("_dot")
+    if name == formula.subject or not POINT.match(name) or name in candidate.coordinates:
+        return False
+    words = {*candidate.coordinates, *(f"{q}_dot" for q in candidate.coordinates)}
+    words |= candidate.letters - {"t"}
+    if not {*WORD.findall(formula.sides[-1].text)} <= {*words, *FUNCTIONS, "t"}:
+        return False  # such as speeds by name
+    symbols = {word: sp.Symbol(word) for word in words}
+    try:
+        value = parse(formula.sides[-1].text, {**symbols, **FUNCTIONS, "t": TIME})
+    except ExpressionError:
+        return False
+    pairs = [(symbols[q], symbols[f"{q}_dot"]) for q in candidate.coordinates]
+    if not isinstance(value, sp.Expr):
+        return False
+    slopes = [(q, value.diff(v)) for q, v in pairs]
+    if any(is_nonzero(slope.diff(v)) for _, slope in slopes for _, v in pairs):
+        return True
+    resting = value.xreplace({v: sp.S.Zero for _, v in pairs})
+    if any(is_nonzero(resting.diff(q)) for q, _ in pairs):  # a term has lost its rate
+        return True
+    slopes = [(q, slope) for q, slope in slopes if slope] + [(TIME, resting)]
+    return any(is_nonzero(a.diff(p) - b.diff(q)) for (q, a), (p, b) in combinations(slopes, 2))
