@@ -356,7 +356,8 @@ def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ..
         tuple((name, index) for name, index in zip(usual, choice, strict=True) if index is not None)
         for choice in choices
     ]
-    return sorted(result, key=len, reverse=True) if letters.are_of_program else result
+    is_likely = letters.are_of_program and bool(letters.of_kind(kind))
+    return sorted(result, key=len, reverse=True) if is_likely else result
 
 
 def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
@@ -365,8 +366,10 @@ def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
     names = _letters_of_loads(letters, "damping")
     everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
     alone = [((name, damped),) for name in names for damped in everything]
-    full = sum(len(one) == len(names) > 0 for one in one_each) if letters.are_of_program else None
-    return [*one_each[:full], *alone, *(one_each[full:] if full is not None else ())]
+    if not one_each[0]:  # it most likely damps nothing
+        return [*one_each, *alone]
+    full = sum(len(one) == len(names) for one in one_each)
+    return [*one_each[:full], *alone, *one_each[full:]]
 
 
 def _letters_of_loads(letters: Letters, kind: str) -> list[str]:

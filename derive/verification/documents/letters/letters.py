@@ -69,6 +69,7 @@ PARTS: dict[str, tuple[str, ...]] = {
 #: Letters that programs write with an index in one word, by the kind of the parameter.
 WITH_INDEX = {"mass": "mM", "length": "lLrR", "inertia": "IJ", "stiffness": "kK", "damping": "bB"}
 WITH_INDEX |= {"frequency": "w"}
+CAPITAL = re.compile(r"[A-Za-z][A-Z][a-z]+\Z")
 
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
 OPERATORS |= {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}
@@ -146,9 +147,9 @@ class Letters:
 
 
 def _has_index(stem: str, kind: str) -> bool:
-    """Whether a name is a letter of a kind with a letter as its index, such as mp and Jr."""
-    usual = WITH_INDEX.get(kind, "")
-    return len(stem) == 2 and stem[0] in usual and stem not in KINDS["mass"]
+    """Whether a name is a letter of a kind with an index, such as mp, Jr and mCart."""
+    is_indexed = len(stem) == 2 or CAPITAL.match(stem) is not None
+    return is_indexed and stem[0] in WITH_INDEX.get(kind, "") and stem not in KINDS["mass"]
 
 
 def energy_of_part(name: str) -> str | None:
