@@ -662,3 +662,10 @@ def test_environments_in_indented_blocks_are_formulas(tmp_path: Path) -> None:
     assert verdicts(tmp_path, text) == ["verified"]
     code = text.replace(r"\begin{equation}", "x = [").replace(r"\end{equation}", "]")
     assert not verdicts(tmp_path, code)
+
+
+def test_the_numbers_of_an_example_can_stand_in_a_function_of_time(tmp_path: Path) -> None:
+    text = r"""$$-k x = m\frac{d^2x}{dt^2}$$ $$\omega_0^2 = \frac km$$
+$$x(t) = x_m\cos(\omega_0 t)$$
+$$v(t) = \frac{dx}{dt} = -x_m\omega_0\sin(\omega_0 t) = -0{,}40\sin(10 t)$$"""
+    assert "wrong" not in verdicts(tmp_path, text)

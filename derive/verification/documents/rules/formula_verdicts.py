@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.formulas.expression import parse
+from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
@@ -280,7 +280,7 @@ class Judge:
 
     def _has_numbers(self, side: FormulaText) -> bool:
         """Whether a side has the numbers of an example, perhaps with units, in place of letters."""
-        words = WORD.findall(side.text)
+        words = {*WORD.findall(side.text)} - {*FUNCTIONS, "t"}
         return bool(DECIMAL.search(side.text)) and (not words or bool(self._unknown([side])))
 
     def _prescribed(self, formula: DocumentFormula) -> list[sp.Expr]:
