@@ -370,3 +370,12 @@ class Swing:
         one.is_fault for one in read_program(always, "Python").findings if one.kind == "degrees"
     ]
     assert faults == [True] * (first == "60")
+
+
+@pytest.mark.parametrize(("change", "is_fault"), [
+    ("pos += v*dt", False), ("pos += v", True),
+])  # fmt: skip
+def test_a_step_size_belongs_to_both_updates(change: str, is_fault: bool) -> None:
+    text = f"pos, v = 1.0, 0.0\nwhile pos > 0:\n    v += dt*(g - k*v**2)\n    {change}\n"
+    faults = [one for one in read_program(text, "Python").findings if one.is_fault]
+    assert [one.kind for one in faults] == ["lost_step"] * is_fault

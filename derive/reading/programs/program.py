@@ -16,6 +16,7 @@ FindingKind: TypeAlias = Literal[
     "runge_kutta",
     "library",
     "frame_step",
+    "lost_step",
     "damping",
     "degrees",
 ]

@@ -1,5 +1,6 @@
 """The method of integration: of a library, or step by step with its faults."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -8,7 +9,7 @@ from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.evaluation.sums import inner, terms, total
 from derive.reading.programs.findings.regions import Region
 from derive.reading.programs.findings.runge_kutta import Method, method, value_at
-from derive.reading.programs.findings.updates import Pair, Update, Updates
+from derive.reading.programs.findings.updates import Pair, Update, Updates, names
 from derive.reading.programs.program import Finding
 from derive.reading.programs.syntax.code import Definition, Lambda, Return
 from derive.reading.programs.syntax.trees import (
@@ -23,6 +24,8 @@ from derive.reading.programs.syntax.trees import (
 
 #: Functions that a browser or a drawing library calls once a picture.
 DRAWING = {"draw", "animate", "animation", "render", "redraw", "tick", "frame", "drawframe"}
+#: Usual names of step sizes.
+STEP_SIZE = re.compile(r"(?:^|\.)(?:d_?t|delta_?t(?:ime)?|time_?step|step_?size)$", re.IGNORECASE)
 
 
 @dataclass
@@ -146,6 +149,11 @@ def _steps(
 ) -> Iterator[Finding]:
     for pair in pairs:
         line, step = pair.coordinate.line, pair.step
+        if step is None and (name := _step_of(pair.velocity)):
+            q, v = pair.coordinate.variable, pair.velocity.variable
+            text = f"{v} is changed with the step size {name}, and {q} without it"
+            yield Finding(line, "lost_step", region.name, text, True)
+            return
         value = constants.get(step.path, step) if isinstance(step, Name) else step
         if step is None:
             text = "no step size: each call advances the motion by one unit of time"
@@ -157,6 +165,12 @@ def _steps(
             continue
         yield Finding(line, "frame_step", region.name, text)
         return
+
+
+def _step_of(velocity: Update) -> str:
+    """The name of a step size that each term of a change contains; "" if there is none."""
+    common = [{*names(term)} for _, term in velocity.increment]
+    return next((one for one in sorted(set.intersection(*common)) if STEP_SIZE.search(one)), "")
 
 
 def _damping(velocity: Update, function: str, shown: Callable[[str], str]) -> Iterator[Finding]:
