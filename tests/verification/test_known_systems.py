@@ -12,6 +12,7 @@ from derive.verification.documents.letters.known_systems.templates import named
 ACCELERATIONS = {
     "scaled_pendulum": ["-omega0**2*sin(theta)"],
     "forced_pendulum_sine": ["-g/l*sin(theta) + A*sin(Omega*t)/(m*l**2)"],
+    "accelerated_pendulum_sine": ["-g/l*sin(theta) + A*sin(Omega*t)"],
     "scaled_forced_pendulum_cosine": ["-omega0**2*sin(theta) + A*cos(Omega*t)"],
     "shaken_pendulum_cosine_up": ["-(g - a*Omega**2*cos(Omega*t))/l*sin(theta)"],
     "shaken_pendulum_sine_down": ["-(g + a*Omega**2*sin(Omega*t))/l*sin(theta)"],

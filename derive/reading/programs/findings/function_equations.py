@@ -123,6 +123,10 @@ OWN = ("self.", "this.")
 BODY = re.compile(r"\w+\[(\d+)\]\.(\w+)")
 
 
+#: An entry of an array of times.
+TIMES = re.compile(r"(?:t|time)\[[^\[\]]*\]")
+
+
 class Names:
     """Identifiers for the variables of a function, different for different variables."""
 
@@ -151,6 +155,8 @@ class Names:
             for prefix in OWN:
                 short = short.removeprefix(prefix)
             last = short.rpartition(".")[2]
+            if TIMES.fullmatch(short):
+                last = "t"
             if of_body := BODY.fullmatch(short):
                 last = f"{of_body[2]}_{of_body[1]}"
             choices = [cleaned(one) for one in (last, short, path)]

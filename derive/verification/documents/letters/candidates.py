@@ -30,6 +30,9 @@ MAX_CHOICES = 200
 #: Letters of forces and of friction that are tried.
 MAX_FORCES = 2
 
+#: Kinds of parameters of which a document can have a part.
+PARTIAL = ("stiffness", "frequency")
+
 #: Most multipliers whose signs are tried one by one.
 MAX_SIGNS = 3
 
@@ -311,7 +314,8 @@ def _choices(
 ) -> list[dict[str, str]]:
     """The letters of parameters of one kind: their own, the same indices, one for all.
 
-    Of springs, some can be absent. Where no name is of this kind, there is none or a `spare` one.
+    Of springs and frequencies, some can be absent. Where no name is of this kind, there is none
+    or a `spare` one.
     """
     own = {name: name for name in names if name in letters.parameters}
     named = letters.of_kind(kind) if kind else list(letters.parameters)
@@ -321,7 +325,7 @@ def _choices(
     else:
         orders = product(usual, repeat=len(names))
     chosen = [dict(zip(names, order, strict=True)) for order in islice(orders, MAX_CHOICES)]
-    if kind == "stiffness" and 0 < len(usual) < len(names):
+    if kind in PARTIAL and 0 < len(usual) < len(names):
         parts = permutations(names, len(usual))
         chosen += [dict(zip(part, usual, strict=True)) for part in islice(parts, MAX_CHOICES)]
     same = [dict.fromkeys(names, one) for one in usual] if len(names) > 1 else []
