@@ -379,3 +379,11 @@ def test_a_step_size_belongs_to_both_updates(change: str, is_fault: bool) -> Non
     text = f"pos, v = 1.0, 0.0\nwhile pos > 0:\n    v += dt*(g - k*v**2)\n    {change}\n"
     faults = [one for one in read_program(text, "Python").findings if one.is_fault]
     assert [one.kind for one in faults] == ["lost_step"] * is_fault
+
+
+@pytest.mark.parametrize("limited", ["min(max(u, low), high)", "max(min(u, high), low)"])
+def test_a_value_between_two_limits_is_the_value(limited: str) -> None:
+    text = f"def f(t, y, u, m, low, high):\n    x, v = y\n    return v, {limited}/m\n"
+    assert [one.text for one in read_program(text, "Python").equations] == ["x_ddot = u/m"]
+    other = text.replace("min", "max")
+    assert not read_program(other, "Python").equations
