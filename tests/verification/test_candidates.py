@@ -1,13 +1,18 @@
 """What speaks for a meaning of letters: the formulas that hold, and a usual convention."""
 
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from derive.system.files.system_catalogue import load
+from derive.system.system import System
 from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.letters import candidates as module
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
 from derive.verification.documents.letters.document_system import system_letters
+from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.numbers.matching import Match
 
@@ -73,3 +78,20 @@ def test_one_letter_can_stand_for_a_length_and_an_amplitude() -> None:
     driven = replace(USUAL, system=system, parameters=parameters, numbers=numbers)
     own = system_letters(driven).system
     assert {symbol.name: symbol.is_positive for symbol in own.params} == {"a": True, "b": None}
+
+
+def test_only_the_conventions_that_can_be_tried_are_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    # with six lengths as coordinates and eight as parameters there are some 10**7
+    listed = 0
+    every = module._conventions
+
+    def counted(system: System, letters: Letters) -> Iterator[Any]:
+        nonlocal listed
+        for listed, one in enumerate(every(system, letters), 1):  # noqa: B007
+            yield one
+
+    monkeypatch.setattr(module, "_conventions", counted)
+    names = ("x_1", "y_1", "x_2", "y_2", "x_3", "y_3")
+    letters = Letters(names, {}, {}, tuple(f"l_{k}" for k in range(8)), names, {}, names)
+    next(candidates(named("bodies_3_2"), letters))
+    assert listed <= module.MAX_CANDIDATES

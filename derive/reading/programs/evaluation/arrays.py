@@ -193,9 +193,10 @@ def of_arrays(
             return _norm(call.line, (x, y))
         case (("max" | "min" | "maximum" | "minimum"), given) if best := _extreme(name, given):
             return best
-        case ("max" | "min", (FunctionCall(function=Name(path=other), arguments=(x, _)), _)) if (
-            {name, split(other)[1]} == {"max", "min"}
-        ):
+        case ("max" | "min", (FunctionCall(function=Name(path=other), arguments=(x, _)), _)) if {
+            name,
+            split(other)[1],
+        } == {"max", "min"}:
             return x  # between two limits
         case "dot", (right,) if base is not None:
             return product(call.line, base, right, language)

@@ -205,6 +205,8 @@ class Updates:
                 velocity, is_new, is_part = self._velocity(inner(part))
                 if velocity is None or velocity is coordinate or sign < 0:
                     continue
+                if is_part and self._is_whole(inner(term)):
+                    continue  # a stage of a method
                 is_last = id(inner(part)) in self._final or velocity.damping is not None
                 is_middle = is_new and not is_last
                 others = [one for one in parts if one is not part]

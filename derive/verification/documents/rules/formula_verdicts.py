@@ -113,7 +113,8 @@ class Judge:
             return plain("context", formula, "it is no statement")
         if {*formula.relations} - {*EQUALITIES}:
             return plain("context", formula, "it is no equation")
-        if SMALL_ANGLE.fullmatch(" = ".join(side.text for side in formula.sides)):
+        sides = " = ".join(side.text for side in formula.sides)
+        if {*formula.relations} == {"="} and SMALL_ANGLE.fullmatch(sides):
             return plain("context", formula, "it is an approximation")
         if any(FIRST_POWER.search(side.text) for side in formula.sides):
             return plain("context", formula, "its superscripts are indices")
