@@ -6,15 +6,20 @@ from typing import Any
 
 import pytest
 
+from derive.reading.programs.program import ProgramEquation
 from derive.system.files.system_catalogue import load
 from derive.system.system import System
+from derive.verification.documents import program_judgement
 from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.judges import Judges
 from derive.verification.documents.letters import candidates as module
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
 from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.numbers.matching import Match
+from derive.verification.documents.statements import Translated
 
 USUAL = SystemCandidate(
     load("single_pendulum"), ("phi",), ((1,),), (0,), {"m": "m", "l": "l", "g": "g"}
@@ -95,3 +100,14 @@ def test_only_the_conventions_that_can_be_tried_are_listed(monkeypatch: pytest.M
     letters = Letters(names, {}, {}, tuple(f"l_{k}" for k in range(8)), names, {}, names)
     next(candidates(named("bodies_3_2"), letters))
     assert listed <= module.MAX_CANDIDATES
+
+
+def test_constraints_without_a_motion_belong_to_no_meaning() -> None:
+    names = ("f", "h")
+    letters = Letters(names, {}, {}, (), names, {}, names)
+    formula = program_judgement._formula(ProgramEquation(1, "rate", "f", "", "f = 0"))
+    judges = Judges(Translated((formula,), (), {}), letters)
+    free = SystemCandidate(named("polar_mass"), names, ((1, 0), (0, 1)), (0, 0), {})
+    assert judges.has_motions(free)
+    at_centre = StatedConstraint("f", frozenset({"f"}), 0)  # where the radius is not positive
+    assert not judges.has_motions(replace(free, constraints=(at_centre,)))
