@@ -1,6 +1,11 @@
 """Programs as people write them: measurements of a state, limits, inputs, callbacks of frames."""
 
+import re
+
+import pytest
+
 from derive.reading.programs.program_reader import read_program
+from derive.verification.documents.letters import candidates
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.program_judgement import judge_program
 
@@ -288,3 +293,62 @@ def rates(t, y, g, length, res):
 """
     assert equations(judged(text)) == ["verified"]
     assert equations(judged(text.replace("res*v", "res*a"))) != ["verified"]
+
+
+UPRIGHT = """
+def rates(t, y, M, m, l, g, u):
+    x, a, v, w = y
+    d = M + m*sin(a)**2
+    return (v, w, (u + m*l*w**2*sin(a) - m*g*sin(a)*cos(a))/d,
+            ((M + m)*g*sin(a) - u*cos(a) - m*l*w**2*sin(a)*cos(a))/(l*d))
+"""
+
+
+@pytest.mark.parametrize(("masses", "force"), [
+    (("M", "m"), "u"), (("mc", "mp"), "U"), (("mCart", "mPend"), "F"),
+])  # fmt: skip
+def test_letters_can_have_indices_in_one_word(masses: tuple[str, str], force: str) -> None:
+    text = UPRIGHT
+    for old, new in zip(("M", "m", "u"), (*masses, force), strict=True):
+        text = re.sub(rf"\b{old}\b", f"@{new}", text)
+    assert equations(judged(text.replace("@", ""))) == ["verified", "verified"]
+
+
+def test_gravity_with_another_sign_in_all_equations_is_another_angle(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(candidates, "MAX_CANDIDATES", 3)  # only angles from hanging are tried
+    assert equations(judged(UPRIGHT)) == ["context", "context"]
+    assert "wrong" in equations(
+        judged(UPRIGHT.replace("- m*g*", "+ 2*m*g*").replace("g*sin(a) - u", "-g*sin(a) - u"))
+    )
+
+
+def test_constants_can_be_those_of_a_unit_mass() -> None:
+    text = """
+def rates(t, y, k, g, L):
+    r, a, v, w = y
+    return v, w, r*w**2 + g*cos(a) - k*(r - L), -(2*v*w + g*sin(a))/r
+"""
+    assert equations(judged(text)) == ["verified", "verified"]
+    assert equations(judged(text.replace("+ g*cos", "+ 2*g*cos")))[0] != "verified"
+
+
+def test_a_frequency_can_be_1_beside_that_of_a_force() -> None:
+    text = "def rates(t, y, b, w):\n    a, v = y\n    return v, -sin(a) + b*cos(w*t)\n"
+    assert equations(judged(text)) == ["verified"]
+    assert equations(judged(text.replace("cos(w*t)", "cos(w*a)"))) != ["verified"]
+
+
+def test_an_entry_of_an_array_of_times_is_the_time() -> None:
+    text = """
+program swing
+  real :: theta(0:100), omega(0:100), t(0:100)
+  do i = 0, 99
+    omega(i+1) = omega(i) + (-(g/l)*sin(theta(i)) + a*sin(w*t(i)))*dt
+    theta(i+1) = theta(i) + omega(i+1)*dt
+    t(i+1) = t(i) + dt
+  end do
+end program
+"""
+    assert equations(judged(text, "Fortran")) == ["verified"]

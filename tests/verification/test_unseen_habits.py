@@ -669,3 +669,16 @@ def test_the_numbers_of_an_example_can_stand_in_a_function_of_time(tmp_path: Pat
 $$x(t) = x_m\cos(\omega_0 t)$$
 $$v(t) = \frac{dx}{dt} = -x_m\omega_0\sin(\omega_0 t) = -0{,}40\sin(10 t)$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_a_letter_of_friction_is_not_exchanged_for_another(tmp_path: Path) -> None:
+    text = r"""The car obeys
+$$
+\begin{cases}
+m\ddot x = f_x - b\dot x \\
+m\ddot y = f_y - b\dot y \\
+I\dot\omega = \tau - B\omega
+\end{cases}
+$$
+and does not slide: $$Q = v_x\sin\theta - v_y\cos\theta = 0$$"""
+    assert "wrong" not in verdicts(tmp_path, text)

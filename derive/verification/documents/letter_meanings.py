@@ -111,10 +111,10 @@ def interpretation(
 
 
 def _lacks_numbers(match: Match | None, letters: Letters) -> bool:
-    """Whether numbers in place of parameters can be meant: nothing holds, or not all without."""
+    """Whether numbers can stand for parameters: nothing holds, or not all of a program."""
     if match is None or match.holding < 1:
         return True
-    return bool(match.failed and match.candidate.lacking and letters.are_of_program)
+    return bool(match.failed) and letters.are_of_program
 
 
 def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretation:
