@@ -3,6 +3,7 @@
 No right formula is to be called wrong: a verdict without enough evidence becomes `context`.
 """
 
+import ast
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -13,7 +14,7 @@ from itertools import combinations
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.formulas.syntax import ExpressionError
+from derive.formulas.syntax import ExpressionError, syntax_tree
 from derive.system.parts import Parameter
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
@@ -165,8 +166,10 @@ class _Evidence:
             return UNSUPPORTED
         if prescribed := self._prescribed(number):
             return f"it can hold with line {prescribed}"
-        if formula.subject in self._restated:
+        if self._is_restated(number):
             return other_case
+        if self._holds_constant(formula):
+            return "a derivative can hold a constant of the motion"
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
             return other_case if _is_driven(self._candidate) else ""
         if self._is_tie or _adds_letters(formula, result, self._candidate):
@@ -233,13 +236,24 @@ class _Evidence:
                 return self._lines[k]
         return None
 
-    @cached_property
-    def _restated(self) -> set[str]:
-        """Positions that are stated again, of a system with which nothing else holds."""
-        if self._candidate.basis != "positions" or self._holding:
-            return set()
-        counts = Counter(formula.subject for formula, _ in self._results)
-        return {name for name, count in counts.items() if count > 1 and POINT.match(name)}
+    def _is_restated(self, number: int) -> bool:
+        """Whether a component of a position is stated again with further letters."""
+        formula, _ = self._results[number]
+        if self._candidate.basis != "positions" or not POINT.match(formula.subject):
+            return False
+        earlier = [
+            {*one.words} for one, _ in self._results[:number] if one.subject == formula.subject
+        ]
+        return bool(earlier) and not {*formula.words} <= set[str]().union(*earlier)
+
+    def _holds_constant(self, formula: DocumentFormula) -> bool:
+        """Whether a derivative contains a letter for a function of velocities, as ℓ of m r² φ̇."""
+        operands = set[str]().union(*(one for s in formula.sides for one in _operands(s.text)))
+        return any(
+            operands & {side.text for side in one.sides} and any(map(order, one.words))
+            for one, _ in self._results
+            if one is not formula
+        )
 
     @property
     def _are_signs(self) -> bool:
@@ -336,6 +350,15 @@ def _gravities(candidate: SystemCandidate) -> Iterator[Parameter]:
 
 def _unsigned(term: str) -> str:
     return term.lstrip("+- ").removeprefix("(").removesuffix(")").replace(" ", "")
+
+
+def _operands(text: str) -> Iterator[set[str]]:
+    """The names in each operand of a derivative."""
+    for node in ast.walk(syntax_tree(text)) if "diff(" in text else ():
+        match node:
+            case ast.Call(func=ast.Name(id="diff"), args=[operand, *_]):
+                names = (one.id for one in ast.walk(operand) if isinstance(one, ast.Name))
+                yield {name for name in names if not order(name)}
 
 
 def _noted(result: SideVerdict, note: str) -> SideVerdict:

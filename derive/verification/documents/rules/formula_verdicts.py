@@ -1,8 +1,7 @@
 """Verdicts on the formulas of a document whose letters are known."""
 
-import ast
 import re
-from collections.abc import Collection, Iterator, Sequence, Set
+from collections.abc import Collection, Sequence, Set
 from contextlib import suppress
 from copy import copy
 from dataclasses import replace
@@ -10,7 +9,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.formulas.syntax import ExpressionError, syntax_tree
+from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
@@ -99,16 +98,7 @@ class Judge:
             return plain("definition", formula, STATES)
         if result.verdict.verdict == "wrong" and "dots" in formula.words:
             return plain("context", formula, "dots stand for some of its terms")
-        if result.verdict.verdict == "wrong" and self._differentiates_a_constant(formula):
-            return plain("context", formula, "a derivative can hold a constant of motion")
         return result
-
-    def _differentiates_a_constant(self, formula: DocumentFormula) -> bool:
-        """Whether a derivative contains a letter for a function of velocities, as ℓ of m r² φ̇."""
-        names, rates = self._namespace.all_names, self._namespace.derivation.system.qdot
-        own = set[str]().union(*(o for side in formula.sides for o in _differentiated(side.text)))
-        own &= {*self._namespace.defining} - {*self._namespace.letters.quantities}
-        return any(depends_on(names[word], rates) for word in own)
 
     def _verdict(self, formula: DocumentFormula) -> SideVerdict:
         if not formula.relations:
@@ -406,11 +396,3 @@ class Judge:
             result, key=lambda one: len(one.verdict.corrections[0].correct), default=None
         )
         return shortest or plain("wrong", formula, "it has not the forces of this system")
-
-
-def _differentiated(text: str) -> Iterator[set[str]]:
-    """The names in each operand of a derivative."""
-    for node in ast.walk(syntax_tree(text)):
-        match node:
-            case ast.Call(func=ast.Name(id="diff"), args=[operand, *_]):
-                yield {one.id for one in ast.walk(operand) if isinstance(one, ast.Name)}
