@@ -311,7 +311,9 @@ def test_letters_can_have_indices_in_one_word(masses: tuple[str, str], force: st
     text = UPRIGHT
     for old, new in zip(("M", "m", "u"), (*masses, force), strict=True):
         text = re.sub(rf"\b{old}\b", f"@{new}", text)
-    assert equations(judged(text.replace("@", ""))) == ["verified", "verified"]
+    text = text.replace("@", "")
+    assert equations(judged(text)) == ["verified", "verified"]
+    assert equations(judged(text.replace("*w**2*sin(a) -", "*w*sin(a) -"))) == ["wrong", "verified"]
 
 
 def test_gravity_with_another_sign_in_all_equations_is_another_angle(

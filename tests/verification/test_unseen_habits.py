@@ -631,11 +631,6 @@ $$y = r\sin\theta\sin\phi$$ $$z = r\cos\theta$$"""
     assert "wrong" not in verdicts(tmp_path, text)
 
 
-def test_an_angle_can_stand_for_its_sine(tmp_path: Path) -> None:
-    text = r"$$\ddot\theta = -\frac gl\sin\theta$$ $$\sin\theta = \theta$$"
-    assert verdicts(tmp_path, text) == ["verified", "context"]
-
-
 @pytest.mark.parametrize("formula", [
     r"x_0 \approx \begin{pmatrix} 1 \\ 2 \end{pmatrix}",
     r"\begin{pmatrix} \theta \\ \dot\theta \end{pmatrix} \approx 0",

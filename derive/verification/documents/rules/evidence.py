@@ -101,11 +101,7 @@ class _Evidence:
         self._wrong = [one for _, one in results if one.verdict.verdict == "wrong"]
         self._independent = [one for one in self._wrong if FOLLOWS not in one.verdict.note]
         self._misfits = sum(len(one.verdict.corrections) != 1 for one in self._independent)
-        # a constraint that the document states holds whatever the system is
-        self._holding = sum(
-            one.verdict.verdict in HOLDING and k not in candidate.given
-            for k, (_, one) in enumerate(results)
-        )
+        self._holding = sum(one.verdict.verdict in HOLDING for _, one in results)
         self._has_energy = any(one.kind in OF_ENERGIES for one in self._wrong)
         self._given = _lines(self._lines[k] for k in candidate.stating)
         self._undecided = {*_of_friction(results, candidate)}

@@ -49,8 +49,6 @@ DECIMAL = re.compile(r"\d\.\d")
 EITHER = f"it contradicts another component of the position: {UNDECIDED}"
 #: The note on formulas of which the system follows.
 STATES = "it states the system"
-#: A small angle in place of its sine.
-SMALL_ANGLE = re.compile(r"(?:sin|tan)\((\w+)\) = \1")
 #: An exponent that is no power.
 FIRST_POWER = re.compile(r"\*\*1(?![\d./])")
 
@@ -105,9 +103,6 @@ class Judge:
             return plain("context", formula, "it is no statement")
         if {*formula.relations} - {*EQUALITIES}:
             return plain("context", formula, "it is no equation")
-        sides = " = ".join(side.text for side in formula.sides)
-        if {*formula.relations} == {"="} and SMALL_ANGLE.fullmatch(sides):
-            return plain("context", formula, "it is an approximation")
         if any(FIRST_POWER.search(side.text) for side in formula.sides):
             return plain("context", formula, "its superscripts are indices")
         if formula.is_update:
