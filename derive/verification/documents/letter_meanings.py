@@ -269,9 +269,10 @@ def _of_templates(
     letters: Letters, statements: Translated, numbers: Mapping[str, str] | None = None
 ) -> Iterator[Sequence[SystemCandidate]]:
     """Candidates of one known system after another."""
+    has_time = any("t" in formula.words for formula in statements.formulas)
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
-        for system in templates(letters, count, has_rods):
+        for system in templates(letters, count, has_rods, has_time):
             yield [*candidates(system, letters, numbers)]
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from derive.system.files.system_catalogue import load
 from derive.system.parts import Parameter
+from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.documents.letters.known_systems.free_bodies import free_bodies
 from derive.verification.documents.letters.known_systems.in_fields import systems_in_fields
@@ -31,16 +32,19 @@ OF_EQUATIONS = frozenset(
 SHIPPED_OF_PROGRAMS = "furuta_pendulum heavy_top duffing".split()
 
 
-def templates(letters: Letters, count: int, has_rods: bool = True) -> Iterator[System]:
+def templates(
+    letters: Letters, count: int, has_rods: bool = True, has_time: bool = True
+) -> Iterator[System]:
     """Yield the systems with so many coordinates, of uniform rods as well or without these.
 
     Free bodies are tried where constraints are stated; other systems of programs for these, and
-    some of them for documents that state no energy.
+    some of them for documents that state no energy. Driven ones are left out where no formula
+    `has_time`.
     """
     groups = [_free()] if letters.constraints else []
     groups += [_usual(), *([_rods()] if has_rods else [])]
     if letters.are_of_program:
-        groups.append(_of_programs())
+        groups.append(tuple(one for one in _of_programs() if has_time or not _is_driven(one)))
     elif not letters.quantities:
         groups.append(tuple(one for one in _of_programs() if one.name in OF_EQUATIONS))
     yield from (one for group in groups for one in group if len(one.coordinates) == count)
@@ -59,6 +63,13 @@ def named(name: str | Path) -> System:
 def _with_letters(system: System) -> System:
     inputs = [Parameter(one.symbol, one.unit, 1.0, one.meaning) for one in system.inputs]
     return replace(system, parameters=(*system.parameters, *inputs), inputs=())
+
+
+def _is_driven(system: System) -> bool:
+    """Whether the equations contain the time, as those in a rotating frame do not."""
+    has_frequency = any(one.unit == "rad/s" for one in system.parameters)
+    places = (component for mass in system.masses for component in mass.position)
+    return has_frequency and any(one.has(TIME) for one in (system.potential_energy, *places))
 
 
 @cache
