@@ -387,3 +387,10 @@ def test_a_value_between_two_limits_is_the_value(limited: str) -> None:
     assert [one.text for one in read_program(text, "Python").equations] == ["x_ddot = u/m"]
     other = text.replace("min", "max")
     assert not read_program(other, "Python").equations
+
+
+def test_a_velocity_can_change_by_a_factor_alone() -> None:
+    text = "pos, v = 1.0, 2.0\nwhile pos > 0:\n    v *= 0.99\n    pos += v\n"
+    findings = read_program(text, "Python").findings
+    assert "damping" in [one.kind for one in findings]
+    assert not any(one.is_fault for one in findings)

@@ -13,7 +13,9 @@ KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
 MARGIN = r"^[ \t>]*+(?:(?:[-*+]|\d{1,9}[.)])[ \t]++)?"
 LIST_ITEM = re.compile(r"[ \t]*+(?:[-*+]|\d{1,9}[.)])[ \t]++(?=\S)")
 INDENTED = "    "
-INDENTED_ENVIRONMENT = re.compile(r"\s*+\\begin\{(?:equation|align|gather|multline)\*?\}\s*+$")
+INDENTED_ENVIRONMENT = re.compile(
+    r"[ \t]*+\\begin\{(?:equation|align|gather|multline)\*?\}[ \t]*+$", re.MULTILINE
+)
 QUOTED = re.compile(r"^[ \t]*+>[ \t>]*+", re.M)
 #: Backslashes that Markdown renderers remove, and the characters that they leave.
 SINGLE = r"(?<!\\)\\([_*])|\\\\(\\\\)"
@@ -118,12 +120,20 @@ def _is_in_sentence(text: str, excerpt: Excerpt) -> bool:
 def _indented_code(text: str) -> frozenset[int]:
     """Where lines of indented code start: after an empty line, and four columns into the text.
 
-    Environments of formulas are no code, nor is what stands between them.
+    A block with an environment of formulas is none.
     """
-    starts = sorted(_indented_lines(text))
-    lines = [text[start : text.find("\n", start)] for start in starts]
-    has_formulas = any(INDENTED_ENVIRONMENT.match(line) for line in lines)
-    return frozenset() if has_formulas else frozenset(starts)
+    blocks, end = list[list[int]](), -1
+    for start in _indented_lines(text):
+        if end < 0 or text[end:start].strip():
+            blocks.append([])
+        blocks[-1].append(start)
+        end = start + len(text[start:].partition("\n")[0])
+    return frozenset(
+        start
+        for block in blocks
+        if not any(INDENTED_ENVIRONMENT.match(text, start) for start in block)
+        for start in block
+    )
 
 
 def _indented_lines(text: str) -> list[int]:

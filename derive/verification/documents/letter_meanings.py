@@ -174,6 +174,9 @@ def _best(
             break
         result = best_matches(tried, letters, formulas, derivatives, trivial)
         held = [match for match in result if match.holding or not least]
+        first = held[0].candidate if held else None  # others have the same constraints
+        if first and first.condition_count and not judges.has_motions(first):
+            continue
         stated += [match for match in held if match.candidate.stating]
         for match in held:
             (circular if match.is_circular else matches).append(match)
@@ -186,8 +189,7 @@ def _best(
         basis = -1 if has_absent_parts else BASES.index(match.candidate.basis)
         return match.score, -len(match.failed), basis
 
-    supported.sort(key=rank, reverse=True)  # the first of several with the same rank
-    best = next((one for one in supported if judges.has_motions(one.candidate)), None)
+    best = max(supported, key=rank, default=None)  # the first of several with the same rank
     if best is None:
         # of a stated system another formula can follow, such as for small angles
         stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]

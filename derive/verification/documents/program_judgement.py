@@ -5,12 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from derive.reading.latex.tree import Letter, Statement
-from derive.reading.programs.program import (
-    Finding,
-    Program,
-    ProgramEquation,
-    RateFunction,
-)
+from derive.reading.programs.program import Finding, Program, ProgramEquation, RateFunction
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letter_meanings import (
     Interpretation,
@@ -81,16 +76,21 @@ def _best(
 ) -> _Reading | None:
     """The first meaning with which all equations hold, or else the first of all.
 
-    Other spellings only show that equations hold.
+    Those of names of constants that others define count as well. Other spellings only show that
+    equations hold.
     """
-    best = _reading(function.equations, hints)
-    if best is None and len(function.short) == len(function.equations):
-        best = _reading(function.short, hints)
-    for equations in () if best and best.holds else _spellings(function, negative):
-        other = _reading(equations, hints)
-        if other and other.holds:
-            pairs = zip(other.verdicts, function.equations, strict=True)
-            return replace(other, verdicts=tuple(replace(a, latex=b.text) for a, b in pairs))
+    best: _Reading | None = None
+    has_short = len(function.short) == len(function.equations)
+    for equations in (function.equations, *([function.short] if has_short else [])):
+        reading = _reading(equations, hints)
+        if reading and reading.holds:
+            return reading
+        best = best or reading
+    for equations in _spellings(function, negative):
+        reading = _reading(equations, hints)
+        if reading and reading.holds:
+            pairs = zip(reading.verdicts, function.equations, strict=True)
+            return replace(reading, verdicts=tuple(replace(a, latex=b.text) for a, b in pairs))
     return best
 
 
@@ -112,12 +112,10 @@ def _spellings(
 ) -> Iterator[tuple[ProgramEquation, ...]]:
     """Other texts of the equations of a function with the same meaning.
 
-    With names of constants that others define; with velocities, of which nothing is the
-    coordinate, as rates; with negative constants as positive ones with a sign.
+    With velocities, of which nothing is the coordinate, as rates; with negative constants as
+    positive ones with a sign.
     """
     equations = function.equations
-    if len(function.short) == len(equations):
-        yield function.short
     kinds = {one.kind for one in equations}
     rates = [one.coordinate for one in equations if one.kind == "rate"]
     if len(kinds) > 1 and rates:

@@ -23,6 +23,8 @@ FUNCTIONS |= {"ln": "log"}
 #: Functions that are methods of numbers, as in ``x.sin()`` of Rust.
 METHODS = {"sin", "cos", "tan", "exp", "ln", "sqrt", "powi", "powf", "pow", "abs", "hypot", "recip"}
 METHODS |= {"sin_cos", "to_radians", "to_degrees", "mul_add", "atan2", "signum", "clamp"}
+#: Functions that convert degrees to radians.
+TO_RADIANS = ("radians", "deg2rad", "toRadians", "to_radians")
 #: Functions whose argument is in degrees.
 DEGREES = {"sind": "sin", "cosd": "cos", "tand": "tan"}
 #: Functions that return their argument, or change nothing but its type.
@@ -74,7 +76,7 @@ def applied(line: int, path: str, arguments: tuple[Expression, ...]) -> Expressi
             sine, cosine = (FunctionCall(line, Name(line, one), (x,)) for one in ("sin", "cos"))
             above = cosine if name == "cot" else NumberLiteral(line, "1")
             return OperatorExpression(line, "/", (above, cosine if name == "sec" else sine))
-        case "radians" | "deg2rad" | "toRadians" | "to_radians", (x,):
+        case _, (x,) if name in TO_RADIANS:
             return radians(line, x)
         case "degrees" | "rad2deg" | "toDegrees" | "to_degrees", (x,):
             return OperatorExpression(line, "*", (x, _ratio(line, "180", "pi")))

@@ -4,14 +4,14 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 
-from derive.reading.programs.evaluation.mathematics import split
+from derive.reading.programs.evaluation.context import static_path
+from derive.reading.programs.evaluation.mathematics import TO_RADIANS, split
 from derive.reading.programs.evaluation.numeric_values import number
 from derive.reading.programs.program import Finding
-from derive.reading.programs.syntax.trees import Expression, FunctionCall, Member, Name
+from derive.reading.programs.syntax.trees import Expression, FunctionCall, Name
 
 IN_DEGREES = re.compile(r"(_|\b)deg(ree)?s?$|[a-z\d](Deg|Degrees)$|_deg_", re.IGNORECASE)
 CIRCULAR = ("sin", "cos", "tan")
-CONVERSIONS = ("radians", "deg2rad", "toRadians", "to_radians")
 
 
 def named_in_degrees(value: Expression, function: str) -> Iterator[Finding]:
@@ -51,9 +51,7 @@ def takes_degrees(call: FunctionCall) -> bool:
 def is_converted(tree: Expression) -> bool:
     """Whether an angle in degrees is converted to radians."""
     match tree:
-        case FunctionCall(function=Name(path=path)) if split(path)[1] in CONVERSIONS:
-            return True
-        case FunctionCall(function=Member(name=name)) if name in CONVERSIONS:
+        case FunctionCall(function=function) if split(static_path(function))[1] in TO_RADIANS:
             return True
     return any(map(is_converted, tree.parts))
 

@@ -121,8 +121,6 @@ def _letters(matrix: Name, count: int) -> Array:
 OWN = ("self.", "this.")
 #: A member of one of several bodies, such as b[0].x.
 BODY = re.compile(r"\w+\[(\d+)\]\.(\w+)")
-
-
 #: An entry of an array of times.
 TIMES = re.compile(r"(?:t|time)\[[^\[\]]*\]")
 

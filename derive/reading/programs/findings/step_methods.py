@@ -169,8 +169,9 @@ def _steps(
 
 def _step_of(velocity: Update) -> str:
     """The name of a step size that each term of a change contains; "" if there is none."""
-    common = [{*names(term)} for _, term in velocity.increment]
-    return next((one for one in sorted(set.intersection(*common)) if STEP_SIZE.search(one)), "")
+    parts = [{*names(term)} for _, term in velocity.increment]
+    known = sorted(one for one in set[str]().union(*parts) if STEP_SIZE.search(one))
+    return next((one for one in known if all(one in part for part in parts)), "")
 
 
 def _damping(velocity: Update, function: str, shown: Callable[[str], str]) -> Iterator[Finding]:

@@ -93,7 +93,6 @@ class Updates:
         values = [step.value for step in self._steps] if is_timed else []
         used = {path for value in values for path in names(value)}
         self._old = {step.path: previous(step.path, used) for step in self._steps}
-        before = {path for step in self._steps for path in names(step.value)}
         #: Values that variables take, by identity.
         self._owners: dict[int, str] = {}
         for step in self._steps:
@@ -101,6 +100,7 @@ class Updates:
             is_copy = id(value) in self._owners and LAST.fullmatch(step.path)
             if not isinstance(value, Name | NumberLiteral) and not is_copy:
                 self._owners[id(value)] = self._old[step.path]
+        before = {path for step in self._steps for path in names(step.value)}
         for path, value in final.items():
             self._own_sums(self._old.get(path, path), value, before)
         result = (self._update(path, value) for path, value in final.items())
@@ -168,7 +168,7 @@ class Updates:
             ) == old or earlier == Name(0, old):
                 damping, damping_line, value = factor, value.line, earlier
             case OperatorExpression(
-                operator="*", operands=(Expression() as earlier, Name() | NumberLiteral() as factor)
+                operator="*", operands=(earlier, Name() | NumberLiteral() as factor)
             ) if Name(0, old) in (one for _, one in terms(earlier, self._is_whole)):
                 damping, damping_line, value = factor, value.line, inner(earlier)
         line = value.line

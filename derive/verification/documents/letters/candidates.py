@@ -10,7 +10,7 @@ import sympy as sp
 
 from derive.system.parts import Parameter
 from derive.system.system import System
-from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.letters import KINDS, Letters
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.statements import WORD
 from derive.verification.judging.system_names import FACTORS
@@ -82,8 +82,8 @@ class SystemCandidate:
     multipliers: tuple[tuple[str, int, sp.Rational], ...] = ()
     #: Numbers of formulas that state the system, beside constraints.
     stating: frozenset[int] = frozenset()
-    #: Whether a letter has a meaning that letters of this name have nowhere.
-    is_guess: bool = False
+    #: Whether a parameter of a kind with usual letters has another.
+    has_unusual_letters: bool = False
     #: Letters of reactions along the motion, with their values in the symbols of the system.
     reactions: Mapping[str, sp.Expr] = field(default_factory=dict)
 
@@ -178,20 +178,18 @@ def candidates(
         loads(letters, "force", n),
         frictions(letters, n),
     )
-    names = {kind: {*letters.of_kind(kind)} for kind in {*UNITS.values()}}
-    kinds = {one.symbol.name: names.get(kind_of(one)) for one in system.parameters}
+    kinds = {one.symbol.name: kind for one in system.parameters if (kind := kind_of(one))}
+    usual = {(name, one) for name, kind in kinds.items() for one in (name, *letters.of_kind(kind))}
     for (signs, offsets), order, (mapping, stated), forces, friction in islice(choices, most):
         if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
             continue  # the letter of a force of the system
         if numbers is None or stated:
-            one = SystemCandidate(system, order, signs, offsets, mapping, forces, friction, stated)
-            yield from constrained(replace(one, is_guess=_is_guess(mapping, kinds)), letters)
-
-
-def _is_guess(mapping: Mapping[str, str], kinds: Mapping[str, set[str] | None]) -> bool:
-    """Whether a parameter of a kind with usual letters has another letter."""
-    usual = ((kinds[name], letter) for name, letter in mapping.items())
-    return any(names is not None and letter not in names for names, letter in usual)
+            is_unusual = any(one[0] in kinds and one not in usual for one in mapping.items())
+            one = SystemCandidate(
+                system, order, signs, offsets, mapping, forces, friction, stated,
+                has_unusual_letters=is_unusual,
+            )  # fmt: skip
+            yield from constrained(one, letters)
 
 
 def _mixed(names: Sequence[str], letters: Sequence[str]) -> int:
@@ -303,9 +301,8 @@ def _parameters(system: System, letters: Letters) -> Iterator[Mapping[str, str]]
 
 def _spare(groups: Mapping[str, Sequence[str]], letters: Letters) -> list[str]:
     """Letters that are of no kind by their names, or of one with more letters than parameters."""
-    named = {kind: letters.of_kind(kind) for kind in {*UNITS.values()}}
-    scarce = {kind for kind, names in groups.items() if len(named.get(kind, ())) <= len(names)}
-    taken = {p for kind in scarce for p in named.get(kind, ())}
+    named = {kind: letters.of_kind(kind) for kind in groups if kind}
+    taken = {p for kind, own in named.items() if len(own) <= len(groups[kind]) for p in own}
     return [p for p in letters.parameters if p not in taken]
 
 
@@ -335,7 +332,7 @@ def _choices(
     others = [*chosen, *(one for one in same if one not in chosen)]
     if len(own) == len(names):
         return [own, *(one for one in others if one != own)]
-    return others if named and others else [{}, *others]
+    return others if named else [{}, *others]
 
 
 def _has_partner(letter: str, usual: Sequence[str]) -> bool:
@@ -380,6 +377,6 @@ def _letters_of_loads(letters: Letters, kind: str) -> list[str]:
     """Letters of a kind of loads; of friction in a program else those of no kind."""
     usual = letters.of_kind(kind)
     if not usual and kind == "damping" and letters.are_of_program:
-        known = {p for one in {*UNITS.values()} for p in letters.of_kind(one)}
+        known = {p for one in KINDS for p in letters.of_kind(one)}
         usual = [p for p in letters.parameters if p not in known]
     return usual[:MAX_FORCES]

@@ -67,8 +67,11 @@ PARTS: dict[str, tuple[str, ...]] = {
 }
 
 #: Letters that programs write with an index in one word, by the kind of the parameter.
-WITH_INDEX = {"mass": "mM", "length": "lLrR", "inertia": "IJ", "stiffness": "kK", "damping": "bB"}
-WITH_INDEX |= {"frequency": "w"}
+WITH_INDEX = {
+    "mass": "mM", "length": "lLrR", "inertia": "IJ", "stiffness": "kK", "damping": "bB",
+    "frequency": "w",
+}  # fmt: skip
+#: A letter with a word as its index, such as mCart.
 CAPITAL = re.compile(r"[A-Za-z][A-Z][a-z]+\Z")
 
 OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}

@@ -15,7 +15,6 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError, syntax_tree
-from derive.system.parts import Parameter
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
@@ -160,8 +159,8 @@ class _Evidence:
             return other_case
         if self._is_weak or self._unsure & {*formula.words} or self._is_of_loads(result):
             return UNSUPPORTED
-        if prescribed := self._prescribed(number):
-            return f"it can hold with line {prescribed}"
+        if line := self._special_motion(number):
+            return f"it can hold with line {line}"
         if self._is_restated(number):
             return other_case
         if self._holds_constant(formula):
@@ -191,7 +190,7 @@ class _Evidence:
         is_unsure = self._has_energy or self._changes_loads or self._are_signs
         is_several = is_unsure and len(self._wrong) > 1
         has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
-        is_open = self._is_partial or self._candidate.is_guess
+        is_open = self._is_partial or self._candidate.has_unusual_letters
         return self._is_known and (is_open or not has_all or has_none or slips > few)
 
     @property
@@ -212,7 +211,7 @@ class _Evidence:
         is_other = all(a and b and a != b for a, b in zip(written, other, strict=True))
         return self._is_known and bool(terms) and is_other
 
-    def _prescribed(self, number: int) -> int | None:
+    def _special_motion(self, number: int) -> int | None:
         """The line of a special motion with which an equation can hold.
 
         It gives a coordinate as a function of time, the acceleration of which the equation states,
@@ -255,14 +254,16 @@ class _Evidence:
     def _are_signs(self) -> bool:
         """Whether all corrections are of the sign of gravity, as with angles from upright."""
         own, words = self._candidate.parameters, Counter[str]()
-        gravity = {own.get(p.symbol.name, "") for p in _gravities(self._candidate)}
+        names = (one.symbol.name for one in self._candidate.system.parameters
+                 if kind_of(one) == "gravity")  # fmt: skip
+        gravity = {own[name] for name in names if name in own}
         for formula, one in self._results:
             if one.verdict.verdict == "wrong":
                 words.update(w for side in formula.sides for w in WORD.findall(side.text))
         terms = [t for one in self._wrong for t in one.verdict.corrections]
         corrected = Counter(word for t in terms for word in WORD.findall(t.wrong))
-        is_whole = all(words[one] == corrected[one] for one in gravity)
-        return is_whole and all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
+        is_whole = gravity and all(words[one] == corrected[one] > 0 for one in gravity)
+        return bool(is_whole) and all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
 
     @property
     def _is_guess(self) -> bool:
@@ -337,11 +338,6 @@ class _Evidence:
             and k not in self._candidate.stating
             and formula.subject not in self._shown
         }
-
-
-def _gravities(candidate: SystemCandidate) -> Iterator[Parameter]:
-    """The parameters of a system that are gravity."""
-    return (one for one in candidate.system.parameters if kind_of(one) == "gravity")
 
 
 def _unsigned(term: str) -> str:
