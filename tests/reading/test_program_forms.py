@@ -372,11 +372,13 @@ class Swing:
     assert faults == [True] * (first == "60")
 
 
-@pytest.mark.parametrize(("change", "is_fault"), [
-    ("pos += v*dt", False), ("pos += v", True),
+@pytest.mark.parametrize(("first", "second", "is_fault"), [
+    ("v += dt*(g - k*v**2)", "pos += v*dt", False),
+    ("v += dt*(g - k*v**2)", "pos += v", True),
+    ("v += dt*g - k*v", "pos += v", False),  # friction of a frame
 ])  # fmt: skip
-def test_a_step_size_belongs_to_both_updates(change: str, is_fault: bool) -> None:
-    text = f"pos, v = 1.0, 0.0\nwhile pos > 0:\n    v += dt*(g - k*v**2)\n    {change}\n"
+def test_a_step_size_belongs_to_both_updates(first: str, second: str, is_fault: bool) -> None:
+    text = f"pos, v = 1.0, 0.0\nwhile pos > 0:\n    {first}\n    {second}\n"
     faults = [one for one in read_program(text, "Python").findings if one.is_fault]
     assert [one.kind for one in faults] == ["lost_step"] * is_fault
 

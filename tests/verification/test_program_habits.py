@@ -357,3 +357,21 @@ program swing
 end program
 """
     assert equations(judged(text, "Fortran")) == ["verified"]
+
+
+def test_a_gain_of_an_input_is_no_friction() -> None:
+    # a two-link arm whose second joint has the torque B u
+    text = """
+def rates(t, s, m1, m2, l1, lc1, lc2, I1, I2, g, B, u):
+    a, b, v, w = s
+    M = np.array([[I1 + I2 + m2*l1**2 + 2*m2*l1*lc2*cos(b), I2 + m2*l1*lc2*cos(b)],
+                  [I2 + m2*l1*lc2*cos(b), I2]])
+    f = np.array([-m1*g*lc1*sin(a) - m2*g*(l1*sin(a) + lc2*sin(a + b))
+                  + m2*l1*lc2*sin(b)*(2*v*w + w**2),
+                  -m2*g*lc2*sin(a + b) - m2*l1*lc2*sin(b)*v**2 + B*u])
+    acc = np.linalg.solve(M, f)
+    return v, w, acc[0], acc[1]
+"""
+    assert equations(judged(text)) == ["verified", "context"]
+    slip = equations(judged(text.replace("- m2*l1*lc2*sin(b)*v**2 + B*u", "+ u")))
+    assert slip == ["verified", "wrong"]

@@ -208,8 +208,9 @@ class _Evidence:
         terms = result.verdict.corrections
         written = [{*WORD.findall(t.wrong)} & self._loads_in(t) for t in terms]
         other = [{*WORD.findall(t.correct)} & self._loads_in(t) for t in terms]
-        is_other = all(a and b and a != b for a, b in zip(written, other, strict=True))
-        return self._is_known and bool(terms) and is_other
+        pairs = [*zip(written, other, strict=True)]
+        is_exchanged = any(a and b and a != b for a, b in pairs)
+        return self._is_known and is_exchanged and all(a or b for a, b in pairs)
 
     def _special_motion(self, number: int) -> int | None:
         """The line of a special motion with which an equation can hold.
