@@ -8,6 +8,7 @@ import pytest
 
 from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.judges import Judges
 from derive.verification.documents.numbers import resolution
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 
@@ -672,3 +673,12 @@ I\dot\omega = \tau - B\omega
 $$
 and does not slide: $$Q = v_x\sin\theta - v_y\cos\theta = 0$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_a_meaning_has_constraints_with_motions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = r"$$x^2 + y^2 - l^2 = 0$$ $$m\ddot x = 2\lambda x$$ $$m\ddot y = 2\lambda y - m g$$"
+    assert verdicts(tmp_path, text)[1:] == ["verified"] * 2
+    monkeypatch.setattr(Judges, "has_motions", lambda *_: False)
+    assert "verified" not in verdicts(tmp_path, text)
