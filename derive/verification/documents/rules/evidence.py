@@ -187,16 +187,11 @@ class _Evidence:
         terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
         slips = max(self._misfits, len(terms) if self._has_energy else 0)
         few = max(1, min(self._holding, max(2, self._holding // 2)))
-        is_unsure = self._has_energy or self._changes_loads or self._are_signs
+        is_unsure = self._has_energy or self._are_signs
         is_several = is_unsure and len(self._wrong) > 1
         has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
         is_open = self._is_partial or self._candidate.has_unusual_letters
         return self._is_known and (is_open or not has_all or has_none or slips > few)
-
-    @property
-    def _changes_loads(self) -> bool:
-        """Whether a correction changes a force or friction, the letter of which can be another."""
-        return any(self._loads_in(t) for one in self._wrong for t in one.verdict.corrections)
 
     def _loads_in(self, term: Correction) -> set[str]:
         """The letters of forces and friction in a term or in its correction."""
