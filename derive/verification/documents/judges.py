@@ -8,6 +8,7 @@ from itertools import chain, product
 from typing import TypeAlias
 
 from derive.formulas.syntax import ExpressionError
+from derive.system.parts import SystemDefinitionError
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.document_system import system_letters
@@ -62,10 +63,10 @@ class Judges:
         return self._judges[id(candidate)][1]
 
     def has_motions(self, candidate: SystemCandidate) -> bool:
-        """Whether the constraints of a candidate can be satisfied."""
+        """Whether the constraints of a candidate can be satisfied, and its coordinates vary."""
         try:
             self.judge(candidate)
-        except ExpressionError:
+        except (ExpressionError, SystemDefinitionError):
             return False
         return True
 
