@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from html import escape
 from html.parser import HTMLParser
+from itertools import takewhile
 from typing import NamedTuple
 
 from derive.reading.document import CodeCell, Display, Document
@@ -36,6 +37,9 @@ IMPLIED = {
     **{tag: ({"td", "th"}, {"tr"}) for tag in ("td", "th")},
     "tr": ({"tr"}, {"table", "thead", "tbody"}),
 }
+VACANT = re.compile(r"<p>\s*</p>|<pre>(?:<code>)?\s*(?:</code>)?</pre>")
+#: Elements that end before a display and start again behind it.
+DIVIDED = frozenset(("p", "pre", "code"))
 #: Elements at whose end stands what belongs below a formula of their text.
 BLOCKS = frozenset(("p", "li", "td", "th", "dd", "dt", "h1", "h2", "h3", "h4", "h5", "h6"))
 
@@ -120,7 +124,7 @@ class _Blocks(HTMLParser):
         self.feed(text)
         self.close()
         self._close(0)
-        return re.sub(r"<p>\s*</p>", "", "".join([*self._pieces, *self._below]))
+        return VACANT.sub("", "".join([*self._pieces, *self._below]))
 
     def handle_starttag(self, tag: str, attrs: object) -> None:
         if tag == "body":
@@ -180,7 +184,7 @@ class _Blocks(HTMLParser):
                 self._pieces.append(inside)
                 self._below.append(below)
                 continue
-            is_within = self._open[-1:] == ["p"]
-            self._pieces.append("</p>" * is_within)
+            around = list(takewhile(DIVIDED.__contains__, reversed(self._open)))
+            self._pieces += [f"</{tag}>" for tag in around]
             self._append_below()
-            self._pieces += [inside, below, "<p>" * is_within]
+            self._pieces += [inside, below, *(f"<{tag}>" for tag in reversed(around))]

@@ -74,8 +74,8 @@ class Outcome:
         assert self.slip
         assert self.blamed
         term, whole = (_squeezed(one) for one in (self.blamed.wrong_term, self.slip.wrong))
-        if not term:
-            return self.is_mended  # a missing term
+        if not term or self.document.style.markup == "txt":
+            return self.is_mended  # a missing term, or another source
         before = len(_squeezed(self.slip.wrong[: self.slip.start]))
         after = len(_squeezed(self.slip.wrong[: self.slip.end]))
         places = [one.start() for one in re.finditer(re.escape(term), whole)]
@@ -111,7 +111,8 @@ def outcome(name: str, document: WrittenDocument, slip: Slip | None, folder: Pat
     except Exception as error:  # a crash is what is counted
         return Outcome(name, document, slip, failure=repr(error))
     seconds = time.process_time() - start
-    found = [_of(judged, changed.get(one, one)) for one in document.statements]
+    sources = [document.style.source(changed.get(one, one)) for one in document.statements]
+    found = [_of(judged, one) for one in sources]
     pairs = tuple((one.verdict, one.note) if one else ("unread", "") for one in found)
     blamed = found[slip.index] if slip else None
     return Outcome(name, document, slip, pairs, judged.system, blamed, seconds)

@@ -6,6 +6,22 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from derive.formulas.typeset.lettering import GREEK as UNICODE
+from derive.reading.latex.display_reader import formulas
+from derive.reading.latex.tree import (
+    Application,
+    Call,
+    Derivative,
+    Letter,
+    Node,
+    Number,
+    Power,
+    Product,
+    Quotient,
+    Statement,
+    Sum,
+)
+
 #: Greek letters, and indices, as LaTeX has them.
 COMMON = {
     **{name: rf"\{name}" for name in ("theta", "phi", "alpha", "Omega")},
@@ -53,9 +69,9 @@ class Style:
     """How an author writes."""
 
     steps: tuple[str, ...]
-    markup: str = "md"  # md, tex, html, rst or ipynb
+    markup: str = "md"  # md, tex, html, rst, ipynb, or txt for formulas in plain text
     letters: Mapping[str, str] = field(default_factory=dict)  # beside those that are common
-    rates: str = "dot"  # dot, time (functions of t), leibniz or prime
+    rates: str = "dot"  # dot, time (functions of t), leibniz, prime, or words in plain text
     energies: Sequence[str] = ("T", "V", "L", "H")
     shift: sp.Expr = sp.S.Zero  # of angles, from hanging
     is_down: bool = False  # the axis of heights points downwards
@@ -73,12 +89,12 @@ class Style:
     def written(self, steps: Sequence[tuple[str, Sequence[str]]]) -> str:
         """The text of a document from the formulas of its steps."""
         pieces = []
-        for step, formulas in steps:
+        for step, statements in steps:
             words = WORDS[self.language][step]
-            if self.is_aligned and len(formulas) > 1:
-                rows = " \\\\\n".join(one.replace(" = ", " &= ", 1) for one in formulas)
-                formulas = [f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"]
-            pieces.append("\n\n".join([words, *map(self._display, formulas)]))
+            if self.is_aligned and len(statements) > 1:
+                rows = " \\\\\n".join(one.replace(" = ", " &= ", 1) for one in statements)
+                statements = [f"\\begin{{aligned}}\n{rows}\n\\end{{aligned}}"]
+            pieces.append("\n\n".join([words, *map(self._display, statements)]))
         text = "\n\n".join(pieces)
         if self.markup == "tex":
             return f"\\documentclass{{article}}\n\\begin{{document}}\n{text}\n\\end{{document}}\n"
@@ -89,7 +105,17 @@ class Style:
             return json.dumps({"cells": cells, "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
         return text + "\n"
 
+    def source(self, formula: str) -> str:
+        """A formula as the document contains it."""
+        if self.markup != "txt":
+            return formula
+        (statement,) = formulas(formula)
+        assert isinstance(statement, Statement)
+        return " = ".join(plain_text(side, self.rates) for side in statement.sides)
+
     def _display(self, formula: str) -> str:
+        if self.markup == "txt":
+            return f"    {self.source(formula)}"
         if self.markup == "tex":
             return f"\\begin{{equation}}\n{formula}\n\\end{{equation}}"
         if self.markup == "rst":
@@ -98,6 +124,48 @@ class Style:
             formula = formula.replace("&", "&amp;").replace("<", "&lt;")
             return f"\\[ {formula} \\]"
         return f"$$\n{formula}\n$$"
+
+
+LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def plain_text(node: Node, rates: str) -> str:
+    """A formula in plain text: with words for dots if these are ``words``."""
+
+    def factor(one: Node) -> str:
+        text = plain_text(one, rates)
+        return f"({text})" if isinstance(one, Sum | Quotient | Product | Application) else text
+
+    match node:
+        case Number():
+            return node.digits
+        case Letter() if rates == "words":
+            dots = f"_{'d' * node.dots}ot" if node.dots else ""
+            return f"{node.name}{node.index}{dots}"
+        case Letter():
+            letter = UNICODE.get(node.name, node.name)
+            return letter + ("", "\u0307", "\u0308")[node.dots] + node.index.translate(LOWERED)
+        case Sum():
+            terms = "".join(f" {'-' if s < 0 else '+'} {plain_text(t, rates)}" for s, t in node.terms)
+            return terms.removeprefix(" + ").replace(" - ", "-", terms.startswith(" - "))
+        case Product():
+            return ("*" if rates == "words" else " ").join(map(factor, node.factors))
+        case Quotient():
+            return f"{factor(node.numerator)}/{factor(node.denominator)}"
+        case Power(base=Call() as call):
+            return f"{call.function}({plain_text(call.argument, rates)})^{factor(node.exponent)}"
+        case Power():
+            return f"{factor(node.base)}^{factor(node.exponent)}"
+        case Call():
+            return f"{node.function}({plain_text(node.argument, rates)})"
+        case Application(head=head, arguments=(argument,)):  # a product, as no letter is a function
+            return plain_text(Product((head, argument), node.span), rates)
+        case Derivative(operand=operand, variables=(variable,)):
+            sign = "∂" if node.is_partial else "d"
+            if isinstance(operand, Letter):
+                return f"{sign}{operand.name}/{sign}{plain_text(variable, rates)}"
+            return f"{sign}/{sign}{plain_text(variable, rates)}({plain_text(operand, rates)})"
+    raise AssertionError(node)
 
 
 STYLES: dict[str, Style] = {
@@ -132,6 +200,8 @@ STYLES: dict[str, Style] = {
         ("energy", "equations"), "tex", {"J": "I", "k": "c", "m": "M", "a": "d"}, halves=True,
         moves_right=True,
     ),
+    "plain_text": Style(BY_STEPS, "txt", halves=True, brackets=True),
+    "readme": Style((*BY_POSITIONS, "accelerations"), "txt", rates="words", is_chained=True),
     "horizontal": Style(BY_POSITIONS, shift=sp.pi / 2, is_chained=True),
     "leibniz": Style(
         (*BY_ENERGIES, "energy"), "tex", rates="leibniz", energies=("K", "U", "L", "H"),

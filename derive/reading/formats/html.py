@@ -5,11 +5,13 @@ from collections.abc import Iterator
 from html import unescape
 
 from derive.reading.formats.tex import environments
+from derive.reading.plain_formulas import PLAIN, with_plain_formulas
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "html", (".html", ".htm")
 #: Elements whose text is shown as it stands, or not at all.
 RAW = r"(?i:<(?:script|style|pre|code|textarea|noscript|svg|head|title)\b[^<>]*+>)"
+PREFORMATTED = r"(?i:<pre\b[^<>]*+>(?:\s*<code>)?)"
 #: Tags, comments, and the ends of blocks of text, at which a formula ends.
 TAG, COMMENT = r"</?[A-Za-z][^<>]*+>", "<!--"
 BLOCK_END = r"(?i:</(?:p|div|li|td|body|h\d)\b)"
@@ -35,6 +37,7 @@ TOKENS = (
     Delimiter(SCRIPT + r";\s*mode=display[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex"),
     Delimiter(SCRIPT + r"[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex", is_inline=True),
     *MATH,
+    Delimiter(PREFORMATTED, raw_end, PLAIN, is_inline=True),
     Delimiter(RAW, raw_end),
     Delimiter(TAG),
     Delimiter(r"\\[\\$]"),
@@ -53,7 +56,7 @@ TOKENS = (
 
 def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a page."""
-    return scanned(text, TOKENS)
+    return with_plain_formulas(text, scanned(text, TOKENS))
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:

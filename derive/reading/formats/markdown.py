@@ -1,4 +1,4 @@
-r"""Markdown: ``$$``, ``\[``, fences, environments; in code there are no formulas."""
+r"""Markdown: ``$$``, ``\[``, fences, environments, and formulas in plain text in blocks of code."""
 
 import re
 from collections.abc import Iterator
@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
+from derive.reading.plain_formulas import LANGUAGES, PLAIN, with_plain_formulas
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
@@ -54,6 +55,10 @@ def _span_end(opening: re.Match[str]) -> str:
 MATH_BLOCK = Delimiter(
     MARGIN + r"(?:`{3,}|~{3,})[ \t]*+(?:math|\{math\})[ \t]*+$", _fence_end, "```math"
 )
+#: Code of no language; whether it contains formulas is seen below.
+PLAIN_BLOCK = Delimiter(
+    MARGIN + rf"(?:`{{3,}}|~{{3,}})[ \t]*+{LANGUAGES}[ \t]*+$", _code_end, PLAIN, is_inline=True
+)
 CODE_BLOCK = Delimiter(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end)
 TOKENS = (
     Delimiter("<!--", "(?P<end>-->)"),
@@ -95,12 +100,16 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text."""
     code = _indented_code(text)
     indented = Delimiter(
-        "^(?: {4}| {0,3}\t)", "(?P<end>$)", applies=lambda one: one.start() in code
+        "^(?: {4}| {0,3}\t)", "(?P<end>$)", PLAIN, True, applies=lambda one: one.start() in code
     )
     fences = _fences_of_boxes(text)
-    block = replace(CODE_BLOCK, applies=lambda one: one.start() not in fences)
-    for result in scanned(text, (indented, MATH_BLOCK, block, *TOKENS)):
-        if isinstance(result, UnreadDisplay):
+    blocks = (
+        replace(one, applies=lambda one: one.start() not in fences)
+        for one in (PLAIN_BLOCK, CODE_BLOCK)
+    )
+    results = scanned(text, (indented, MATH_BLOCK, *blocks, *TOKENS))
+    for result in with_plain_formulas(text, results):
+        if isinstance(result, UnreadDisplay) or result.delimiter == PLAIN:
             yield result
         elif result.delimiter in ("$$", IMAGE):
             yield replace(result, is_inline=_is_in_sentence(text, result))
@@ -180,6 +189,8 @@ def _fences_of_boxes(text: str) -> frozenset[int]:
 def decoded(text: str, excerpt: Excerpt) -> str:
     """The LaTeX after Markdown's own escapes; the length stays the same."""
     latex = text[excerpt.start : excerpt.end]
+    if excerpt.delimiter == PLAIN:
+        return latex
     if "\n" in latex and QUOTED.match(text, text.rfind("\n", 0, excerpt.start) + 1):
         latex = QUOTED.sub(lambda margin: " " * len(margin[0]), latex)
     if excerpt.delimiter == "```math":

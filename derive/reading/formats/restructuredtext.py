@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 
+from derive.reading.plain_formulas import PLAIN, with_plain_formulas
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "restructuredtext", (".rst",)
@@ -28,7 +29,9 @@ TOKENS = (
     # a comment: no directive, target, footnote or substitution
     Delimiter(r"^[ \t]*+\.\.(?![^ \t\n])(?![ \t]++(?:[\w:-]+::|[\[_|]))[^\n]*+\n", _block_end),
     # a paragraph that introduces a literal block
-    Delimiter(r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end),
+    Delimiter(
+        r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end, PLAIN, is_inline=True
+    ),
     Delimiter(r":math:`", rf"(?P<end>`)|(?P<stop>{BLANK_LINE})", ":math:", is_inline=True),
     Delimiter(r"``", rf"(?P<end>``)|(?P<stop>{BLANK_LINE})"),
 )
@@ -36,7 +39,7 @@ TOKENS = (
 
 def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text."""
-    return scanned(text, TOKENS)
+    return with_plain_formulas(text, scanned(text, TOKENS))
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:
@@ -44,7 +47,8 @@ def decoded(text: str, excerpt: Excerpt) -> str:
 
     Behind blank lines a row begins, as Sphinx reads them.
     """
-    return BLANK.sub(r"\1\\\\", options_removed(text[excerpt.start : excerpt.end]))
+    latex = text[excerpt.start : excerpt.end]
+    return latex if excerpt.delimiter == PLAIN else BLANK.sub(r"\1\\\\", options_removed(latex))
 
 
 def prose(text: str) -> str:

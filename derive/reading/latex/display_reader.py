@@ -35,6 +35,7 @@ from derive.reading.latex.layout.latex_symbols import ELLIPSES
 from derive.reading.latex.layout.layout_removal import Layout
 from derive.reading.latex.layout.macros import Macro, expanded, macros_of
 from derive.reading.latex.layout.pairs import inside, pairs
+from derive.reading.latex.layout.plain_words import with_words
 from derive.reading.latex.layout.rows import flattened, statements
 from derive.reading.latex.layout.spellings import (
     with_fractions_of_derivatives,
@@ -84,7 +85,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
         pairs(tokens)  # refuses deep braces before anything descends into them
         tokens = with_new_fonts(with_unicode_scripts(tokens))
         tokens = with_fractions_of_derivatives(tokens)
-        tokens = Layout(tokens).tokens_without_layout()
+        tokens = with_words(Layout(tokens).tokens_without_layout())
         found = statements(flattened(tokens))
     except UnreadError as error:
         return [Unreadable(str(error), whole)]

@@ -14,6 +14,7 @@ from derive.reading.latex.tree import (
     Unreadable,
     nodes,
 )
+from derive.reading.plain_formulas import PLAIN
 from derive.verification.documents.formula_translation import RATES, FormulaTranslator, stem
 from derive.verification.documents.letter_meanings import (
     Work,
@@ -229,7 +230,10 @@ def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:
 def _occurrence(document: Document, display: Display, tree: Statement | Unreadable) -> Occurrence:
     line, column, cell = document.place(display.start + tree.span[0])
     prose = sentence(document, display)
-    return Occurrence(display.number, line, column, cell, display.start, display.latex, tree, prose)
+    return Occurrence(
+        display.number, line, column, cell, display.start, display.latex, tree, prose,
+        is_plain=display.delimiter == PLAIN,
+    )  # fmt: skip
 
 
 def _plain(place: Occurrence, verdict: str, note: str) -> FormulaVerdict:

@@ -62,6 +62,7 @@ class Occurrence:
     latex: str  # of the display
     tree: Statement | Unreadable
     prose: str = ""  # of the sentence around the display
+    is_plain: bool = False  # in plain text
 
     @property
     def source(self) -> str:

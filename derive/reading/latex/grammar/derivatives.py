@@ -114,11 +114,22 @@ def slashed_derivative(before: list[Part], behind: list[Part]) -> list[Part] | N
             stop = min(stop, len(behind) // 2 * 2)
             while stop > 2 and _sign_of_differential(node(behind[stop - 2])) != name:
                 stop -= 2
+            if not result[2]:
+                behind = _with_operand(behind, stop)
             below = product([node(part) for part in behind[:stop]])
             del before[-count:]
             span = around([*above, *behind[:stop]])
             return [fraction(product([node(p) for p in above]), below, span), *behind[stop:]]
     return None
+
+
+def _with_operand(behind: list[Part], stop: int) -> list[Part]:
+    """The factors below a slash, of which brackets behind the last variable are the operand."""
+    last = node(behind[stop - 1])
+    if not isinstance(last, Application) or len(last.arguments) != 1:
+        return behind
+    brackets = WrittenNode(last.arguments[0], (last.head.span[1], last.span[1]), "brackets")
+    return [*behind[: stop - 1], last.head, brackets, *behind[stop:]]
 
 
 def applied(parts: list[Part]) -> Part:

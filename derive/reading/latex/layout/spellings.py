@@ -6,7 +6,7 @@ from itertools import groupby
 
 from derive.reading.latex.layout.latex_symbols import COMBINING
 from derive.reading.latex.layout.pairs import pairs
-from derive.reading.latex.layout.tokens import Token, UnreadError, script_of, tokenize
+from derive.reading.latex.layout.tokens import Token, UnreadError, braced, script_of, tokenize
 
 #: Fonts that hold to the end of their braces.
 OLD_FONTS = {
@@ -42,8 +42,8 @@ def with_fractions_of_derivatives(tokens: list[Token]) -> list[Token]:
         if sign.text == "partial" and tokens[index].kind == "_" and first < len(tokens):
             last = partner.get(first, first)
             variable = tokens[first + 1 : last] if last > first else [tokens[first]]
-            result += [replace(sign, text="frac"), *_braced([sign])]
-            result += _braced([replace(sign, span=tokens[index].span), *variable])
+            result += [replace(sign, text="frac"), *braced([sign])]
+            result += braced([replace(sign, span=tokens[index].span), *variable])
             at = last
         else:
             result.append(sign)
@@ -63,13 +63,13 @@ def with_unicode_scripts(tokens: list[Token]) -> list[Token]:
             for token in marked:
                 start, end = letter[0].span[0], token.span[1]
                 accent = Token("command", COMBINING[token.text], (start, end))
-                letter = [accent, *_braced(letter)[:-1], Token("}", "}", (end, end))]
+                letter = [accent, *braced(letter)[:-1], Token("}", "}", (end, end))]
             result += letter
         elif kind:
             span = marked[0].span[0], marked[-1].span[1]
             simple = [unicodedata.normalize("NFKC", token.text) for token in marked]
             inner = [replace(t, span=span) for text in simple for t in tokenize(text)]
-            result += [Token(kind, kind, span), *_braced(inner)]
+            result += [Token(kind, kind, span), *braced(inner)]
         else:
             result += marked
     return result
@@ -80,8 +80,3 @@ def _script(token: Token) -> str:
     if token.kind != token.text or token.kind.isascii():
         return ""
     return "accent" if token.text in COMBINING else script_of(token.text)
-
-
-def _braced(tokens: list[Token]) -> list[Token]:
-    start, end = tokens[0].span[0], tokens[-1].span[1]
-    return [Token("{", "{", (start, start)), *tokens, Token("}", "}", (end, end))]

@@ -107,3 +107,9 @@ def argument(tokens: list[Token], at: int) -> tuple[tuple[int, int], int] | None
         if depth == 0:
             return (at + 1, end), end + 1
     return None
+
+
+def braced(tokens: list[Token]) -> list[Token]:
+    """Tokens in braces."""
+    start, end = tokens[0].span[0], tokens[-1].span[1]
+    return [Token("{", "{", (start, start)), *tokens, Token("}", "}", (end, end))]

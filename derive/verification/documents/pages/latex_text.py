@@ -7,6 +7,8 @@ from unicodedata import normalize
 
 from derive.formulas.typeset.lettering import GREEK
 from derive.reading.latex.display_reader import Macro, formulas
+from derive.reading.latex.layout.plain_words import WORD
+from derive.reading.latex.layout.tokens import script_of
 from derive.reading.latex.tree import Statement
 from derive.verification.documents.pages.verdicts_in_place import one_line
 
@@ -117,7 +119,9 @@ def _character(one: str) -> str:
         return one if one.isprintable() else " "
     if one in GREEK_NAMES:
         return rf"\ensuremath{{\{GREEK_NAMES[one]}}}"
-    plain = "".join(c for c in normalize("NFKD", one) if c.isascii() and c.isprintable())
+    plain = "".join(c for c in normalize("NFKD", one).replace("⁄", "/") if c.isascii())
+    if sign := script_of(one):
+        return rf"\ensuremath{{{{}}{sign}{{{plain}}}}}"
     return "".join(SPECIAL.get(c, c) for c in plain) or "?"
 
 
@@ -140,7 +144,7 @@ def formula(latex: str, macros: Mapping[str, Macro] = {}) -> str:
     if not kept:
         return ""
     readable = all(isinstance(one, Statement) for one in formulas(kept, macros))
-    if not (readable and _is_known(kept, macros)):
+    if not (readable and _is_known(kept, macros)) or WORD.search(re.sub(r"\\[A-Za-z]+", "", kept)):
         return code(kept)
     if re.search(r"&|\\\\", kept):
         return rf"$\displaystyle\begin{{aligned}}{kept}\end{{aligned}}$"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from derive.reading.document import Display, Document
+from derive.reading.plain_formulas import PLAIN
 from derive.verification.documents.pages.verdicts_in_place import (
     REFUTED,
     DocumentVerdicts,
@@ -70,6 +71,9 @@ def _note(document: Document, display: Display, own: Sequence[FormulaVerdict]) -
     """What follows a formula: a quotation at the end of a line, brackets within it."""
     text, (first, last) = document.text, display.extent
     start, end = text.rfind("\n", 0, first) + 1, text.find("\n", last)
+    if display.delimiter == PLAIN:  # in code, where nothing is Markdown
+        refuted = "; ".join(_details(one) for one in own if one.verdict in REFUTED)
+        return f"   ({refuted})" if refuted else ""
     if display.is_inline or text[last : end if end >= 0 else None].strip():
         refuted = "; ".join(_words(one, "$") for one in own if one.verdict in REFUTED)
         return f" ({refuted})" if refuted else ""
@@ -89,6 +93,12 @@ def _words(one: FormulaVerdict, quote: str) -> str:
     name = f"**{one.verdict}**" if one.verdict in REFUTED else one.verdict
     correction = f"should be {quote}{one_line(one.correction)}{quote}" if one.correction else ""
     return ", ".join(filter(None, (name, correction, _escaped(one.witness), _escaped(one.note))))
+
+
+def _details(one: FormulaVerdict) -> str:
+    """The verdict in plain text."""
+    correction = f"should be {one_line(one.correction)}" if one.correction else ""
+    return ", ".join(filter(None, (one.verdict, correction, one.witness, one.note)))
 
 
 def _summary(verdicts: DocumentVerdicts) -> str:

@@ -1,11 +1,14 @@
 """Wrong terms of formulas as the document writes them, and the formulas with correct ones."""
 
+import ast
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from derive.formulas.syntax import is_sum, syntax_tree
 from derive.formulas.typeset.latex import latex as latex_of
 from derive.reading.latex.tree import Span
+from derive.verification.documents.formula_translation import stem
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.judging.verdict import Correction
@@ -28,11 +31,11 @@ def corrected(
 ) -> Corrected:
     """The corrections of a verdict in LaTeX; empty if none are known."""
     latex, tree = formula.occurrence.latex, formula.occurrence.tree
-    verdict = result.verdict
+    verdict, is_plain = result.verdict, formula.occurrence.is_plain
     if not verdict.corrections and verdict.correction == formula.subject:
         return Corrected()  # nothing but the quantity itself
     if not verdict.corrections or formula.index:
-        whole = written(verdict.correction, letters) if verdict.correction else ""
+        whole = written(verdict.correction, letters, is_plain) if verdict.correction else ""
         if whole and result.kind != "euler_lagrange" and "=" not in whole:
             whole = f"{latex[slice(*formula.occurrence.sides[0].span)]} = {whole}"
         return Corrected(correction=whole)
@@ -40,15 +43,16 @@ def corrected(
     for one in verdict.corrections:
         span = source_span(latex, result, one)
         if span is None:
-            return Corrected(correction=written(verdict.correction, letters))
-        new = written(one.correct, letters)
+            return Corrected(correction=written(verdict.correction, letters, is_plain))
+        new = written(one.correct, letters, is_plain)
         if one.wrong.startswith("-") and not latex[slice(*span)].startswith("-"):
             # the sign stands before a fraction, of which this is the numerator
             if is_sum(syntax_tree(one.correct)):
-                new = rf"-\left({new}\right)"
+                new = f"-({new})" if is_plain else rf"-\left({new}\right)"
             else:
                 new = new[1:] if new.startswith("-") else f"-{new}"
-        new = in_brackets(one, new, latex[: span[0]], latex[span[1] :]) if one.wrong else new
+        if one.wrong:
+            new = in_brackets(one, new, latex[: span[0]], latex[span[1] :], is_plain)
         changes.append((span, new))
     changes.sort(reverse=True)
     text, start = latex, tree.span[0]
@@ -98,14 +102,25 @@ def inserted(before: str, old: str, new: str, after: str) -> str:
     return before + new + after
 
 
-def in_brackets(one: Correction, new: str, before: str, after: str) -> str:
+def in_brackets(one: Correction, new: str, before: str, after: str, is_plain: bool) -> str:
     """A sum in brackets where it replaces a factor."""
     is_factor = before.rstrip()[-1:] not in ("", *"(+=&[{,") or after.lstrip()[:1] not in (
         "", *")+-=&]},\\",
     )  # fmt: skip
-    return rf"\left({new}\right)" if is_factor and is_sum(syntax_tree(one.correct)) else new
+    if not is_factor or not is_sum(syntax_tree(one.correct)):
+        return new
+    return f"({new})" if is_plain else rf"\left({new}\right)"
 
 
-def written(text: str, letters: Mapping[str, str]) -> str:
-    """A formula or an equation as LaTeX, with the letters as a document writes them."""
-    return " = ".join(latex_of(syntax_tree(side), letters) for side in text.split("="))
+def written(text: str, letters: Mapping[str, str], is_plain: bool = False) -> str:
+    """A formula or an equation as LaTeX or in plain text, with the letters of a document."""
+    write = _plain if is_plain else latex_of
+    return " = ".join(write(syntax_tree(side), letters) for side in text.split("="))
+
+
+def _plain(node: ast.expr, letters: Mapping[str, str]) -> str:
+    for one in ast.walk(node):
+        if isinstance(one, ast.Name):
+            letter = stem(one.id)
+            one.id = letters.get(one.id, letters.get(letter, letter) + one.id[len(letter) :])
+    return re.sub(r" ([*/^]) ", r"\1", ast.unparse(node).replace("**", "^"))

@@ -1,0 +1,137 @@
+"""Formulas in plain text, as in blocks of code: ``θ'' = -(g/l) sin θ``, ``x_ddot = -k*x/m``."""
+
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import chain
+from typing import TypeGuard
+
+from derive.reading.scanning import Excerpt, UnreadDisplay
+
+#: The delimiter of a formula that stands on lines of its own.
+PLAIN = "text"
+#: Languages of blocks of code that are none.
+LANGUAGES = r"(?:text|txt|plain|plaintext|ascii|none)?"
+#: Before a formula: a mark of a list, a number in brackets, words and a colon.
+LABEL = re.compile(
+    r"[ \t>]*(?:(?:[-*•]|\d+[.)]|\([\w.]+\))[ \t]+)?(?:[A-Za-z][^=:\n]{2,60}:[ \t]+)?"
+)
+#: Behind it: a comment, a number or words in brackets after several spaces, punctuation.
+REMARK = re.compile(
+    r"[ \t]+(?:#|//|--|←|<-|—)[^\n]*|(?:[ \t]{2,}|\t)[(\[][^=\n]*[)\]]\.?$"
+    r"|[ \t]+\((?=[^()=]*[a-z]{4})[^()=]*\)$|[ \t]+\[[^\]=\n]*\]$|[ \t]*[,;.]?[ \t]*$"
+)
+LINE = re.compile(r"[^\n]+")
+RELATION = re.compile(r"=|≈|≡|:=")
+#: The start of a line that continues the formula before it.
+CONTINUED = re.compile(r"[=+\-−*/·]")
+#: The start of a line that continues the formula before it.
+CONTINUED = re.compile(r"[=+\-−*/·]")
+#: What is part of no formula but of a program, of a table or of a sentence.
+FOREIGN = re.compile(
+    r"""==|[+\-*/]=|=>|[;{}"`$@!?\\&|#<>~%]|\w\[|[A-Za-z]\.[A-Za-z]|\d\.\w*[A-Za-z]|[A-Za-z]\w*\(\)"""
+)
+PROGRAM = re.compile(
+    r"^[ \t]*(?:def|for|while|import|from|function|class|return|if|else|elif|var|let|const|double|"
+    r"float|int|void|print|#include|git|pip|npm|cd|make|sudo|\$|>>>)\b|[;{][ \t]*$",
+    re.MULTILINE,
+)
+#: Signs of mechanics: characters that programs lack, and derivatives.
+MATHEMATICS = re.compile(r"''|d?dot\b|\bd\^?2\w|\bd\w{1,6}/dt\b|[A-Za-z)]'")
+FUNCTION = r"(?:a|arc)?(?:sin|cos|tan)h?|sqrt|exp|log|ln|cot|sgn|sign|abs"
+GREEK = (
+    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|rho|sigma|tau|"
+    "upsilon|phi|chi|psi|omega|pi"
+)
+#: Words of a formula: letters, functions, Greek letters, derivatives of these, and products.
+WORD = re.compile(
+    rf"(?i:{FUNCTION}|d?(?:{GREEK})|[KPT]E|mg[a-z]|GMm)(?:_?d{{1,3}}ot)*|d{{0,2}}[a-zA-Z]_?d{{1,3}}ot"
+    r"|const(?:ant)?|[a-zA-Z]{1,2}"
+)
+#: Words of two letters that are none of a formula.
+PROSE = frozenset("is of to in at or if we by so an as on it be do no".split())
+
+
+def with_plain_formulas(
+    text: str, results: Iterable[Excerpt | UnreadDisplay]
+) -> Iterator[Excerpt | UnreadDisplay]:
+    """The results of a scan, with the formulas on the lines of blocks of code for these blocks.
+
+    There are none unless one of them shows that it belongs to no program.
+    """
+    joined = [*_with_whole_blocks(text, results)]
+    found = [_formulas(text, one) if _is_block(one) else [one] for one in joined]
+    flat = [*chain.from_iterable(found)]
+    is_read = any(_is_block(one) and _is_mathematics(text[one.start : one.end]) for one in flat)
+    return (one for one in flat if is_read or not _is_block(one))
+
+
+def _is_block(one: Excerpt | UnreadDisplay) -> TypeGuard[Excerpt]:
+    return isinstance(one, Excerpt) and one.delimiter == PLAIN
+
+
+def _with_whole_blocks(
+    text: str, results: Iterable[Excerpt | UnreadDisplay]
+) -> Iterator[Excerpt | UnreadDisplay]:
+    """The results with one block for indented lines that only spaces separate."""
+    block: Excerpt | None = None
+    for one in results:
+        if block and _is_block(one) and not text[block.end : one.start].strip():
+            block = replace(block, end=one.end)
+            continue
+        if block:
+            yield block
+        block = one if _is_block(one) else None
+        if not block:
+            yield one
+    if block:
+        yield block
+
+
+def _formulas(text: str, block: Excerpt) -> list[Excerpt | UnreadDisplay]:
+    """The formulas on the lines of a block, if it is no program."""
+    found = list[Excerpt]()
+    start = text.rfind("\n", 0, block.start) + 1  # before the indentation
+    if PROGRAM.search(text, start, block.end):
+        return []
+    for line in LINE.finditer(text, start, block.end):
+        first, last = _formula(line)
+        formula = text[first:last]
+        if not _is_formula(formula):
+            continue
+        if CONTINUED.match(formula) and found and text[found[-1].end : first].count("\n") == 1:
+            found[-1] = replace(found[-1], end=last, extent=(found[-1].start, last))
+        elif RELATION.search(formula):
+            found.append(Excerpt(first, last, (first, last), PLAIN))
+    return [*found]
+
+
+def _formula(line: re.Match[str]) -> tuple[int, int]:
+    """Where the formula of a line starts and ends, without a label and a remark."""
+    label = LABEL.match(line.string, line.start(), line.end())
+    first = label.end() if label else line.start()
+    last = first + len(line.string[first : line.end()].rstrip())
+    while remark := REMARK.search(line.string[first:last]):
+        if not remark.group():
+            break
+        last = first + remark.start()
+    return first, last
+
+
+def _is_formula(formula: str) -> bool:
+    """Whether all words are those of a formula."""
+    if FOREIGN.search(formula) or not formula:
+        return False
+    left, _, right = formula.partition("=")
+    name = left.strip()
+    if re.fullmatch(r"\w+", name) and re.match(rf"\s*{re.escape(name)}\s*[-+*]", right):
+        return False  # x = x + v*dt
+    words = re.findall(r"[A-Za-z]+", re.sub(r"_[A-Za-z]+", "_", formula))
+    return all(WORD.fullmatch(one) and one not in PROSE for one in words)
+
+
+def _is_mathematics(formula: str) -> bool:
+    """Whether a formula has characters that programs lack, or a derivative."""
+    characters = (one for one in unicodedata.normalize("NFKD", formula) if not one.isascii())
+    return bool(MATHEMATICS.search(formula)) or any(characters)
