@@ -26,8 +26,6 @@ LINE = re.compile(r"[^\n]+")
 RELATION = re.compile(r"=|≈|≡|:=")
 #: The start of a line that continues the formula before it.
 CONTINUED = re.compile(r"[=+\-−*/·]")
-#: The start of a line that continues the formula before it.
-CONTINUED = re.compile(r"[=+\-−*/·]")
 #: What is part of no formula but of a program, of a table or of a sentence.
 FOREIGN = re.compile(
     r"""==|[+\-*/]=|=>|[;{}"`$@!?\\&|#<>~%]|\w\[|[A-Za-z]\.[A-Za-z]|\d\.\w*[A-Za-z]|[A-Za-z]\w*\(\)"""

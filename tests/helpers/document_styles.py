@@ -146,8 +146,10 @@ def plain_text(node: Node, rates: str) -> str:
             letter = UNICODE.get(node.name, node.name)
             return letter + ("", "\u0307", "\u0308")[node.dots] + node.index.translate(LOWERED)
         case Sum():
-            terms = "".join(f" {'-' if s < 0 else '+'} {plain_text(t, rates)}" for s, t in node.terms)
-            return terms.removeprefix(" + ").replace(" - ", "-", terms.startswith(" - "))
+            signs = ("-" if sign < 0 else "+" for sign, _ in node.terms)
+            texts = (plain_text(term, rates) for _, term in node.terms)
+            whole = " ".join(f"{sign} {text}" for sign, text in zip(signs, texts, strict=True))
+            return whole.removeprefix("+ ")
         case Product():
             return ("*" if rates == "words" else " ").join(map(factor, node.factors))
         case Quotient():

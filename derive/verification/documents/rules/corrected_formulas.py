@@ -102,7 +102,7 @@ def inserted(before: str, old: str, new: str, after: str) -> str:
     return before + new + after
 
 
-def in_brackets(one: Correction, new: str, before: str, after: str, is_plain: bool) -> str:
+def in_brackets(one: Correction, new: str, before: str, after: str, is_plain: bool = False) -> str:
     """A sum in brackets where it replaces a factor."""
     is_factor = before.rstrip()[-1:] not in ("", *"(+=&[{,") or after.lstrip()[:1] not in (
         "", *")+-=&]},\\",
