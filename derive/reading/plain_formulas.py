@@ -4,13 +4,11 @@ import re
 import unicodedata
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import chain
-from typing import TypeGuard
 
 from derive.reading.scanning import Excerpt, UnreadDisplay
 
-#: The delimiter of a formula that stands on lines of its own.
-PLAIN = "text"
+#: The delimiter of a formula in plain text, and those of blocks and spans of code that are scanned.
+PLAIN, BLOCK, SPAN = "text", "block of code", "span of code"
 #: Languages of blocks of code that are none.
 LANGUAGES = r"(?:text|txt|plain|plaintext|ascii|none)?"
 #: Before a formula: a mark of a list, a number in brackets, words and a colon.
@@ -54,19 +52,26 @@ PROSE = frozenset("is of to in at or if we by so an as on it be do no".split())
 def with_plain_formulas(
     text: str, results: Iterable[Excerpt | UnreadDisplay]
 ) -> Iterator[Excerpt | UnreadDisplay]:
-    """The results of a scan, with the formulas on the lines of blocks of code for these blocks.
+    """The results of a scan, with formulas in code in place of blocks and spans of code.
 
-    There are none unless one of them shows that it belongs to no program.
+    Blocks have none unless one of them shows that it belongs to no program.
     """
-    joined = [*_with_whole_blocks(text, results)]
-    found = [_formulas(text, one) if _is_block(one) else [one] for one in joined]
-    flat = [*chain.from_iterable(found)]
-    is_read = any(_is_block(one) and _is_mathematics(text[one.start : one.end]) for one in flat)
-    return (one for one in flat if is_read or not _is_block(one))
-
-
-def _is_block(one: Excerpt | UnreadDisplay) -> TypeGuard[Excerpt]:
-    return isinstance(one, Excerpt) and one.delimiter == PLAIN
+    found = list[Excerpt | UnreadDisplay]()
+    blocks = list[Excerpt]()
+    for one in _with_whole_blocks(text, results):
+        match one:
+            case Excerpt(delimiter=delimiter) if delimiter == BLOCK:
+                own = _formulas(text, one)
+                blocks += own
+                found += own
+            case Excerpt(delimiter=delimiter) if delimiter == SPAN:
+                formula = text[one.start : one.end]
+                if RELATION.search(formula) and _is_formula(formula) and _is_mathematics(formula):
+                    found.append(replace(one, delimiter=PLAIN))
+            case _:
+                found.append(one)
+    is_read = any(_is_mathematics(text[one.start : one.end]) for one in blocks)
+    return (one for one in found if is_read or one not in blocks)
 
 
 def _with_whole_blocks(
@@ -75,19 +80,20 @@ def _with_whole_blocks(
     """The results with one block for indented lines that only spaces separate."""
     block: Excerpt | None = None
     for one in results:
-        if block and _is_block(one) and not text[block.end : one.start].strip():
+        is_block = isinstance(one, Excerpt) and one.delimiter == BLOCK
+        if block and is_block and not text[block.end : one.start].strip():
             block = replace(block, end=one.end)
             continue
         if block:
             yield block
-        block = one if _is_block(one) else None
+        block = one if isinstance(one, Excerpt) and is_block else None
         if not block:
             yield one
     if block:
         yield block
 
 
-def _formulas(text: str, block: Excerpt) -> list[Excerpt | UnreadDisplay]:
+def _formulas(text: str, block: Excerpt) -> list[Excerpt]:
     """The formulas on the lines of a block, if it is no program."""
     found = list[Excerpt]()
     start = text.rfind("\n", 0, block.start) + 1  # before the indentation
@@ -102,7 +108,7 @@ def _formulas(text: str, block: Excerpt) -> list[Excerpt | UnreadDisplay]:
             found[-1] = replace(found[-1], end=last, extent=(found[-1].start, last))
         elif RELATION.search(formula):
             found.append(Excerpt(first, last, (first, last), PLAIN))
-    return [*found]
+    return found
 
 
 def _formula(line: re.Match[str]) -> tuple[int, int]:

@@ -155,7 +155,7 @@ def test_text_that_is_no_formula(tmp_path: Path, name: str, text: str) -> None:
         (
             "a.rst",
             ".. math:: x = 1\n   :label: a\n\n   y = 2",
-            "x = 1\n            \n\n\\\\ y = 2",
+            "x = 1\\\\" + " " * 16 + "y = 2",
         ),
     ],
 )

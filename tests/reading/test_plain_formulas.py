@@ -122,6 +122,19 @@ def test_what_is_no_formula_is_skipped(block: str, tmp_path: Path) -> None:
     assert displays(f"Text.\n\n{indented}\n", tmp_path) == []
 
 
+def test_spans_of_code_are_inline_formulas(tmp_path: Path) -> None:
+    text = "- `θ'' = -(g/l) cos θ` (slip)\n- `θ = l` `x = 3` `L = ½ m l² θ̇² + m g l cos θ`, `a'b`\n"
+    path = tmp_path / "page.md"
+    path.write_text(text, encoding="utf-8")
+    document = read_document(path)
+    shown = [one.latex for one in document.displays]
+    assert shown == ["θ'' = -(g/l) cos θ", "θ = l", "L = ½ m l² θ̇² + m g l cos θ"]
+    assert all(one.is_inline for one in document.displays)
+    verdicts = judge_document(document)
+    assert "(**wrong**, should be `θ'' = -g/l*sin(θ)`" in markdown_notes(verdicts, document)
+    assert page([(verdicts, document)]).count("inline wrong") == 1
+
+
 @pytest.mark.parametrize("language", ["python", "c", "matlab", "bash"])
 def test_code_of_a_language_is_skipped(language: str, tmp_path: Path) -> None:
     assert displays(f"```{language}\nθ'' = -(g/l) sin θ\n```\n", tmp_path) == []

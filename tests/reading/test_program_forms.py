@@ -396,3 +396,37 @@ def test_a_velocity_can_change_by_a_factor_alone() -> None:
     findings = read_program(text, "Python").findings
     assert "damping" in [one.kind for one in findings]
     assert not any(one.is_fault for one in findings)
+
+
+def test_unknowns_can_stand_in_rows_of_a_column() -> None:
+    text = """
+for i in range(n):
+    A = np.array([[m + M, m*l*cos(a[i])], [cos(a[i]), l]])
+    [[acc], [turn]] = np.linalg.solve(A, np.array([[m*l*w[i]**2*sin(a[i])], [-g*sin(a[i])]]))
+    x[i + 1] = x[i] + v[i]*h
+    a[i + 1] = a[i] + w[i]*h
+    v[i + 1] = v[i] + acc*h
+    w[i + 1] = w[i] + turn*h
+"""
+    assert [one.text for one in read_program(text, "Python").equations] == [
+        "(m + M)*x_ddot + m*l*cos(a)*a_ddot = m*l*a_dot**2*sin(a)",
+        "cos(a)*x_ddot + l*a_ddot = -g*sin(a)",
+    ]
+
+
+def test_a_function_of_time_that_is_passed_is_a_load() -> None:
+    text = "function f(du, u, p, t)\n  du[1] = u[2]\n  du[2] = -k*u[1] + p(t)\nend\n"
+    assert [one.text for one in read_program(text, "Julia").equations] == ["u_1_ddot = -k*u_1 + p"]
+
+
+def test_a_loop_in_a_loop_of_the_same_variable_is_followed() -> None:
+    text = """
+void step() {
+  for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 2; ++i) { a[i] = -k*x[i]/m; }
+    v[i] += a[i]*dt;
+    x[i] += v[i]*dt;
+  }
+}
+"""
+    read_program(text, "C")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from html import unescape
 
 from derive.reading.formats.tex import environments
-from derive.reading.plain_formulas import PLAIN, with_plain_formulas
+from derive.reading.plain_formulas import BLOCK, with_plain_formulas
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "html", (".html", ".htm")
@@ -37,7 +37,7 @@ TOKENS = (
     Delimiter(SCRIPT + r";\s*mode=display[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex"),
     Delimiter(SCRIPT + r"[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex", is_inline=True),
     *MATH,
-    Delimiter(PREFORMATTED, raw_end, PLAIN, is_inline=True),
+    Delimiter(PREFORMATTED, raw_end, BLOCK, is_inline=True),
     Delimiter(RAW, raw_end),
     Delimiter(TAG),
     Delimiter(r"\\[\\$]"),

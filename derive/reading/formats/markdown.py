@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
-from derive.reading.plain_formulas import LANGUAGES, PLAIN, with_plain_formulas
+from derive.reading.plain_formulas import BLOCK, LANGUAGES, PLAIN, SPAN, with_plain_formulas
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
@@ -57,7 +57,7 @@ MATH_BLOCK = Delimiter(
 )
 #: Code of no language; whether it contains formulas is seen below.
 PLAIN_BLOCK = Delimiter(
-    MARGIN + rf"(?:`{{3,}}|~{{3,}})[ \t]*+{LANGUAGES}[ \t]*+$", _code_end, PLAIN, is_inline=True
+    MARGIN + rf"(?:`{{3,}}|~{{3,}})[ \t]*+{LANGUAGES}[ \t]*+$", _code_end, BLOCK, is_inline=True
 )
 CODE_BLOCK = Delimiter(MARGIN + r"(?:`{3,}[^`\n]*+|~{3,}[^\n]*+)$", _code_end)
 TOKENS = (
@@ -72,7 +72,7 @@ TOKENS = (
     # inline formulas of GitHub and of Documenter.jl; code
     Delimiter(r"\$`", rf"(?P<end>`\$)|(?P<stop>{BLANK_LINE})", "$`", is_inline=True),
     Delimiter(r"(?<!`)``(?!`)(?=[^`\n]*\\[A-Za-z])", _span_end, "``", is_inline=True),
-    Delimiter(r"(?<!`)`{1,3}(?!`)", _span_end),
+    Delimiter(r"(?<!`)`{1,3}(?!`)", _span_end, SPAN, is_inline=True),
     # brackets whose backslash is escaped
     Delimiter(r"\\\\\[", r"\\{4}|(?P<end>\\\\\])|(?P<stop>\\\\\[)", r"\\["),
     Delimiter(r"\\\\\(", rf"\\{{4}}|(?P<end>\\\\\))|(?P<stop>\\\\\(|{BLANK_LINE})", r"\\(", True),
@@ -100,7 +100,7 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text."""
     code = _indented_code(text)
     indented = Delimiter(
-        "^(?: {4}| {0,3}\t)", "(?P<end>$)", PLAIN, True, applies=lambda one: one.start() in code
+        "^(?: {4}| {0,3}\t)", "(?P<end>$)", BLOCK, True, applies=lambda one: one.start() in code
     )
     fences = _fences_of_boxes(text)
     blocks = (
@@ -194,7 +194,7 @@ def decoded(text: str, excerpt: Excerpt) -> str:
     if "\n" in latex and QUOTED.match(text, text.rfind("\n", 0, excerpt.start) + 1):
         latex = QUOTED.sub(lambda margin: " " * len(margin[0]), latex)
     if excerpt.delimiter == "```math":
-        return restructuredtext.options_removed(latex)
+        return restructuredtext.with_rows(restructuredtext.options_removed(latex))
     if excerpt.delimiter == IMAGE:
         return ENCODED.sub(lambda code: chr(int(code[1], 16)).rjust(3), latex)
     escapes = DOUBLED if excerpt.delimiter in (r"\\[", r"\\(") else ESCAPES

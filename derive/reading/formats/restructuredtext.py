@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from derive.reading.plain_formulas import PLAIN, with_plain_formulas
+from derive.reading.plain_formulas import BLOCK, PLAIN, with_plain_formulas
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "restructuredtext", (".rst",)
@@ -12,8 +12,8 @@ CODE = (
     "testcode|testsetup|testoutput|plot|jupyter-execute|csv-table|graphviz|tikz"
 )
 OPTION = re.compile(r"^[ \t]*+:[\w-]++:[^\n]*+$", re.M)
-#: Blank lines between two equations, and two places before the second one.
-BLANK = re.compile(r"(?<=\S)([ \t]*\n(?:[ \t]*\n)+)[ \t]{2}(?=[ \t]*\S)")
+#: Blank lines between two equations.
+BLANK = re.compile(r"(?<=\S)[ \t]*\n(?:[ \t]*\n)+(?=[ \t]*\S)")
 
 
 def _block_end(opening: re.Match[str]) -> str:
@@ -30,7 +30,7 @@ TOKENS = (
     Delimiter(r"^[ \t]*+\.\.(?![^ \t\n])(?![ \t]++(?:[\w:-]+::|[\[_|]))[^\n]*+\n", _block_end),
     # a paragraph that introduces a literal block
     Delimiter(
-        r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end, PLAIN, is_inline=True
+        r"^(?![ \t]*+\.\.)[^\n]*?::[ \t]*+\n(?=[ \t]*+\n)", _block_end, BLOCK, is_inline=True
     ),
     Delimiter(r":math:`", rf"(?P<end>`)|(?P<stop>{BLANK_LINE})", ":math:", is_inline=True),
     Delimiter(r"``", rf"(?P<end>``)|(?P<stop>{BLANK_LINE})"),
@@ -48,7 +48,7 @@ def decoded(text: str, excerpt: Excerpt) -> str:
     Behind blank lines a row begins, as Sphinx reads them.
     """
     latex = text[excerpt.start : excerpt.end]
-    return latex if excerpt.delimiter == PLAIN else BLANK.sub(r"\1\\\\", options_removed(latex))
+    return latex if excerpt.delimiter == PLAIN else with_rows(options_removed(latex))
 
 
 def prose(text: str) -> str:
@@ -66,6 +66,11 @@ def prose(text: str) -> str:
         "syntax_highlight": "none",
     }
     return str(publish_parts(text, writer="html5", settings_overrides=settings)["html_body"])
+
+
+def with_rows(latex: str) -> str:
+    r"""Ends of rows, ``\\``, in place of blank lines, as Sphinx reads them; the length stays."""
+    return BLANK.sub(lambda blank: r"\\".ljust(len(blank[0])), latex)
 
 
 def options_removed(latex: str) -> str:

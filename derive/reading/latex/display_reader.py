@@ -38,6 +38,7 @@ from derive.reading.latex.layout.pairs import inside, pairs
 from derive.reading.latex.layout.plain_words import with_words
 from derive.reading.latex.layout.rows import flattened, statements
 from derive.reading.latex.layout.spellings import (
+    with_dots_on_variables,
     with_fractions_of_derivatives,
     with_new_fonts,
     with_unicode_scripts,
@@ -84,7 +85,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
         tokens = expanded(latex, tokenize(latex), macros)
         pairs(tokens)  # refuses deep braces before anything descends into them
         tokens = with_new_fonts(with_unicode_scripts(tokens))
-        tokens = with_fractions_of_derivatives(tokens)
+        tokens = with_dots_on_variables(with_fractions_of_derivatives(tokens))
         tokens = with_words(Layout(tokens).tokens_without_layout())
         found = statements(flattened(tokens))
     except UnreadError as error:

@@ -311,10 +311,16 @@ class FormulaTranslator:
 
     def _summation(self, node: Summation) -> FormulaText:
         first, last = _whole(node.lower, 1), _whole(node.upper, self.notation.count)
+        if node.index is None and isinstance(node.body, Letter) and node.body.name in TOTALS:
+            return self.text(node.body)  # the sum of the forces of an axis, which has no letter
         if node.index is None or not 0 <= last - first < MAX_TERMS:
             raise UntranslatableError("a sum without an index, or of too many terms")
         terms = [(1, indexed(node.body, node.index.name, k)) for k in range(first, last + 1)]
         return self._sum(terms)
+
+
+#: Letters of forces and torques, of which a sum without an index is the total.
+TOTALS = frozenset(("F", "M", "tau", "T"))
 
 
 def identifier(letter: Letter) -> str:

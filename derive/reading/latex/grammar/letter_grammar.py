@@ -20,7 +20,7 @@ from derive.reading.latex.layout.tokens import Token, UnreadError
 from derive.reading.latex.tree import Letter
 
 #: Functions in letters without a backslash, as in ``cos{\theta}``; the short ones stand alone.
-SPELLED = re.compile(r"(?:arc)?(?:sin|cos|tan)h?|exp|log")
+SPELLED = re.compile(r"(?:arc)?(?:sin|cos|tan|sen)h?|exp|log")
 SPELLED_ALONE = re.compile(r"(?:ln|sec|csc|cot|det|sgn)(?![a-z])")
 LONGEST = 7
 #: Symbols of a bare argument, so that long runs of letters take no longer than their length.

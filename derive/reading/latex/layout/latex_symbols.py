@@ -16,6 +16,8 @@ FUNCTIONS = {
     **{f"arc{name}": f"a{name}" for name in "sin cos tan cot sinh cosh tanh".split()},
     **{f"ar{name}": f"a{name}" for name in "sinh cosh tanh".split()},
     **{name: name for name in "asin acos atan atan2 asinh acosh atanh".split()},
+    **{f"{arc}{name}": f"{arc[:1]}{other}" for arc in ("", "arc")
+       for name, other in (("sen", "sin"), ("senh", "sinh"), ("tg", "tan"), ("ctg", "cot"))},
     "ln": "log", "sgn": "sign", "sign": "sign", "cosec": "csc", "arctan2": "atan2",
     "max": "max", "Max": "max", "min": "min", "Min": "min",
 }  # fmt: skip

@@ -6,7 +6,14 @@ from itertools import groupby
 
 from derive.reading.latex.layout.latex_symbols import COMBINING
 from derive.reading.latex.layout.pairs import pairs
-from derive.reading.latex.layout.tokens import Token, UnreadError, braced, script_of, tokenize
+from derive.reading.latex.layout.tokens import (
+    Token,
+    UnreadError,
+    argument,
+    braced,
+    script_of,
+    tokenize,
+)
 
 #: Fonts that hold to the end of their braces.
 OLD_FONTS = {
@@ -48,6 +55,24 @@ def with_fractions_of_derivatives(tokens: list[Token]) -> list[Token]:
         else:
             result.append(sign)
         at += 1
+    return result
+
+
+def with_dots_on_variables(tokens: list[Token]) -> list[Token]:
+    r"""Tokens in which ``\dot{\partial} q`` below a derivative is ``\partial\dot{q}``."""
+    result: list[Token] = []
+    at = 0
+    while at < len(tokens):
+        texts = [one.text for one in tokens[at : at + 4]]
+        letter = argument(tokens, at + 4) if texts == ["dot", "{", "partial", "}"] else None
+        if letter is None:
+            result.append(tokens[at])
+            at += 1
+        else:
+            inner, at_end = tokens[slice(*letter[0])], letter[1]
+            accent = replace(tokens[at], span=inner[0].span)
+            result += [tokens[at + 2], accent, *braced(inner)]
+            at = at_end
     return result
 
 

@@ -85,6 +85,9 @@ class Calls(Values):
             return self.value(Item(call.line, call.function, call.arguments))
         if name == "view" and len(call.arguments) > 1:  # of Julia
             return self.value(Item(call.line, call.arguments[0], call.arguments[1:]))
+        match arguments:
+            case (Name(path="t" | "time"),) if path in self.parameters:
+                return Name(call.line, path)  # a load as a function of time
         if (value := of_entries(call.line, path, arguments)) is not None:
             return value
         if path == "copy" and len(arguments) == 2:  # of Go

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from copy import copy
+from dataclasses import replace
 from typing import Self
 
 from derive.reading.programs.evaluation.arrays import entries, flat
@@ -177,6 +178,11 @@ class Follower(Calls):
 
     def _parts(self, target: Array, value: Expression) -> Sequence[Expression]:
         count = len(target.items)
+        if all(isinstance(one, Array) and len(one.items) == 1 for one in target.items):
+            parts = self._parts(
+                replace(target, items=tuple(one.parts[0] for one in target.items)), value
+            )
+            return [Array(part.line, (part,)) for part in parts]
         items = entries(flat(value))
         if items is not None and len(items) == count:
             return items
@@ -239,7 +245,8 @@ class Follower(Calls):
             for index in indices:
                 self.variables[one.variable] = NumberLiteral(one.line, str(index))
                 self.run(one.body)
-            del self.variables[one.variable], self.indices[one.variable]
+            for kept in (self.variables, self.indices):
+                kept.pop(one.variable, None)  # an inner loop of the same variable has removed it
             if before is not None:
                 self.variables[one.variable] = before
             return

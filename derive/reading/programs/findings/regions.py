@@ -37,6 +37,8 @@ from derive.reading.programs.syntax.trees import (
     replaced,
 )
 
+#: Names of constants that no program defines: of a canvas in Processing and p5.js.
+OUTER = frozenset(("pi", "height", "width", "windowHeight", "windowWidth"))
 #: Entries of the longest vector that is followed as one in a loop.
 MAX_VECTOR = 3
 
@@ -119,13 +121,13 @@ def regions(context: ProgramContext, body: tuple[Statement, ...]) -> list[Region
 
 
 def derived_constants(context: ProgramContext) -> frozenset[str]:
-    """The names with one formula of numeric constants."""
+    """The names with one formula of numeric constants, or of the size of a canvas."""
 
     def is_constant(tree: Expression, within: frozenset[str] = frozenset()) -> bool:
         parts = tree.parts
         match tree:
             case Name(path=path):
-                if path == "pi" or path in context.constants:
+                if path in OUTER or path in context.constants:
                     return True
                 if path in within or path not in context.shared:
                     return False

@@ -71,11 +71,12 @@ def _note(document: Document, display: Display, own: Sequence[FormulaVerdict]) -
     """What follows a formula: a quotation at the end of a line, brackets within it."""
     text, (first, last) = document.text, display.extent
     start, end = text.rfind("\n", 0, first) + 1, text.find("\n", last)
-    if display.delimiter == PLAIN:  # in code, where nothing is Markdown
+    if display.delimiter == PLAIN and not display.is_inline:  # in code, where nothing is Markdown
         refuted = "; ".join(_details(one) for one in own if one.verdict in REFUTED)
         return f"   ({refuted})" if refuted else ""
     if display.is_inline or text[last : end if end >= 0 else None].strip():
-        refuted = "; ".join(_words(one, "$") for one in own if one.verdict in REFUTED)
+        quote = "`" if display.delimiter == PLAIN else "$"
+        refuted = "; ".join(_words(one, quote) for one in own if one.verdict in REFUTED)
         return f" ({refuted})" if refuted else ""
     margin = MARGIN.match(text, start)
     before = MARK.sub(" ", margin.group()) if margin else ""
