@@ -22,6 +22,11 @@ ACCELERATIONS = {
     "van_der_pol": ["mu*(1 - x**2)*x_dot - x"],
     "driven_oscillator_cosine": ["(A*cos(Omega*t) - k*x)/m"],
     "duffing_sine": ["gamma*sin(Omega*t) - delta*x_dot - alpha*x - beta*x**3"],
+    "damped_oscillator_by_rates": ["-2*gamma*x_dot - omega0**2*x"],
+    "driven_oscillator_by_rates": ["A*cos(Omega*t)/m - 2*gamma*x_dot - omega0**2*x"],
+    "duffing_unit_wells_sine": ["gamma*sin(Omega*t) - delta*x_dot + x - beta*x**3"],
+    "pendulum_by_arc": ["-g*sin(x/l)"],
+    "projectile_with_linear_drag_by_mass_2": ["-c*x_dot", "-g - c*y_dot"],
     "duffing_two_wells_cosine": ["gamma*cos(Omega*t) - delta*x_dot + alpha*x - beta*x**3"],
     "quarter_car": [
         "(k2*(x2 - x1) + c2*(x2_dot - x1_dot) - k1*(x1 - w))/m1",

@@ -375,3 +375,45 @@ def rates(t, s, m1, m2, l1, lc1, lc2, I1, I2, g, B, u):
     assert equations(judged(text)) == ["verified", "context"]
     slip = equations(judged(text.replace("- m2*l1*lc2*sin(b)*v**2 + B*u", "+ u")))
     assert slip == ["verified", "wrong"]
+
+
+def test_equations_of_which_one_letter_agrees_are_not_wrong() -> None:
+    # a body with two rotors, of which a mass in space would be the nearest known system
+    text = """
+def rates(t, y, m, r, J, g, f1, f2, w):
+    a, b, c, va, vb, vc = y
+    return va, vb, vc, -(f1 + f2)*sin(c)/m, (f1 + f2)*cos(c)/m - g, w*r/J*(f1 - f2)
+"""
+    assert "wrong" not in equations(judged(text))
+    text = "def rates(t, y, G, mass):\n    x, z, v, w = y\n    return v, w, 0/mass, -G/mass\n"
+    assert "wrong" not in equations(judged(text))
+
+
+def test_a_name_that_only_angles_have_is_an_angle() -> None:
+    text = """
+def rates(t, x, m, l, I, g, u1, u2):
+    x1, x2, x3, v1, v2, v3 = x
+    return v1, v2, v3, -(u1 + u2)*sin(x3)/m, (u1 + u2)*cos(x3)/m - g, l/I*(u1 - u2)
+"""
+    assert equations(judged(text)) == ["verified"] * 3
+    assert "verified" not in equations(judged(text.replace("cos(x3)/m", "cos(x2)/m")))[1:2]
+
+
+def test_a_letter_of_springs_can_be_one_of_friction() -> None:
+    text = "def rates(y, t, g, l, k, m):\n    s, v = y\n    return v, -g*sin(s/l) - k/m*v\n"
+    assert equations(judged(text)) == ["verified"]
+    assert equations(judged(text.replace("- k/m*v", "- k/m*v*s"))) != ["verified"]
+
+
+def test_a_length_can_be_a_part_of_the_canvas() -> None:
+    text = """
+let a = 1, v = 0, r;
+function setup() { r = height/4; }
+function draw() {
+  acc = -g*sin(a)/r;
+  v += acc;
+  a += v;
+}
+"""
+    assert equations(judged(text, "JavaScript"))[:1] == ["verified"]
+    assert equations(judged(text.replace("/r", "*r*r*r"), "JavaScript"))[:1] != ["verified"]

@@ -235,7 +235,7 @@ $$ V = m g a\sin\theta $$
 def test_a_known_system_with_a_stated_constraint_contradicts_no_single_formula(
     constraint: tuple[StatedConstraint, ...], verdict: str, tmp_path: Path
 ) -> None:
-    (tmp_path / "a.md").write_text(r"$$x\dot x = 1$$", encoding="utf-8")
+    (tmp_path / "a.md").write_text(r"$$x\dot x + y\dot y = x y + x^2 y$$", encoding="utf-8")
     (formula,) = translated(_read(read_document(tmp_path / "a.md"))[0]).formulas
     candidate = SystemCandidate(
         load("henon_heiles"), ("x", "y"), ((1, 0), (0, 1)), (0, 0), {}, constraints=constraint

@@ -682,3 +682,54 @@ def test_a_meaning_has_constraints_with_motions(
     assert verdicts(tmp_path, text)[1:] == ["verified"] * 2
     monkeypatch.setattr(Judges, "has_motions", lambda *_: False)
     assert "verified" not in verdicts(tmp_path, text)
+
+
+def test_a_letter_of_one_side_alone_is_not_judged(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 I\dot\theta^2 = \frac12 m l^2\dot\theta^2$$ $$V = -m g l\cos\theta$$
+$$-(m g l\sin\theta + m l^2\ddot\theta) = 0$$ $$-\frac gl\sin\theta = \ddot\theta$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+    slip = verdicts(tmp_path, text.replace(r"= \frac12 m l", r"= \frac12 l m l"))
+    assert "wrong" in slip
+
+
+@pytest.mark.parametrize("equations", [
+    (r"\ddot\theta = -\omega_0^2\sin\theta",
+     r"\ddot\theta = -\omega_0^2\sin\theta + A\cos(\Omega t)"),
+    (r"\ddot x = -\omega_0^2 x", r"\ddot x + 2\gamma\dot x + \omega_0^2 x = 0"),
+    (r"\ddot\theta = -\frac gl\sin\theta",
+     r"\ddot\theta = -\frac gl\sin\theta + \frac{A}{m l^2}\cos(\Omega t)"),
+])  # fmt: skip
+def test_a_free_motion_is_another_case_of_a_driven_or_damped_one(
+    equations: tuple[str, str], tmp_path: Path
+) -> None:
+    for pair in (equations, equations[::-1]):
+        found = verdicts(tmp_path, "\n".join(f"$${one}$$" for one in pair))
+        assert "wrong" not in found
+        assert "verified" in found
+
+
+def test_a_load_on_the_left_is_part_of_an_equation_of_motion(tmp_path: Path) -> None:
+    text = r"$$u = l m g \sin\theta + l^2 m\ddot\theta$$"
+    assert verdicts(tmp_path, text) == ["verified"]
+    assert verdicts(tmp_path, text.replace("l^2 m", "l m")) != ["verified"]
+
+
+def test_an_equation_of_one_coordinate_is_judged_beside_others(tmp_path: Path) -> None:
+    text = r"""$$\sum F_x = -T\sen(\theta) = m\frac{d^2x}{dt^2}$$
+$$\sum F_r = T - m g\cos(\theta) = m\frac{d^2r}{dt^2}$$
+$$\frac{d^2\theta}{dt^2} = -\frac gl sen(\theta)$$"""
+    assert verdicts(tmp_path, text) == ["context", "context", "verified"]
+    assert "verified" not in verdicts(tmp_path, text.replace("gl sen", "gl cos"))
+
+
+def test_rows_of_a_directive_are_apart(tmp_path: Path) -> None:
+    text = "```{math}\n\\ddot x = -\\frac km x\n\nm g = k d\n```\n"
+    assert verdicts(tmp_path, text)[0] == "verified"
+
+
+def test_the_dot_of_a_velocity_can_stand_on_the_sign_of_a_derivative(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m l^2\dot\theta_1^2 + m g l\cos\theta_1$$
+$$\frac{\partial L}{\dot{\partial}\theta_1} = m l^2\dot\theta_1$$
+$$\frac{d}{dt}\frac{\partial L}{\dot{\partial}\theta_{1}} = m l^2\ddot\theta_1$$"""
+    assert verdicts(tmp_path, text)[1:] == ["verified"] * 2
+    assert "wrong" in verdicts(tmp_path, text.replace(r"= m l^2\ddot", r"= m l\ddot"))

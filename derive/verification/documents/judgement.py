@@ -34,8 +34,10 @@ from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.subjects import (
     Formulas,
     implied_rates,
+    of_single_coordinates,
     restated_subjects,
     subjects,
+    with_loads_behind,
 )
 from derive.verification.documents.pages.verdicts_in_place import (
     JUDGED,
@@ -107,7 +109,7 @@ def _by_subjects(
     unreadable: Sequence[FormulaVerdict],
 ) -> DocumentVerdicts:
     """Verdicts with other subjects where energies are stated anew, if more formulas hold so."""
-    statements = implied_rates(translated(occurrences))
+    statements = with_loads_behind(implied_rates(translated(occurrences)))
     parts = subjects(document.text, statements)
     work = Work()
     result = _judge(document, hints, occurrences, unreadable, statements, parts, work)
@@ -183,8 +185,10 @@ def _judge(
                 if not result.is_understood and bound.isdisjoint(map(stem, one.words))
             )  # fmt: skip
         if remaining and not hints:
-            below = divided(document.text, remaining, lambda one: one.occurrence.start)
-            waiting += below if len(below) > 1 else []
+            parted = divided(document.text, remaining, lambda one: one.occurrence.start)
+            if len(parted) == 1 and not titles:
+                parted = of_single_coordinates(statements, remaining)
+            waiting += [one for one in parted if len(one) < len(remaining)]
     understood = {place for place, (_, result) in results.items() if result.is_understood}
     left = {one for one in statements.formulas if one.occurrence not in understood}
     follow = *general_verdicts(statements), *Identities(statements.formulas, left).verdicts()

@@ -1,6 +1,6 @@
 """What the letters of a document can mean: a system, an order of coordinates, a convention."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from itertools import combinations, islice, permutations, product
@@ -176,7 +176,7 @@ def candidates(
             for one in islice(_parameters(system, letters), MAX_CHOICES)
         ],
         loads(letters, "force", n),
-        frictions(letters, n),
+        frictions(letters, n, {kind_of(one) for one in system.parameters}),
     )
     kinds = {one.symbol.name: kind for one in system.parameters if (kind := kind_of(one))}
     usual = {(name, one) for name, kind in kinds.items() for one in (name, *letters.of_kind(kind))}
@@ -346,12 +346,14 @@ def _index(name: str) -> str:
     return name[:1] * (name[:1] == "r") + "".join(filter(str.isdigit, name))
 
 
-def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ...]]:
+def loads(
+    letters: Letters, kind: str, n: int, kinds: Collection[str] = KINDS
+) -> list[tuple[tuple[str, int], ...]]:
     """The coordinates on which each letter of a force acts: none, or one of them.
 
     A letter of a program stands in an equation of motion, and most likely acts.
     """
-    usual = _letters_of_loads(letters, kind)
+    usual = _letters_of_loads(letters, kind, kinds)
     choices = product(*([None, *range(n)] for _ in usual))
     result = [
         tuple((name, index) for name, index in zip(usual, choice, strict=True) if index is not None)
@@ -361,10 +363,15 @@ def loads(letters: Letters, kind: str, n: int) -> list[tuple[tuple[str, int], ..
     return sorted(result, key=len, reverse=True) if is_likely else result
 
 
-def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
-    """What letters of friction damp: one coordinate each, or one of them everything."""
-    one_each: list[tuple[tuple[str, Damped], ...]] = [*loads(letters, "damping", n)]
-    names = _letters_of_loads(letters, "damping")
+def frictions(
+    letters: Letters, n: int, kinds: Collection[str] = KINDS
+) -> list[tuple[tuple[str, Damped], ...]]:
+    """What letters of friction damp: one coordinate each, or one of them everything.
+
+    In a program these are also letters of kinds that the parameters do not have.
+    """
+    one_each: list[tuple[tuple[str, Damped], ...]] = [*loads(letters, "damping", n, kinds)]
+    names = _letters_of_loads(letters, "damping", kinds)
     everything: tuple[Damped, ...] = ("coordinates", "masses", "motion")
     alone = [((name, damped),) for name in names for damped in everything]
     if not one_each[0]:  # it most likely damps nothing
@@ -373,10 +380,11 @@ def frictions(letters: Letters, n: int) -> list[tuple[tuple[str, Damped], ...]]:
     return [*one_each[:full], *alone, *one_each[full:]]
 
 
-def _letters_of_loads(letters: Letters, kind: str) -> list[str]:
-    """Letters of a kind of loads; of friction in a program else those of no kind."""
+def _letters_of_loads(letters: Letters, kind: str, kinds: Collection[str]) -> list[str]:
+    """Letters of a kind of loads; of friction in a program else those of no kind of parameters."""
     usual = letters.of_kind(kind)
     if not usual and kind == "damping" and letters.are_of_program:
-        known = {p for one in KINDS for p in letters.of_kind(one)}
+        others = (one for one in KINDS if one != "stiffness" or one in kinds)
+        known = {p for one in others for p in letters.of_kind(one)}
         usual = [p for p in letters.parameters if p not in known]
     return usual[:MAX_FORCES]

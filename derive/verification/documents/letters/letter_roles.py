@@ -37,6 +37,8 @@ from derive.verification.documents.statements import SQUARE, WORD, DocumentFormu
 INDEXED = re.compile(r"[A-Za-z]+_\d+")
 #: A number, perhaps with a unit.
 NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d+\*[msN]\b.*")
+#: A function of an angle and its argument.
+TURNED = re.compile(r"\b(?:sin|cos|tan)\([^()]*\)")
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -108,7 +110,16 @@ def letters_of(
     return Letters(
         tuple(coordinates), momenta, quantities, tuple(parameters), accelerated, abbreviations,
         ordered, tuple(others), multipliers=multipliers, constraints=constraints,
+        turning=frozenset(_turning(formulas, coordinates)),
     )  # fmt: skip
+
+
+def _turning(formulas: Iterable[DocumentFormula], coordinates: Sequence[str]) -> Iterator[str]:
+    """Yield the coordinates that stand in nothing but sines, cosines and tangents."""
+    texts = [side.text for one in formulas for side in one.sides]
+    outside = {name for text in texts for name in WORD.findall(TURNED.sub("", text))}
+    inside = {name for text in texts for one in TURNED.findall(text) for name in WORD.findall(one)}
+    yield from (q for q in coordinates if q in inside - outside)
 
 
 def equal_letters(formula: DocumentFormula) -> set[str]:

@@ -104,6 +104,7 @@ class Letters:
     constraints: tuple[StatedConstraint, ...] = ()
     elsewhere: frozenset[str] = frozenset()  # coordinates of other systems of the document
     are_of_program: bool = False  # which states accelerations alone
+    turning: frozenset[str] = frozenset()  # coordinates that only functions of angles contain
 
     @property
     def column(self) -> str:
@@ -120,9 +121,10 @@ class Letters:
     def orders(self, are_angles: Sequence[bool]) -> Iterator[tuple[str, ...]]:
         """Yield coordinates for those of a system, of which some are angles.
 
-        Greek letters are angles and others are not, unless there are too few of these.
+        Greek letters are angles, also what only functions of angles contain, and others are not,
+        unless there are too few of these.
         """
-        angles = [q for q in self.coordinates if q.partition("_")[0] in ANGLES]
+        angles = [q for q in self.coordinates if q.partition("_")[0] in ANGLES or q in self.turning]
         lengths = [q for q in self.coordinates if q not in angles or q.partition("_")[0] == "q"]
         pools = {
             True: angles if len(angles) >= are_angles.count(True) else self.coordinates,

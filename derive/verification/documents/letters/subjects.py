@@ -28,6 +28,8 @@ from derive.verification.documents.statements import (
 MAX_CASES = 6
 #: Letters of accelerations and of velocities, of velocities along a line, and of places.
 ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
+#: A load in an equation of motion.
+LOAD = re.compile(r"u|tau|F|f")
 #: A relation of two coordinates.
 RELATION = re.compile(r"(\w+) \+ (\w+) = (\w+)")
 SPEEDS, PLACES = ("v", "u"), ("s", "x", "y", "z", "X", "Y")
@@ -166,6 +168,33 @@ def _cases(formulas: Sequence[DocumentFormula]) -> list[Formulas]:
     has_energies = all(any(one.subject in QUANTITIES for one in case) for case in cases)
     are_cases = has_energies and len(cases) <= MAX_CASES
     return [tuple(case) for case in cases] if are_cases else [tuple(formulas)]
+
+
+def with_loads_behind(statements: Translated) -> Translated:
+    """The statements with equations such as u = m*x_ddot the other way round.
+
+    The letter of a load that nothing else defines is no name for what balances it.
+    """
+    defined = Counter(one.subject for one in statements.formulas)
+
+    def turned(one: DocumentFormula) -> DocumentFormula:
+        is_load = LOAD.fullmatch(one.subject) and defined[one.subject] == 1
+        if not is_load or len(one.sides) != 2 or 2 not in map(order, one.words):
+            return one
+        return replace(one, sides=one.sides[::-1])
+
+    return replace(statements, formulas=tuple(map(turned, statements.formulas)))
+
+
+def of_single_coordinates(statements: Translated, formulas: Formulas) -> list[Formulas]:
+    """The equations of motion that contain one coordinate, by this coordinate."""
+    letters = letters_of(formulas, statements.derivatives)
+    result: dict[str, list[DocumentFormula]] = {}
+    for one in formulas:
+        moving = {*map(stem, one.words)} & {*letters.coordinates}
+        if len(moving) == 1 and 2 in map(order, one.words):
+            result.setdefault(moving.pop(), []).append(one)
+    return [*map(tuple, result.values())]
 
 
 def implied_rates(statements: Translated) -> Translated:

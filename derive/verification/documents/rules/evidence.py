@@ -37,6 +37,8 @@ OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "ha
 #: Verdicts on formulas that hold.
 HOLDING = ("verified", "equivalent")
 
+#: Letters outside of wrong terms from which on a formula speaks for a system by itself.
+AGREEING = 6
 #: A Lagrangian or a Hamiltonian with a word as its index.
 FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
@@ -100,7 +102,8 @@ class _Evidence:
         self._wrong = [one for _, one in results if one.verdict.verdict == "wrong"]
         self._independent = [one for one in self._wrong if FOLLOWS not in one.verdict.note]
         self._misfits = sum(len(one.verdict.corrections) != 1 for one in self._independent)
-        self._holding = sum(one.verdict.verdict in HOLDING for _, one in results)
+        held = (formula for formula, one in results if one.verdict.verdict in HOLDING)
+        self._holding = sum(not formula.is_vacant for formula in held)
         self._has_energy = any(one.kind in OF_ENERGIES for one in self._wrong)
         self._given = _lines(self._lines[k] for k in candidate.stating)
         self._undecided = {*_of_friction(results, candidate)}
@@ -189,7 +192,10 @@ class _Evidence:
         few = max(1, min(self._holding, max(2, self._holding // 2)))
         is_unsure = self._has_energy or self._are_signs
         is_several = is_unsure and len(self._wrong) > 1
-        has_none = self._holding == 0 and (is_several or bool(self._candidate.constraints))
+        is_alone = any(_agreeing(*one) < AGREEING for one in self._results if _is_wrong(one))
+        has_none = self._holding == 0 and (
+            is_several or is_alone or bool(self._candidate.constraints)
+        )
         is_open = self._is_partial or self._candidate.has_unusual_letters
         return self._is_known and (is_open or not has_all or has_none or slips > few)
 
@@ -336,6 +342,16 @@ class _Evidence:
         }
 
 
+def _is_wrong(one: WithVerdict) -> bool:
+    return one[1].verdict.verdict == "wrong"
+
+
+def _agreeing(formula: DocumentFormula, result: SideVerdict) -> int:
+    """How many letters of a formula stand outside its wrong terms."""
+    written = sum(len(WORD.findall(side.text)) for side in formula.sides)
+    return written - sum(len(WORD.findall(one.wrong)) for one in result.verdict.corrections)
+
+
 def _unsigned(term: str) -> str:
     return term.lstrip("+- ").removeprefix("(").removesuffix(")").replace(" ", "")
 
@@ -403,9 +419,22 @@ def _adds_letters(
     terms = [one for one in result.verdict.corrections if one.correct != f"{one.wrong}_dot"]
     added = {w for one in terms for w in WORD.findall(one.correct)}  # but for a lost dot
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
+    loads |= {*_of_drives(candidate)}
     return bool(
         (added - {*formula.words, *FUNCTIONS}) & (added if candidate.is_of_equations else loads)
     )
+
+
+def _of_drives(candidate: SystemCandidate) -> Iterator[str]:
+    """The letters of friction and of given functions of time in a system."""
+    system = candidate.system
+    places = (component for one in system.masses for component in one.position)
+    energies = sp.Add.make_args(sp.expand(system.potential_energy))
+    driving = [one for one in (*places, *energies) if one.has(TIME)]
+    symbols = sp.Tuple(system.dissipation, *system.forces, *driving).free_symbols
+    for parameter in system.parameters:
+        if parameter.symbol in symbols and parameter.symbol.name in candidate.parameters:
+            yield candidate.parameters[parameter.symbol.name]
 
 
 def _lacking(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[str]:

@@ -33,6 +33,7 @@ from derive.verification.documents.rules.small_motions import Amplitudes, SmallM
 from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,
+    POINT,
     SQUARE,
     WORD,
     DocumentFormula,
@@ -143,8 +144,12 @@ class Judge:
                 return plain("context", formula, "it states a value")
             unknown = self._unknown(formula.sides[:2])
         results = [self._side(formula, k) for k in known]
-        for result in results:
+        for k, result in zip(known, [*results], strict=True):
             if result.verdict.verdict not in CORRECT:
+                if own := self._own_letters(formula, k):  # such as I of I θ̇²/2 = m l² θ̇²/2
+                    unknown = [*unknown, *own]
+                    results.remove(result)
+                    continue
                 if (definition := self._positions.opposite(formula.subject)) is not None:
                     return plain("context", formula, opposed(definition.occurrence.line))
                 other = self._others.verdict(formula, result)
@@ -158,6 +163,16 @@ class Judge:
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))
+
+    def _own_letters(self, formula: DocumentFormula, k: int) -> list[str]:
+        """Parameters that a side between others has, and nothing else in the document."""
+        if k == len(formula.sides) - 1:
+            return []
+        side = {*WORD.findall(formula.sides[k].text)} & {*self._namespace.letters.parameters}
+        others = (one.text for j, one in enumerate(formula.sides) if j != k)
+        used = {word for text in others for word in WORD.findall(text)}
+        used |= {w for one in self._namespace.formulas if one is not formula for w in one.words}
+        return sorted(one for one in side - used if not POINT.match(one))
 
     def _not_understood(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
         result = not_understood(formula, unknown)

@@ -71,13 +71,15 @@ def _about_a_centre(place: tuple[Symbol, ...]) -> Iterator[System]:
 def _in_uniform_gravity(place: tuple[Symbol, ...]) -> Iterator[System]:
     speed = _distance(tuple(map(velocity, place)))
     for name, title, drag, constants in (
-        ("drag", "quadratic drag", c, parameters(m="kg", c="kg/m", g="m/s^2")),
-        ("drag_by_mass", "quadratic drag by mass", c * m, parameters(m="kg", c="1/m", g="m/s^2")),
-    ):
+        ("drag", "quadratic drag", c * speed, parameters(m="kg", c="kg/m", g="m/s^2")),
+        ("drag_by_mass", "quadratic drag by mass", c * m * speed,
+         parameters(m="kg", c="1/m", g="m/s^2")),
+        ("linear_drag_by_mass", "drag by mass", c * m, parameters(m="kg", c="1/s", g="m/s^2")),
+    ):  # fmt: skip
         yield System(
             f"projectile_with_{name}_{len(place)}", f"Mass in uniform gravity with {title}",
             lengths(*place), constants, [PointMass(m, place)],
-            potential=m * g * place[-1], forces=[-drag * speed * velocity(one) for one in place],
+            potential=m * g * place[-1], forces=[-drag * velocity(one) for one in place],
         )  # fmt: skip
     if len(place) == 3:
         yield System(

@@ -38,6 +38,10 @@ def _pendulums() -> Iterator[System]:
         parameters(omega0="rad/s"), [PointMass(1, (theta, 0))],
         potential=-(omega0**2) * cos(theta),
     )  # fmt: skip
+    yield System(
+        "pendulum_by_arc", "Pendulum by the length of its arc", lengths(x),
+        parameters(m="kg", l="m", g="m/s^2"), [PointMass(m, (l * sin(x / l), -l * cos(x / l)))],
+    )  # fmt: skip
     for phase, drive in PHASES:
         yield System(
             f"forced_pendulum_{phase}", "Pendulum with a harmonic torque", angle,
@@ -79,6 +83,16 @@ def _oscillators() -> Iterator[System]:
         parameters(omega0="rad/s", zeta="1"), [PointMass(1, (x, 0))],
         potential=omega0**2 * x**2 / 2, dissipation=zeta * omega0 * velocity(x)**2,
     )  # fmt: skip
+    for name, title, drive, own in (
+        ("damped", "Oscillator by its angular frequency and its rate of damping", 0, {}),
+        ("driven", "Oscillator by rates with a harmonic force", A * cos(Omega * TIME),
+         {"A": "N", "Omega": "rad/s"}),
+    ):  # fmt: skip
+        yield System(
+            f"{name}_oscillator_by_rates", title, place,
+            parameters(m="kg", omega0="rad/s", gamma="1/s", **own), [PointMass(m, (x, 0))],
+            potential=m * omega0**2 * x**2 / 2 - x * drive, dissipation=m * gamma * velocity(x)**2,
+        )  # fmt: skip
     yield System(
         "van_der_pol", "Van der Pol's oscillator", place, parameters(mu="1"),
         [PointMass(1, (x, 0))], potential=x**2 / 2, forces=[mu * (1 - x**2) * velocity(x)],
@@ -89,10 +103,11 @@ def _oscillators() -> Iterator[System]:
             parameters(m="kg", k="N/m", A="N", Omega="rad/s"), [PointMass(m, (x, 0))],
             potential=spring - A * x * drive,
         )  # fmt: skip
-        for sign, stiffness in (("", alpha), ("two_wells_", -alpha)):
+        for sign, stiffness in (("", alpha), ("two_wells_", -alpha), ("unit_wells_", -1)):
+            own = {} if stiffness == -1 else {"alpha": ""}
             yield System(
                 f"duffing_{sign}{phase}", "Duffing's oscillator of a unit mass", place,
-                parameters(alpha="", beta="", gamma="", delta="", Omega="rad/s"),
+                parameters(**own, beta="", gamma="", delta="", Omega="rad/s"),
                 [PointMass(1, (x, 0))], dissipation=delta * velocity(x)**2 / 2,
                 potential=stiffness * x**2 / 2 + beta * x**4 / 4 - gamma * x * drive,
             )  # fmt: skip

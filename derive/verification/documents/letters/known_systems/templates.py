@@ -26,7 +26,8 @@ SHIPPED = (
 #: Systems of programs that are tried for documents as well, where no energy is stated.
 OF_EQUATIONS = frozenset(
     "forced_pendulum_cosine scaled_forced_pendulum_cosine attracted_mass_2 attracted_unit_mass_2 "
-    "cubic_potential bodies_2_2".split()
+    "cubic_potential bodies_2_2 damped_oscillator damped_oscillator_by_rates "
+    "driven_oscillator_by_rates driven_oscillator_cosine duffing_cosine van_der_pol".split()
 )
 #: Systems that ship and are tried for programs alone.
 SHIPPED_OF_PROGRAMS = "furuta_pendulum heavy_top duffing".split()
