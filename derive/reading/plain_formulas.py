@@ -80,14 +80,14 @@ def _with_whole_blocks(
     """The results with one block for indented lines that only spaces separate."""
     block: Excerpt | None = None
     for one in results:
-        is_block = isinstance(one, Excerpt) and one.delimiter == BLOCK
-        if block and is_block and not text[block.end : one.start].strip():
-            block = replace(block, end=one.end)
+        own = one if isinstance(one, Excerpt) and one.delimiter == BLOCK else None
+        if block and own and not text[block.end : own.start].strip():
+            block = replace(block, end=own.end)
             continue
         if block:
             yield block
-        block = one if isinstance(one, Excerpt) and is_block else None
-        if not block:
+        block = own
+        if not own:
             yield one
     if block:
         yield block

@@ -430,3 +430,12 @@ void step() {
 }
 """
     read_program(text, "C")
+
+
+@pytest.mark.parametrize("force", ["-k*x", "-k*new", "-x", "-k*x/m", "-k*sin(x)"])
+def test_new_values_can_replace_the_old_ones_at_the_end(force: str) -> None:
+    text = f"while s < 9:\n    new = x + h*v\n    w = v + h*({force})\n    x = new\n    v = w\n"
+    program = read_program(text, "Python")
+    assert [one.text for one in program.equations] == [f"x_ddot = {force.replace('new', 'x')}"]
+    kind = "semi_implicit_euler" if "new" in force else "explicit_euler"
+    assert [one.kind for one in program.findings] == [kind]

@@ -25,6 +25,7 @@ from derive.reading.programs.evaluation.sums import (
     total,
 )
 from derive.reading.programs.findings.stages import Stages
+from derive.reading.programs.syntax.formula_text import is_negative
 from derive.reading.programs.syntax.trees import (
     Array,
     Choice,
@@ -195,6 +196,12 @@ class Updates:
     def pairs(self) -> tuple[Pair, ...]:
         """Coordinates with their velocities, in the order of the program."""
         result = [pair for one in self.updates.values() if (pair := self._pair(one))]
+        # of x += h*v and v += h*(-k*x), the factor of the first is the step size
+        least = {pair.velocity.variable: _length(pair.step) for pair in result}
+        result = [
+            pair for pair in result
+            if _length(pair.step) <= least.get(pair.coordinate.variable, math.inf)
+        ]  # fmt: skip
         velocities = {pair.velocity.variable for pair in result}
         return tuple(pair for pair in result if pair.coordinate.variable not in velocities)
 
@@ -213,6 +220,8 @@ class Updates:
                 if any(self._moves(one) for one in others):
                     continue
                 step = product(term.line, others) if others else None
+                if step and is_negative(step):
+                    continue
                 rest = [one for one in coordinate.increment if one[1] is not term]
                 if step and (more_steps := self._same(rest, velocity)) is not None:
                     step, rest, is_middle = _whole([(1, step), *more_steps]), [], True
@@ -340,6 +349,13 @@ class Updates:
         parts = tuple(self._restored(part, used) for part in tree.parts)
         is_same = all(a is b for a, b in zip(parts, tree.parts, strict=True))
         return tree if is_same else replaced(tree, parts)
+
+
+def _length(tree: Expression | None) -> int:
+    """The number of names and numbers in a value."""
+    if tree is None:
+        return 0
+    return sum(map(_length, tree.parts)) or 1
 
 
 def _whole(steps: Sequence[Term]) -> Expression:
