@@ -1,5 +1,7 @@
 """Forms of programs: their equations are those that a person reads from the same lines."""
 
+import math
+
 import pytest
 
 from derive.reading.programs.program import Finding
@@ -439,3 +441,47 @@ def test_new_values_can_replace_the_old_ones_at_the_end(force: str) -> None:
     assert [one.text for one in program.equations] == [f"x_ddot = {force.replace('new', 'x')}"]
     kind = "semi_implicit_euler" if "new" in force else "explicit_euler"
     assert [one.kind for one in program.findings] == [kind]
+
+
+VPYTHON = """
+from vpython import *
+sun = sphere(radius=0.1, color=color.yellow, mass=1)
+earth = sphere(pos=vector(1, 0, 0), mass=2, p=vector(0, 3, 0))
+dt = 0.1
+while True:
+    r = earth.pos - sun.pos
+    F = -G*sun.mass*earth.mass*norm(r)/mag(r)**2
+    earth.p = earth.p + F*dt
+    earth.pos = earth.pos + earth.p/earth.mass*dt
+"""
+
+
+@pytest.mark.parametrize(
+    ("norm", "power"), [("norm(r)", 2), ("r.hat", 2), ("r/r.mag", 2), ("r", 3)]
+)
+def test_bodies_of_vpython_have_vectors(norm: str, power: int) -> None:
+    text = VPYTHON.replace("norm(r)", norm).replace("**2", f"**{power}")
+    for one in read_program(text, "Python").equations:
+        left, _, right = one.text.partition(" = ")
+        x = [f"pos_{i}" for i in range(3)]
+        value = eval(right, {"sqrt": math.sqrt, "G": 5.0, "mass": 7.0, "earth_mass": 2.0, x[0]: 1.0,
+                             x[1]: 2.0, x[2]: 2.0})  # fmt: skip
+        assert value == pytest.approx(-5 * 7 * {x[0]: 1, x[1]: 2, x[2]: 2}[left[:5]] / 27)
+    assert len(read_program(text, "Python").equations) == 3
+
+
+def test_zeros_of_a_constant_vector_are_numbers() -> None:
+    text = """
+g = vector(0, -9.8, 0)
+while t < 3:
+    v = v + (g - k*x)*dt
+    x = x + v*dt
+"""
+    text = "x, v = vector(1, 2, 3), vector(1, 1, 2)\n" + text
+    found = [one.text for one in read_program(text, "Python").equations]
+    assert found == ["x_0_ddot = -k*x_0", "x_1_ddot = g_1 - k*x_1", "x_2_ddot = -k*x_2"]
+
+
+def test_a_momentum_is_divided_by_its_mass() -> None:
+    text = "while t < 3:\n    p = p - k*x*dt\n    x = x + p/m*dt\n"
+    assert [one.text for one in read_program(text, "Python").equations] == ["x_ddot = -k*x/m"]

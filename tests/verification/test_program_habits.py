@@ -386,7 +386,8 @@ def rates(t, y, m, r, J, g, f1, f2, w):
 """
     assert "wrong" not in equations(judged(text))
     text = "def rates(t, y, G, mass):\n    x, z, v, w = y\n    return v, w, 0/mass, -G/mass\n"
-    assert "wrong" not in equations(judged(text))
+    assert equations(judged(text)) == ["context", "context"]
+    assert equations(judged(text.replace("G/mass", "G"))) == ["verified", "verified"]
 
 
 def test_a_name_that_only_angles_have_is_an_angle() -> None:
@@ -417,3 +418,10 @@ function draw() {
 """
     assert equations(judged(text, "JavaScript"))[:1] == ["verified"]
     assert equations(judged(text.replace("/r", "*r*r*r"), "JavaScript"))[:1] != ["verified"]
+
+
+def test_an_equation_with_the_step_size_is_not_wrong() -> None:
+    slip = UPRIGHT.replace("*w**2*sin(a) -", "*w**2*sin(a)*s -")
+    assert slip != UPRIGHT
+    assert equations(judged(slip.replace("*s -", "*2 -"))) == ["wrong", "verified"]
+    assert equations(judged(slip.replace("*s -", "*dt -"))) == ["context", "verified"]

@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from derive.reading.latex.tree import Letter, Statement
+from derive.reading.programs.findings.step_methods import STEP_SIZE
 from derive.reading.programs.program import Finding, Program, ProgramEquation, RateFunction
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letter_meanings import (
@@ -29,6 +30,8 @@ from derive.verification.judging.verdict import VerdictName
 
 #: Names, numbers and signs of an equation.
 WORD_OR_SIGN = re.compile(r"\w+|\S")
+#: The note on an equation that contradicts a system, perhaps because it is not read rightly.
+WITH_STEP = "it contains the step size, as no acceleration does"
 #: Names of angular velocities.
 ANGULAR = re.compile(r"(d?_?(omega|Omega|theta|phi|psi|alpha|beta|ang)|w\d*\b)")
 
@@ -103,7 +106,12 @@ def _reading(equations: Sequence[ProgramEquation], hints: Hints | None) -> _Read
     results = [*weighed(verdicts, candidate, found.contradictions, hints is not None)]
     contrary = (*alternatives(found, results, {}),)
     pairs = zip(equations, unopposed(results, contrary), strict=True)
-    judged = tuple(_judged(equation, result) for equation, (_, result) in pairs)
+    judged = tuple(
+        _plain(equation, WITH_STEP)
+        if result.verdict.verdict == "wrong" and any(map(STEP_SIZE.search, formula.words))
+        else _judged(equation, result)
+        for equation, (formula, result) in pairs
+    )
     return _Reading(candidate, judged, contrary)
 
 

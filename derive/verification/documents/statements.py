@@ -36,8 +36,6 @@ from derive.verification.documents.formula_translation import (
 WORD = re.compile(r"(?<![\d.])[A-Za-z_]\w*")
 #: Names of Cartesian components.
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
-#: Zero, also times or divided by names.
-ZERO = re.compile(r"-?0(?:\.0*)?(?:[*/]\w+)*")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
@@ -104,11 +102,6 @@ class DocumentFormula:
         """All names in the formula, also of functions, in the order of their first use."""
         result = (word for side in self.sides for word in WORD.findall(side.text))
         return tuple(dict.fromkeys(result))
-
-    @property
-    def is_vacant(self) -> bool:
-        """Whether it states nothing but that an acceleration or a rate is zero."""
-        return order(self.subject) > 0 and ZERO.fullmatch(self.sides[-1].text) is not None
 
     @property
     def text(self) -> str:

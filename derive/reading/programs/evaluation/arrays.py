@@ -191,6 +191,12 @@ def of_arrays(
             return _norm(call.line, items)
         case "hypot", (x, y):
             return _norm(call.line, (x, y))
+        case "hat", (array,) if items := entries(array):
+            return combined(call.line, "/", (array, _norm(call.line, items)), language)
+        case "hat", () if base is not None and (items := entries(base)):
+            return combined(call.line, "/", (base, _norm(call.line, items)), language)
+        case "mag2", (array,) if items := entries(array):
+            return _norm(call.line, items).parts[1]
         case (("max" | "min" | "maximum" | "minimum"), given) if best := _extreme(name, given):
             return best
         case ("max" | "min", (FunctionCall(function=Name(path=other), arguments=(x, _)), _)) if {

@@ -141,8 +141,8 @@ class Follower(Calls):
 
     def _is_constant(self, target: Expression, value: Expression) -> bool:
         numbers = constant(value)
-        if isinstance(numbers, tuple) and 0 in numbers and {*map(abs, numbers)} == {0, 1}:
-            return False  # a force acts on one coordinate, and not on others
+        if isinstance(numbers, tuple) and 0 in numbers and {*map(abs, numbers)} <= {0, 1}:
+            return False  # a force acts on one coordinate, and not on others; an origin
         is_known = static_path(target) in self.fixed
         return is_known and isinstance(target, Name | Member) and numbers is not None
 
@@ -153,7 +153,11 @@ class Follower(Calls):
             return None
         count = BODIES if len(items) in self.context.lengths else len(items)
         path = static_path(target)
-        return Array(line, tuple(Name(line, f"{path}[{i + first}]") for i in range(count)))
+        names: list[Expression] = [Name(line, f"{path}[{i + first}]") for i in range(count)]
+        if count == len(items) <= MAX_COMPONENTS:  # of gravity, what is 0 stays so
+            pairs = zip(items, names, strict=True)
+            names = [item if constant(item) == 0 else name for item, name in pairs]
+        return Array(line, tuple(names))
 
     def _open_array(self, target: Item) -> None:
         """Keep the entries of an array one by one, so that one of them can change."""

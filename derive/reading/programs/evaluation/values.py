@@ -194,6 +194,8 @@ class Values:
     def _member(self, tree: Expression, base: Expression, name: str) -> Expression:
         if name in ("T", "transpose", "ravel", "flatten"):
             return flat(self.value(base))
+        if name in ("mag", "mag2", "hat") and entries(vector := self.value(base)):  # of VPython
+            return self.called(FunctionCall(tree.line, Name(tree.line, name), (vector,)))
         if path := self.place(tree):
             if path in self.variables or not isinstance(base, Name):
                 return self.variable(tree.line, path)

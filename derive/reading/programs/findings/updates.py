@@ -319,7 +319,7 @@ class Updates:
         parts = [*divisors(factors(step, self._is_whole))]
         terms_of = [self._factors(term) for _, term in velocity.increment]
         own = [one for one in parts if all(one in others for others in terms_of)]
-        rest = [one for one in parts if one not in own]
+        rest = [one for one in parts if one not in own and number(one) != 1]
         values = [self._restored(one, set()) for _, one in velocity.increment]
         is_used = any(velocity.variable in {*names(one)} for one in values)
         is_number = all(number(one) is not None for one in own)

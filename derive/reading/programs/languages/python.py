@@ -8,8 +8,14 @@ from derive.reading.programs.languages.language import Language
 COMMAND = re.compile(r"^[ \t]*[%!].*$", re.MULTILINE)
 
 
+#: The library VPython, in which the norm of a vector is its direction.
+VPYTHON = re.compile(r"^[ \t]*(?:from|import)[ \t]+(?:vpython|visual)\b", re.MULTILINE)
+
+
 def prepared(text: str) -> str:
-    """The text without the commands of notebooks."""
+    """The text without the commands of notebooks; directions of VPython have their other name."""
+    if VPYTHON.search(text):
+        text = re.sub(r"\bnorm\(", "hat (", text)
     return COMMAND.sub("", text)
 
 

@@ -42,6 +42,8 @@ INDICES = re.compile(
     r"\(?\s*(\w+)\s*([!=~/]==?|≠|==|\.(?:ne|eq)\.|is not)\s*(\w+)\s*\)?", re.IGNORECASE
 )
 UNEQUAL, MAX_CONDITION = ("!=", "!==", "~=", "/=", "≠", ".ne.", ".NE.", "is not"), 100
+#: Functions of VPython that build a body with the members that they are given.
+SHAPES = frozenset("sphere box cylinder cone ellipsoid ring simple_sphere".split())
 #: Levels of blocks in blocks.
 MAX_BLOCKS = 60
 #: Variables that a text assigns, and characters of the text in which they are searched.
@@ -217,6 +219,8 @@ class StatementTranslator(DefinitionTranslator):
                 yield Assignment(number, Item(at, base, indices), operator, value)
             case _, Record(fields=fields):
                 yield from self._members(number, target, fields)
+            case Name(), FunctionCall(function=Name(path=name)) if name in SHAPES:
+                yield from self._members(number, target, _of_body(value))
             case Record(fields=fields), _:
                 for name, to in fields:
                     yield Assignment(number, to, "", Member(number, value, name), True)
@@ -316,6 +320,12 @@ class StatementTranslator(DefinitionTranslator):
                     variable, bounds = "", None
             statements = (Loop(line(node), variable, statements, bounds),)
         yield from statements
+
+
+def _of_body(call: FunctionCall) -> tuple[tuple[str, Expression], ...]:
+    """The members of a body of VPython, which stands at the origin by default."""
+    origin = Array(call.line, (NumberLiteral(call.line, "0"),) * 3)
+    return tuple(({"pos": origin} | dict(call.keywords)).items())
 
 
 def _fault(node: "Node", reason: str) -> Fault:

@@ -3,12 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
+from itertools import combinations
 
 import sympy as sp
 from sympy.integrals.manualintegrate import manualintegrate
 
 from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError
+from derive.formulas.zero import vanishes
 from derive.system.symbols import acceleration, velocity
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.statements import DocumentFormula, definitions
@@ -105,15 +107,29 @@ def potential_of(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr
         slope if slope.is_polynomial(*q) or not slope.is_rational_function(*q) else sp.cancel(slope)
         for slope in gradient
     ]
+    if any(slope.free_symbols & rates for slope in gradient):
+        return None
+    pairs = combinations(zip(q, gradient, strict=True), 2)
+    if not all(_is_zero(f.diff(y) - g.diff(x)) for (x, f), (y, g) in pairs):
+        return None
     for one, slope in zip(q, gradient, strict=True):
-        rest = sp.expand(slope - V.diff(one))
-        if rest.free_symbols & rates or sp.count_ops(rest) > MAX_OPERATIONS:
+        rest = slope - V.diff(one)
+        if _is_zero(rest):
+            continue
+        rest = sp.expand(rest)
+        if sp.count_ops(rest) > MAX_OPERATIONS:
             return None
         V += _integral(rest, one)
-    exact = not V.has(sp.Integral) and all(
-        sp.expand(V.diff(one) - slope) == 0 for one, slope in zip(q, gradient, strict=True)
-    )
+    rows = zip(q, gradient, strict=True)
+    exact = not V.has(sp.Integral) and all(_is_zero(V.diff(one) - slope) for one, slope in rows)
     return V if exact else None
+
+
+def _is_zero(expression: sp.Expr) -> bool:
+    """Whether an expression vanishes, as far as that is decided."""
+    with suppress(NotImplementedError, ZeroDivisionError):
+        return vanishes(expression)
+    return bool(sp.expand(expression) == 0)
 
 
 @lru_cache(maxsize=1000)  # several equations of a document have the same force
@@ -122,4 +138,12 @@ def _integral(integrand: sp.Expr, one: sp.Symbol) -> sp.Expr:
     # positive constants, of which none is a case of its own as 0 in sin(a*x)
     positive = {s: sp.Dummy(s.name, positive=True) for s in integrand.free_symbols - {one}}
     constants = {dummy: s for s, dummy in positive.items()}
+    for power in integrand.atoms(sp.Pow):
+        base, exponent = power.args
+        if not base.has(one) or exponent.has(one):
+            continue
+        factor = sp.cancel(integrand / (base.diff(one) * power))
+        if not factor.has(one):  # such as gravity
+            raised = sp.log(base) if exponent == -1 else base ** (exponent + 1) / (exponent + 1)
+            return factor * raised
     return manualintegrate(integrand.xreplace(positive), one).xreplace(constants)

@@ -103,7 +103,7 @@ class _Evidence:
         self._independent = [one for one in self._wrong if FOLLOWS not in one.verdict.note]
         self._misfits = sum(len(one.verdict.corrections) != 1 for one in self._independent)
         held = (formula for formula, one in results if one.verdict.verdict in HOLDING)
-        self._holding = sum(not formula.is_vacant for formula in held)
+        self._holding = sum(not _is_vacant(formula) for formula in held)
         self._has_energy = any(one.kind in OF_ENERGIES for one in self._wrong)
         self._given = _lines(self._lines[k] for k in candidate.stating)
         self._undecided = {*_of_friction(results, candidate)}
@@ -118,6 +118,8 @@ class _Evidence:
         is_wrong = result.verdict.verdict == "wrong"
         if is_wrong and is_no_rate(formula, self._candidate):
             return _noted(result, NO_RATE)
+        if self._is_known and self._holding == 0 and result.verdict.verdict in HOLDING:
+            return plain("context", formula, UNSUPPORTED)  # nothing but zeros holds
         if self._is_guess and (is_wrong or result.verdict.verdict in HOLDING):
             return plain("context", formula, UNSTATED)
         if result.verdict.verdict in HOLDING and number in self._contradictions.disputed:
@@ -344,6 +346,17 @@ class _Evidence:
 
 def _is_wrong(one: WithVerdict) -> bool:
     return one[1].verdict.verdict == "wrong"
+
+
+def _is_vacant(formula: DocumentFormula) -> bool:
+    """Whether a formula states nothing but that an acceleration or a rate is zero."""
+    if not order(formula.subject):
+        return False
+    names = {word: sp.Symbol(word) for word in formula.words if word not in FUNCTIONS}
+    try:
+        return bool(parse(formula.sides[-1].text, {**names, **FUNCTIONS}) == 0)
+    except (ExpressionError, TypeError, ValueError):
+        return False
 
 
 def _agreeing(formula: DocumentFormula, result: SideVerdict) -> int:
