@@ -478,3 +478,16 @@ $$ \dot p_x = -\frac{\partial H}{\partial x} = g \left(m_1 - m_2\right) $$
 """
     assert {*verdicts(tmp_path, text)} <= {"definition", "verified", "equivalent"}
     assert judged(tmp_path, text).formulas[-1].note == ""
+
+
+def test_potentials_of_central_forces_are_found_and_of_others_are_not() -> None:
+    x, y, a, k = sp.symbols("x y a k", real=True)
+    square = (x - a) ** 2 + y**2
+    for power in (2, 3, 5):
+        distance = square ** sp.Rational(power, 2)
+        gradient = [k * (x - a) / distance, k * y / distance]
+        V = potential_of(gradient, [x, y])
+        assert V is not None
+        for q, slope in zip((x, y), gradient, strict=True):
+            assert abs((V.diff(q) - slope).subs({x: 2, y: 3, a: 5, k: 7}).evalf(30)) < 1e-25
+        assert potential_of([gradient[0], 2 * gradient[1]], [x, y]) is None

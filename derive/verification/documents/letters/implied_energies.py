@@ -116,10 +116,13 @@ def potential_of(gradient: Sequence[sp.Expr], q: Sequence[sp.Symbol]) -> sp.Expr
         rest = slope - V.diff(one)
         if _is_zero(rest):
             continue
-        rest = sp.expand(rest)
-        if sp.count_ops(rest) > MAX_OPERATIONS:
-            return None
-        V += _integral(rest, one)
+        part = _of_power(rest, one)
+        if part is None:
+            rest = sp.expand(rest)
+            if sp.count_ops(rest) > MAX_OPERATIONS:
+                return None
+            part = _integral(rest, one)
+        V += part
     rows = zip(q, gradient, strict=True)
     exact = not V.has(sp.Integral) and all(_is_zero(V.diff(one) - slope) for one, slope in rows)
     return V if exact else None
@@ -132,18 +135,23 @@ def _is_zero(expression: sp.Expr) -> bool:
     return bool(sp.expand(expression) == 0)
 
 
+def _of_power(integrand: sp.Expr, one: sp.Symbol) -> sp.Expr | None:
+    """The integral of a power times the derivative of its base, as of gravity; None of others."""
+    for power in integrand.atoms(sp.Pow):
+        base, exponent = power.args
+        if base.has(one) and not exponent.has(one):
+            factor = sp.cancel(integrand / (base.diff(one) * power))
+            if not factor.has(one):
+                is_inverse = exponent == -1
+                raised = sp.log(base) if is_inverse else base ** (exponent + 1) / (exponent + 1)
+                return factor * raised
+    return None
+
+
 @lru_cache(maxsize=1000)  # several equations of a document have the same force
 def _integral(integrand: sp.Expr, one: sp.Symbol) -> sp.Expr:
     """The integral by a symbol, which contains `Integral` where it is not found."""
     # positive constants, of which none is a case of its own as 0 in sin(a*x)
     positive = {s: sp.Dummy(s.name, positive=True) for s in integrand.free_symbols - {one}}
     constants = {dummy: s for s, dummy in positive.items()}
-    for power in integrand.atoms(sp.Pow):
-        base, exponent = power.args
-        if not base.has(one) or exponent.has(one):
-            continue
-        factor = sp.cancel(integrand / (base.diff(one) * power))
-        if not factor.has(one):  # such as gravity
-            raised = sp.log(base) if exponent == -1 else base ** (exponent + 1) / (exponent + 1)
-            return factor * raised
     return manualintegrate(integrand.xreplace(positive), one).xreplace(constants)
