@@ -22,11 +22,13 @@ REMARK = re.compile(
 )
 LINE = re.compile(r"[^\n]+")
 RELATION = re.compile(r"=|≈|≡|:=")
+#: The value of a name, as programs print it.
+VALUE = re.compile(r"\s*\w+\s*=\s*[-+\d.eE/\s]*")
 #: The start of a line that continues the formula before it.
 CONTINUED = re.compile(r"[=+\-−*/·]")
 #: What is part of no formula but of a program, of a table or of a sentence.
 FOREIGN = re.compile(
-    r"""==|[+\-*/]=|=>|[;{}"`$@!?\\&|#<>~%]|\w\[|[A-Za-z]\.[A-Za-z]|\d\.\w*[A-Za-z]|[A-Za-z]\w*\(\)"""
+    r"""==|[+\-*/]=|=>|=\s*'|[;{}"`$@!?\\&|#<>~%]|\w\[|[A-Za-z]\.[A-Za-z]|\d\.\w*[A-Za-z]|[A-Za-z]\w*\(\)"""
 )
 PROGRAM = re.compile(
     r"^[ \t]*(?:def|for|while|import|from|function|class|return|if|else|elif|var|let|const|double|"
@@ -131,6 +133,8 @@ def _is_formula(formula: str) -> bool:
     name = left.strip()
     if re.fullmatch(r"\w+", name) and re.match(rf"\s*{re.escape(name)}\s*[-+*]", right):
         return False  # x = x + v*dt
+    if any(VALUE.fullmatch(part) for part in formula.split(",")):
+        return False
     words = re.findall(r"[A-Za-z]+", re.sub(r"_[A-Za-z]+", "_", formula))
     return all(WORD.fullmatch(one) and one not in PROSE for one in words)
 

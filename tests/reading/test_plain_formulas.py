@@ -111,6 +111,8 @@ def test_lines_of_code_blocks_are_displays(tmp_path: Path) -> None:
         "x = 3\ny = 4",  # nothing shows that it is mechanics
         "the angle θ = length of the rod",
         "name = 'x''",
+        "a='hi'",
+        "m1 = 851/500, phi1_dot = 441/1250",
         "y[0]'' = θ",
         "θ̈ = np.sin(θ)",
         "E == m c²",
