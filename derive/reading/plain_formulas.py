@@ -5,6 +5,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from derive.reading.latex.layout.latex_symbols import FUNCTIONS, GREEK
 from derive.reading.scanning import Excerpt, UnreadDisplay
 
 #: The delimiter of a formula in plain text, and those of blocks and spans of code that are scanned.
@@ -17,10 +18,12 @@ LABEL = re.compile(
 )
 #: Behind it: a comment, a number or words in brackets after several spaces, punctuation.
 REMARK = re.compile(
-    r"[ \t]+(?:#|//|--|←|<-|—)[^\n]*|(?:[ \t]{2,}|\t)[(\[][^=\n]*[)\]]\.?$"
-    r"|[ \t]+\((?=[^()=]*[a-z]{4})[^()=]*\)$|[ \t]+\[[^\]=\n]*\]$|[ \t]*[,;.]?[ \t]*$"
+    r"(?<![ \t])(?:[ \t]+(?:#|//|--|←|<-|—)[^\n]*|(?:[ \t]{2,}|\t)[(\[][^=\n]*[)\]]\.?$"
+    r"|[ \t]+\((?=[^()=]*[a-z]{4})[^()=]*\)$|[ \t]+\[[^\]=\n]*\]$|[ \t]*[,;.]?[ \t]*$)"
 )
-LINE = re.compile(r"[^\n]+")
+#: A line, and the characters of the longest that is read.
+MAX_LENGTH = 300
+LINE = re.compile(rf"^[^\n]{{1,{MAX_LENGTH}}}$", re.MULTILINE)
 RELATION = re.compile(r"=|≈|≡|:=")
 #: The value of a name, as programs print it.
 VALUE = re.compile(r"\s*\w+\s*=\s*[-+\d.eE/\s]*")
@@ -37,15 +40,10 @@ PROGRAM = re.compile(
 )
 #: Signs of mechanics: characters that programs lack, and derivatives.
 MATHEMATICS = re.compile(r"''|d?dot\b|\bd\^?2\w|\bd\w{1,6}/dt\b|[A-Za-z)]'")
-FUNCTION = r"(?:a|arc)?(?:sin|cos|tan)h?|sqrt|exp|log|ln|cot|sgn|sign|abs"
-GREEK = (
-    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|rho|sigma|tau|"
-    "upsilon|phi|chi|psi|omega|pi"
-)
 #: Words of a formula: letters, functions, Greek letters, derivatives of these, and products.
 WORD = re.compile(
-    rf"(?i:{FUNCTION}|d?(?:{GREEK})|[KPT]E|mg[a-z]|GMm)(?:_?d{{1,3}}ot)*|d{{0,2}}[a-zA-Z]_?d{{1,3}}ot"
-    r"|const(?:ant)?|[a-zA-Z]{1,2}"
+    rf"(?i:{'|'.join(FUNCTIONS)}|sqrt|abs|d?(?:{'|'.join(GREEK)})|[KPT]E|mg[a-z]|GMm)(?:_?d{{1,3}}ot)*"
+    r"|d{0,2}[a-zA-Z]_?d{1,3}ot|const(?:ant)?|[a-zA-Z]{1,2}"
 )
 #: Words of two letters that are none of a formula.
 PROSE = frozenset("is of to in at or if we by so an as on it be do no".split())
@@ -58,22 +56,25 @@ def with_plain_formulas(
 
     Blocks have none unless one of them shows that it belongs to no program.
     """
-    found = list[Excerpt | UnreadDisplay]()
-    blocks = list[Excerpt]()
+    found = list[tuple[Excerpt | UnreadDisplay, bool]]()  # and whether it stands in a block
     for one in _with_whole_blocks(text, results):
         match one:
             case Excerpt(delimiter=delimiter) if delimiter == BLOCK:
-                own = _formulas(text, one)
-                blocks += own
-                found += own
+                found += ((own, True) for own in _formulas(text, one))
             case Excerpt(delimiter=delimiter) if delimiter == SPAN:
                 formula = text[one.start : one.end]
-                if RELATION.search(formula) and _is_formula(formula) and _is_mathematics(formula):
-                    found.append(replace(one, delimiter=PLAIN))
+                is_relation = len(formula) <= MAX_LENGTH and RELATION.search(formula)
+                if is_relation and _is_formula(formula) and _is_mathematics(formula):
+                    found.append((replace(one, delimiter=PLAIN), False))
             case _:
-                found.append(one)
-    is_read = any(_is_mathematics(text[one.start : one.end]) for one in blocks)
-    return (one for one in found if is_read or one not in blocks)
+                found.append((one, False))
+    blocks = (
+        text[one.start : one.end]
+        for one, is_block in found
+        if is_block and isinstance(one, Excerpt)
+    )
+    is_read = any(map(_is_mathematics, blocks))
+    return (one for one, is_block in found if is_read or not is_block)
 
 
 def _with_whole_blocks(

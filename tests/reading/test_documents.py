@@ -268,7 +268,8 @@ def test_latin_1_is_read(tmp_path: Path) -> None:
     "piece",
     ["$", "$$ ", "$x ", "\\[", "\\(", "\\begin{align}", "\\def\\a{", "{", "<a ", "<!--", "<math>",
      "`", "` `` ", "````\n```\n", "\\", "\n", " \n", "    x\n", "> ", "- ", ".. math::\n", "..\n",
-     "a::\n\n", "&#", "\\verb|", "%$", "\\newcommand{\\b}{\\begin{align}}"],
+     "a::\n\n", "    x' = y\n", "    x  ", "`x' = y` ", "<pre>x' = y</pre>", "&#", "\\verb|",
+     "%$", "\\newcommand{\\b}{\\begin{align}}"],
 )  # fmt: skip
 def test_repeated_delimiters_take_linear_work(tmp_path: Path, name: str, piece: str) -> None:
     def read_repeated(size: int) -> None:

@@ -7,6 +7,7 @@ import pytest
 from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import formulas
 from derive.reading.latex.tree import Statement
+from derive.reading.plain_formulas import MAX_LENGTH
 from derive.verification.documents.formula_translation import FormulaTranslator
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.pages.latex_text import escaped, formula
@@ -135,6 +136,13 @@ def test_spans_of_code_are_inline_formulas(tmp_path: Path) -> None:
     verdicts = judge_document(document)
     assert "(**wrong**, should be `θ'' = -g/l*sin(θ)`" in markdown_notes(verdicts, document)
     assert page([(verdicts, document)]).count("inline wrong") == 1
+
+
+def test_long_lines_of_code_are_skipped(tmp_path: Path) -> None:
+    sum_of_terms = " + ".join(["θ'"] * 80)
+    assert len(sum_of_terms) > MAX_LENGTH
+    line = f"x'' = {sum_of_terms}"
+    assert displays(f"```\n{line}\nθ'' = x\n```\n`{line}`\n", tmp_path) == ["θ'' = x"]
 
 
 @pytest.mark.parametrize("language", ["python", "c", "matlab", "bash"])
