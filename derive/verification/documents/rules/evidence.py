@@ -444,6 +444,8 @@ def _of_drives(candidate: SystemCandidate) -> Iterator[str]:
     places = (component for one in system.masses for component in one.position)
     energies = sp.Add.make_args(sp.expand(system.potential_energy))
     driving = [one for one in (*places, *energies) if one.has(TIME)]
+    if driving and not derivation(system).lagrangian.has(TIME):
+        driving = []  # in a rotating frame
     symbols = sp.Tuple(system.dissipation, *system.forces, *driving).free_symbols
     for parameter in system.parameters:
         if parameter.symbol in symbols and parameter.symbol.name in candidate.parameters:
