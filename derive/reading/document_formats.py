@@ -13,6 +13,7 @@ from types import ModuleType
 from derive.reading import formats
 from derive.reading.document import CodeCell, Display, Document, Kind, Place
 from derive.reading.formats import notebook, tex
+from derive.reading.plain_formulas import PLAIN, with_plain_formulas
 from derive.reading.scanning import Excerpt, UnreadDisplay
 from solvers.io.toml_input import InputError, read_bytes
 
@@ -102,14 +103,18 @@ def _scanned(
     form = known_formats()[document.kind]
     displays: list[Display] = []
     unread: dict[str, list[Place]] = {}
-    result = ((offset, part, one) for offset, part in parts for one in form.excerpts(part))
+    result = (
+        (offset, part, one)
+        for offset, part in parts
+        for one in with_plain_formulas(part, form.excerpts(part))
+    )
     for count, (offset, part, one) in enumerate(result):
         if count == MAX_FORMULAS:
             raise InputError(f"{document.file} has more than {MAX_FORMULAS} formulas")
         if isinstance(one, UnreadDisplay):
             place = document.place(offset + one.start)
             unread.setdefault(one.reason, []).append(place)
-        elif latex := form.decoded(part, one).rstrip():
+        elif latex := _source(form, part, one).rstrip():
             start = offset + one.start + len(latex) - len(latex.lstrip())
             displays.append(_display(document, start, latex.lstrip(), offset, one))
     if sum(not one.is_inline for one in displays) > MAX_DISPLAYS:
@@ -125,6 +130,12 @@ def _scanned(
         definitions=definitions,
         notes=(*notes, *(_note(reason, places) for reason, places in unread.items())),
     )
+
+
+def _source(form: ModuleType, text: str, excerpt: Excerpt) -> str:
+    """The formula of an excerpt; in plain text nothing is encoded."""
+    is_plain = excerpt.delimiter == PLAIN
+    return text[excerpt.start : excerpt.end] if is_plain else str(form.decoded(text, excerpt))
 
 
 def _note(reason: str, places: Sequence[Place]) -> str:

@@ -8,7 +8,8 @@ from dataclasses import replace
 from derive.reading.latex.layout.latex_symbols import FUNCTIONS, GREEK
 from derive.reading.scanning import Excerpt, UnreadDisplay
 
-#: The delimiter of a formula in plain text, and those of blocks and spans of code that are scanned.
+#: The delimiter of a formula in plain text, and those of blocks and spans of code that are scanned:
+#: as inline formulas, since a display without an end would be reported.
 PLAIN, BLOCK, SPAN = "text", "block of code", "span of code"
 #: Languages of blocks of code that are none.
 LANGUAGES = r"(?:text|txt|plain|plaintext|ascii|none)?"

@@ -37,6 +37,7 @@ IMPLIED = {
     **{tag: ({"td", "th"}, {"tr"}) for tag in ("td", "th")},
     "tr": ({"tr"}, {"table", "thead", "tbody"}),
 }
+#: Elements in which only formulas stood.
 VACANT = re.compile(r"<p>\s*</p>|<pre>(?:<code>)?\s*(?:</code>)?</pre>")
 #: Elements that end before a display and start again behind it.
 DIVIDED = frozenset(("p", "pre", "code"))

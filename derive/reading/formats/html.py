@@ -5,12 +5,13 @@ from collections.abc import Iterator
 from html import unescape
 
 from derive.reading.formats.tex import environments
-from derive.reading.plain_formulas import BLOCK, with_plain_formulas
+from derive.reading.plain_formulas import BLOCK
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "html", (".html", ".htm")
 #: Elements whose text is shown as it stands, or not at all.
 RAW = r"(?i:<(?:script|style|pre|code|textarea|noscript|svg|head|title)\b[^<>]*+>)"
+#: Text as it stands, in which there can be formulas.
 PREFORMATTED = r"(?i:<pre\b[^<>]*+>(?:\s*<code>)?)"
 #: Tags, comments, and the ends of blocks of text, at which a formula ends.
 TAG, COMMENT = r"</?[A-Za-z][^<>]*+>", "<!--"
@@ -56,7 +57,7 @@ TOKENS = (
 
 def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a page."""
-    return with_plain_formulas(text, scanned(text, TOKENS))
+    return scanned(text, TOKENS)
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from derive.reading.formats import html, restructuredtext
 from derive.reading.formats.tex import environments
-from derive.reading.plain_formulas import BLOCK, LANGUAGES, PLAIN, SPAN, with_plain_formulas
+from derive.reading.plain_formulas import BLOCK, LANGUAGES, SPAN
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "markdown", (".md", ".markdown", ".txt")
@@ -107,9 +107,8 @@ def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
         replace(one, applies=lambda one: one.start() not in fences)
         for one in (PLAIN_BLOCK, CODE_BLOCK)
     )
-    results = scanned(text, (indented, MATH_BLOCK, *blocks, *TOKENS))
-    for result in with_plain_formulas(text, results):
-        if isinstance(result, UnreadDisplay) or result.delimiter == PLAIN:
+    for result in scanned(text, (indented, MATH_BLOCK, *blocks, *TOKENS)):
+        if isinstance(result, UnreadDisplay):
             yield result
         elif result.delimiter in ("$$", IMAGE):
             yield replace(result, is_inline=_is_in_sentence(text, result))
@@ -189,8 +188,6 @@ def _fences_of_boxes(text: str) -> frozenset[int]:
 def decoded(text: str, excerpt: Excerpt) -> str:
     """The LaTeX after Markdown's own escapes; the length stays the same."""
     latex = text[excerpt.start : excerpt.end]
-    if excerpt.delimiter == PLAIN:
-        return latex
     if "\n" in latex and QUOTED.match(text, text.rfind("\n", 0, excerpt.start) + 1):
         latex = QUOTED.sub(lambda margin: " " * len(margin[0]), latex)
     if excerpt.delimiter == "```math":

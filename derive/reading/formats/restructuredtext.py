@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from derive.reading.plain_formulas import BLOCK, PLAIN, with_plain_formulas
+from derive.reading.plain_formulas import BLOCK
 from derive.reading.scanning import BLANK_LINE, Delimiter, Excerpt, UnreadDisplay, scanned
 
 KIND, SUFFIXES = "restructuredtext", (".rst",)
@@ -39,7 +39,7 @@ TOKENS = (
 
 def excerpts(text: str) -> Iterator[Excerpt | UnreadDisplay]:
     """The formulas of a text."""
-    return with_plain_formulas(text, scanned(text, TOKENS))
+    return scanned(text, TOKENS)
 
 
 def decoded(text: str, excerpt: Excerpt) -> str:
@@ -47,8 +47,7 @@ def decoded(text: str, excerpt: Excerpt) -> str:
 
     Behind blank lines a row begins, as Sphinx reads them.
     """
-    latex = text[excerpt.start : excerpt.end]
-    return latex if excerpt.delimiter == PLAIN else with_rows(options_removed(latex))
+    return with_rows(options_removed(text[excerpt.start : excerpt.end]))
 
 
 def prose(text: str) -> str:

@@ -1,6 +1,6 @@
 r"""The statements of a display in LaTeX.
 
-    tokens → without macros → without layout → statements → sides → symbols → syntax trees
+    tokens → without macros → without layout → words → statements → sides → symbols → syntax trees
 
 Implicit products, and functions without brackets, are read by these rules:
 

@@ -6,8 +6,6 @@ from derive.reading.programs.languages.language import Language
 
 #: Commands of notebooks.
 COMMAND = re.compile(r"^[ \t]*[%!].*$", re.MULTILINE)
-
-
 #: The library VPython, in which the norm of a vector is its direction.
 VPYTHON = re.compile(r"^[ \t]*(?:from|import)[ \t]+(?:vpython|visual)\b", re.MULTILINE)
 

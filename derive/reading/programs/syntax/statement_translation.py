@@ -219,7 +219,7 @@ class StatementTranslator(DefinitionTranslator):
                 yield Assignment(number, Item(at, base, indices), operator, value)
             case _, Record(fields=fields):
                 yield from self._members(number, target, fields)
-            case Name(), FunctionCall(function=Name(path=name)) if name in SHAPES:
+            case Name(), FunctionCall(function=Name(path=name), arguments=()) if name in SHAPES:
                 yield from self._members(number, target, _of_body(value))
             case Record(fields=fields), _:
                 for name, to in fields:

@@ -194,9 +194,9 @@ class _Evidence:
         few = max(1, min(self._holding, max(2, self._holding // 2)))
         is_unsure = self._has_energy or self._are_signs
         is_several = is_unsure and len(self._wrong) > 1
-        is_alone = any(_agreeing(*one) < AGREEING for one in self._results if _is_wrong(one))
+        hardly_agrees = any(_agreeing(*one) < AGREEING for one in self._results if _is_wrong(one))
         has_none = self._holding == 0 and (
-            is_several or is_alone or bool(self._candidate.constraints)
+            is_several or hardly_agrees or bool(self._candidate.constraints)
         )
         is_open = self._is_partial or self._candidate.has_unusual_letters
         return self._is_known and (is_open or not has_all or has_none or slips > few)
