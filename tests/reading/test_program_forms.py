@@ -434,7 +434,7 @@ void step() {
     read_program(text, "C")
 
 
-@pytest.mark.parametrize("force", ["-k*x", "-k*new", "-x", "-k*x/m", "-k*sin(x)"])
+@pytest.mark.parametrize("force", ["-k*x", "-k*new", "-x", "-k*x/m", "k*x", "-k*sin(x)"])
 def test_new_values_can_replace_the_old_ones_at_the_end(force: str) -> None:
     text = f"while s < 9:\n    new = x + h*v\n    w = v + h*({force})\n    x = new\n    v = w\n"
     program = read_program(text, "Python")

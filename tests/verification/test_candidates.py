@@ -111,3 +111,5 @@ def test_constraints_without_a_motion_belong_to_no_meaning() -> None:
     assert judges.has_motions(free)
     at_centre = StatedConstraint("f", frozenset({"f"}), 0)  # where the radius is not positive
     assert not judges.has_motions(replace(free, constraints=(at_centre,)))
+    of_nothing = StatedConstraint("f - f", frozenset({"f"}), 0)
+    assert not judges.has_motions(replace(free, constraints=(of_nothing,)))

@@ -717,8 +717,9 @@ def test_a_load_on_the_left_is_part_of_an_equation_of_motion(tmp_path: Path) -> 
 def test_an_equation_of_one_coordinate_is_judged_beside_others(tmp_path: Path) -> None:
     text = r"""$$\sum F_x = -T\sen(\theta) = m\frac{d^2x}{dt^2}$$
 $$\sum F_r = T - m g\cos(\theta) = m\frac{d^2r}{dt^2}$$
+$$\sum F_\theta = -m g\sin(\theta) = m\frac{dv_\theta}{dt}$$ $$T - m g\cos(\theta) = 0$$
 $$\frac{d^2\theta}{dt^2} = -\frac gl sen(\theta)$$"""
-    assert verdicts(tmp_path, text) == ["context", "context", "verified"]
+    assert verdicts(tmp_path, text) == ["context"] * 4 + ["verified"]
     assert "verified" not in verdicts(tmp_path, text.replace("gl sen", "gl cos"))
 
 
