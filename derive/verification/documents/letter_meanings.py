@@ -5,9 +5,11 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
+from math import inf
 
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.judges import (
+    TIE,
     Judges,
     Results,
     contradictions_of,
@@ -26,7 +28,12 @@ from derive.verification.documents.letters.stated_positions import (
     stated_candidates,
     stated_systems,
 )
-from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
+from derive.verification.documents.numbers.matching import (
+    Match,
+    best_matches,
+    is_equation,
+    trivial_comparisons,
+)
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.consequences import Contradictions
 from derive.verification.documents.rules.corrected_formulas import corrected
@@ -172,7 +179,8 @@ def _best(
     for tried in (tried for group in groups for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
             break
-        result = best_matches(tried, letters, formulas, derivatives, trivial)
+        least_support = _least_support(matches, least)
+        result = best_matches(tried, letters, formulas, derivatives, trivial, least_support)
         held = [match for match in result if match.holding or not least]
         first = held[0].candidate if held else None  # others have the same constraints
         if first and first.condition_count and not judges.has_motions(first):
@@ -182,6 +190,8 @@ def _best(
             (circular if match.is_circular else matches).append(match)
         if any(match.is_stated_by_positions for match in result):
             break
+        if all(map(is_equation, formulas)) and any(_is_complete(one, formulas) for one in matches):
+            break  # no system can suit better
     supported = [match for match in matches if not least or _is_supported(match, least)]
 
     def rank(match: Match) -> tuple[float, int, int]:
@@ -202,6 +212,24 @@ def _best(
         matches += circular
     contradictions = Contradictions() if is_decided else contradictions_of(best, matches, judges)
     return Interpretation(judges, best, rivals, contradictions)
+
+
+def _least_support(matches: Sequence[Match], least: float) -> float:
+    """The support below which a known system changes nothing.
+
+    Where the document states a system, all others can show that it is wrong.
+    """
+    if not least or any(match.candidate.basis != "catalogue" for match in matches):
+        return -inf
+    supported = (match.score for match in matches if _is_supported(match, least))
+    return max(supported, default=-inf) - TIE
+
+
+def _is_complete(match: Match, formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether all formulas hold with a known system in its usual form, and nothing is left over."""
+    one = match.candidate
+    is_known = one.basis == "catalogue" and one.is_usual and not (one.lacking or one.numbers)
+    return is_known and match.compared >= len(formulas) and not match.failed
 
 
 def _fits(judges: Judges, candidate: SystemCandidate) -> bool:

@@ -6,6 +6,7 @@ between them.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,17 +96,19 @@ def best_matches(
     formulas: Sequence[DocumentFormula],
     derivatives: Derivatives,
     trivial: frozenset[Comparison],
+    least_support: float = -inf,
 ) -> list[Match]:
     """The candidates of one system that can be meant, the best first.
 
     These are the one for which most formulas hold, others with the same support, and usual ones
-    for which a few formulas fail by one term each; of those of the same motions the first.
+    for which a few formulas fail by one term each; of those of the same motions the first. There
+    are none if all have less than the `least_support`.
     """
     if not tried:
         return []
     numbers = Numbers(CandidateMotions(tried, letters), letters, derivatives)
     numbers.define(formulas)
-    others = {w for one in formulas if not (_is_equation(one) or one.is_value) for w in one.words}
+    others = {w for one in formulas if not (is_equation(one) or one.is_value) for w in one.words}
     loads = {*letters.of_kind("force")} - others
     free = {k: _without_loads(tried, loads, one) for k, one in enumerate(formulas)}
     votes = [
@@ -117,6 +120,9 @@ def best_matches(
     if not votes:
         return []
     agreeing = np.array([vote for *_, vote in votes])
+    failing = len(votes) - int(agreeing.sum(axis=0).max())
+    if len(votes) - failing * (1 - NEARLY) * (1 + FAILING) < least_support:
+        return []  # even if all others hold but for one term
     near = np.zeros_like(agreeing)
     if len(votes) <= FEW:
         for row, (index, side, vote) in enumerate(votes):
@@ -155,7 +161,7 @@ def _comparisons(
         yield side, np.where(lacking, other, vote)
 
 
-def _is_equation(formula: DocumentFormula) -> bool:
+def is_equation(formula: DocumentFormula) -> bool:
     """Whether a formula is an equation of motion."""
     return len(formula.sides) == 2 and any(order(word) == 2 for word in formula.words)
 
@@ -168,7 +174,7 @@ def _without_loads(
     With it, the candidates of stated energies without these letters.
     """
     own = loads & {*formula.words}
-    if own and _is_equation(formula) and tried[0].basis == "energies":
+    if own and is_equation(formula) and tried[0].basis == "energies":
         rest = without_unknown_terms(formula, own)
         if rest is not None:
             return rest, np.array([own.isdisjoint(one.letters) for one in tried])
