@@ -165,6 +165,19 @@ OPERATIONS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
 Value: TypeAlias = Any
 
 
+class Constants(dict[str, Value]):
+    """The values of names without their derivatives, of which most formulas need none."""
+
+    def __init__(self, values: Mapping[str, Value]) -> None:
+        super().__init__()
+        self._values = values
+
+    def __missing__(self, name: str) -> Value:
+        value = self._values[name]
+        self[name] = value = value.constant if isinstance(value, Jet) else value
+        return value
+
+
 @cache
 def _tree(text: str) -> ast.expr:
     return syntax_tree(text)
@@ -184,9 +197,10 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
         case ast.Constant(value=int() | float() as number):
             return _constant(float(number))
         case ast.Name(id=name):
-            if name not in values:
-                raise UnknownNameError(name)
-            return values[name]
+            try:
+                return values[name]
+            except KeyError:
+                raise UnknownNameError(name) from None
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return -_value(operand, values)
         case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int() | float() as n)):

@@ -160,11 +160,14 @@ def candidates(
     With `numbers`, by kinds of parameters, these have the numbers instead of letters.
     """
     n = len(system.coordinates)
-    if system.conditions or letters.constraints:
+    is_constrained = bool(system.conditions or letters.constraints)
+    if is_constrained:
         own = {*letters.multipliers}
         others = (one for one in letters.parameters if one not in own)
         letters = replace(letters, parameters=tuple(others))
-    most = MAX_CONSTRAINED if system.conditions or letters.constraints else MAX_CANDIDATES
+    most = MAX_CONSTRAINED if is_constrained else MAX_CANDIDATES
+    kinds = {one.symbol.name: kind for one in system.parameters if (kind := kind_of(one))}
+    usual = {(name, one) for name, kind in kinds.items() for one in (name, *letters.of_kind(kind))}
     choices = _likeliest(
         [*islice(_conventions(system, letters), most)],
         sorted(
@@ -172,24 +175,29 @@ def candidates(
             key=lambda order: _mixed([one.symbol.name for one in system.coordinates], order),
         ),
         [
-            (one, {**_absent(system, one), **_numbers(system, one, numbers or {})})
+            (
+                one,
+                {**_absent(system, one), **_numbers(system, one, numbers or {})},
+                any(pair[0] in kinds and pair not in usual for pair in one.items()),
+                frozenset(one.values()),
+            )
             for one in islice(_parameters(system, letters), MAX_CHOICES)
         ],
-        loads(letters, "force", n),
-        frictions(letters, n, {kind_of(one) for one in system.parameters}),
+        [(one, {*dict(one)}) for one in loads(letters, "force", n)],
+        [(one, {*dict(one)}) for one in frictions(letters, n, {*kinds.values()})],
     )
-    kinds = {one.symbol.name: kind for one in system.parameters if (kind := kind_of(one))}
-    usual = {(name, one) for name, kind in kinds.items() for one in (name, *letters.of_kind(kind))}
-    for (signs, offsets), order, (mapping, stated), forces, friction in islice(choices, most):
-        if {name for name, _ in (*forces, *friction)} & {*mapping.values()}:
+    for convention, order, parameters, (forces, acting), (friction, damping) in islice(
+        choices, most
+    ):
+        (signs, offsets), (mapping, stated, is_unusual, used) = convention, parameters
+        if not (used.isdisjoint(acting) and used.isdisjoint(damping)):
             continue  # the letter of a force of the system
         if numbers is None or stated:
-            is_unusual = any(one[0] in kinds and one not in usual for one in mapping.items())
             one = SystemCandidate(
                 system, order, signs, offsets, mapping, forces, friction, stated,
                 has_unusual_letters=is_unusual,
             )  # fmt: skip
-            yield from constrained(one, letters)
+            yield from constrained(one, letters) if is_constrained else (one,)
 
 
 def _mixed(names: Sequence[str], letters: Sequence[str]) -> int:
@@ -251,13 +259,17 @@ def _absent(system: System, mapping: Mapping[str, str]) -> dict[str, str]:
 def _likeliest(*choices: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
     """Combinations of choices, each sorted: those with the smallest sum of indices first."""
 
-    @cache
-    def with_sum(total: int, axis: int) -> list[tuple[Any, ...]]:
+    def with_sum(total: int, axis: int) -> Iterator[tuple[Any, ...]]:
         """Combinations of the choices from an axis on whose indices have a sum."""
-        if axis == len(choices):
-            return [] if total else [()]
-        own = enumerate(choices[axis][: total + 1])
-        return [(one, *rest) for i, one in own for rest in with_sum(total - i, axis + 1)]
+        if axis < len(choices):
+            for i, one in enumerate(choices[axis][: total + 1]):
+                yield from ((one, *rest) for rest in listed(total - i, axis + 1))
+        elif not total:
+            yield ()
+
+    @cache
+    def listed(total: int, axis: int) -> list[tuple[Any, ...]]:
+        return [*with_sum(total, axis)]
 
     for total in range(sum(map(len, choices)) - len(choices) + 1):
         yield from with_sum(total, 0)

@@ -7,6 +7,7 @@ alike everywhere.
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import product
 from typing import Any, Self
 
@@ -137,6 +138,13 @@ class Letters:
 
     def of_kind(self, kind: str) -> list[str]:
         """Parameters that can be of a kind, the usual ones first."""
+        return self._by_kind[kind]
+
+    @cached_property
+    def _by_kind(self) -> Mapping[str, list[str]]:
+        return {kind: self._of_kind(kind) for kind in KINDS}
+
+    def _of_kind(self, kind: str) -> list[str]:
         usual = KINDS[kind]
         given = [name for name, own in self.kinds.items() if own == kind]
         stems = {p: p.partition("_")[0].rstrip("0123456789") for p in self.parameters}

@@ -6,6 +6,7 @@ coordinates q' of q = A q' + c: M' = Aᵀ M A and f' = Aᵀ f.
 
 from collections.abc import Mapping, Sequence
 from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -85,7 +86,7 @@ class CandidateMotions:
         self.speeds = {q: random.uniform(-1, 1, (1, STATES)) for q in names}
         self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
         own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
-        self._signs = np.array([one.signs for one in tried], float)
+        self._signs = _stacked([one.signs for one in tried])
         #: Gradients of energies by coordinates (order 0) or velocities (1), as far as needed.
         self._gradients: dict[tuple[str, int], Mapping[str, Array]] = {}
         self._names = self._system_names(own)
@@ -317,11 +318,11 @@ class CandidateMotions:
     def _system_names(self, own: Mapping[str, float]) -> dict[str, Value]:
         """Coordinates, velocities and parameters of the system."""
         place, speed = (self._by_order(table) for table in (self.places, self.speeds))
-        known = {  # many candidates share their offsets
+        known = {
             own: [self.parameters[x] if isinstance(x, str) else x * np.pi / 2 for x in own]
             for own in {one.offsets for one in self._tried}
         }
-        offsets = np.array([known[one.offsets] for one in self._tried])
+        offsets = _stacked([one.offsets for one in self._tried], known)
         q = np.einsum("bij,bjk->bik", self._signs, place) + offsets[:, :, None]
         qdot = np.einsum("bij,bjk->bik", self._signs, speed)
         time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates
@@ -342,6 +343,15 @@ class CandidateMotions:
 def _text(expression: sp.Expr) -> str:
     """The text of an expression; those of known systems are the same for all documents."""
     return str(sp.sstr(expression))
+
+
+def _stacked(
+    rows: Sequence[tuple[Any, ...]], values: Mapping[tuple[Any, ...], Any] | None = None
+) -> Array:
+    """An array of rows, or of their values; many candidates share them."""
+    numbers = {row: k for k, row in enumerate(dict.fromkeys(rows))}
+    table = np.array([values[row] if values else row for row in numbers], float)
+    return np.asarray(table[[numbers[row] for row in rows]])
 
 
 def _shortest(gradients: Array, residuals: Array) -> Array:

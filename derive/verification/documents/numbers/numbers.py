@@ -1,12 +1,20 @@
 """Values of the names of a document for several meanings of its letters, in numbers."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from derive.verification.documents.formula_translation import RATES, order, stem
-from derive.verification.documents.jets import Array, Jet, UnknownNameError, Value, evaluated
+from derive.verification.documents.jets import (
+    Array,
+    Constants,
+    Jet,
+    UnknownNameError,
+    Value,
+    evaluated,
+)
 from derive.verification.documents.letters.letters import MATRICES, OPERATORS, Letters
 from derive.verification.documents.numbers.candidate_motions import (
     ArbitraryMotion,
@@ -108,7 +116,8 @@ class Numbers:
             return
         kind = self._letters.quantities.get(formula.subject)
         exact = formula.relations.index("~") + 1 if "~" in formula.relations else None
-        values = [self._value(side.text) for side in formula.sides[:exact]]
+        constants = Constants(self.values)
+        values = [self._value(side.text, constants) for side in formula.sides[:exact]]
         start = 0 if values[0] is not None else 1
         for side, right in zip(formula.sides[start + 1 : exact], values[start + 1 :], strict=True):
             left = values[start]
@@ -129,7 +138,8 @@ class Numbers:
 
     def is_near(self, *sides: str) -> Votes | None:
         """Whether two sides are equal but for one term."""
-        near = is_near(sides, self._value, [*self._motions.speeds.values()])
+        value = partial(self._value, constants=Constants(self.values))
+        near = is_near(sides, value, [*self._motions.speeds.values()])
         return None if near is None else np.broadcast_to(near, self._motions.shape[:1]) > 0
 
     def signatures(self) -> list[bytes]:
@@ -141,9 +151,11 @@ class Numbers:
         table = np.concatenate([np.broadcast_to(one, motions.shape) for one in tables], axis=1)
         return [row.tobytes() for row in np.round(table, DIGITS) + 0.0]  # no negative zeros
 
-    def _value(self, text: str) -> Value | None:
+    def _value(self, text: str, constants: Constants | None = None) -> Value | None:
+        """The value of a formula, or None; with `constants`, one without derivatives may do."""
+        needs_rates = constants is None or "ddt(" in text
         try:
-            return evaluated(text, self.values)
+            return evaluated(text, self.values if needs_rates else constants)
         except UnknownNameError:
             return None
 
