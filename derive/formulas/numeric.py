@@ -58,7 +58,7 @@ class Evaluator:
     """Values of expressions at one state; equal subexpressions are evaluated once."""
 
     def __init__(self, state: Mapping[sp.Symbol, sp.Expr]) -> None:
-        self._state = state
+        self.state = state
         self._known: dict[sp.Basic, Approximation] = {}
         self._known |= {symbol: self(value) for symbol, value in state.items()}
 
@@ -115,7 +115,7 @@ class Evaluator:
 
     def _by_sympy(self, expression: sp.Expr) -> Approximation:
         """The value of another function, such as sinh, whose error is assumed small."""
-        value = expression.xreplace(dict(self._state)).evalf(DIGITS)
+        value = expression.xreplace(dict(self.state)).evalf(DIGITS)
         if not value.is_number or not value.is_finite:
             raise NotImplementedError(f"cannot evaluate {str(expression)[:80]!r} in numbers")
         real, imaginary = (self(sp.Float(part, DIGITS)).number for part in value.as_real_imag())

@@ -8,7 +8,6 @@ An index i in a name stands for every number: ``q_i_dot`` for ``q1_dot`` and ``q
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import sympy as sp
 
@@ -61,7 +60,7 @@ class Context:
     """
 
     namespace: Namespace
-    states: tuple[State, ...]
+    evaluators: tuple[Evaluator, ...]  # at the states; contexts with other names can share them
     substitutions: tuple[State, ...] = ()
     index_count: int = 0  # an index takes the values 1 to index_count
     implicit: frozenset[sp.Symbol] = frozenset()  # dependent, but without a substitution
@@ -175,10 +174,10 @@ class Context:
         """The value of `expression` at a state."""
         return self._approximation(expression, self.evaluators[index]).rounded()
 
-    @cached_property
-    def evaluators(self) -> tuple[Evaluator, ...]:
-        """Evaluators of expressions at the states."""
-        return tuple(map(Evaluator, self.states))
+    @property
+    def states(self) -> tuple[State, ...]:
+        """The states."""
+        return tuple(one.state for one in self.evaluators)
 
     def _is_small(self, expression: sp.Expr, evaluator: Evaluator) -> bool:
         return self._approximation(expression, evaluator).is_zero

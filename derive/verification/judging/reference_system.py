@@ -1,7 +1,7 @@
 """A derivation with generic states, against which formulas about its system are judged."""
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
 from typing import Self
@@ -17,7 +17,7 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.judging.constrained_motions import motion
-from derive.verification.judging.engine import UNDECIDED, Context, State
+from derive.verification.judging.engine import IN_NUMBERS, UNDECIDED, Context, State
 
 #: Coordinates of the largest systems whose mass matrix, any or a diagonal one, is inverted in
 #: formulas: with four, this takes a minute. Accelerations of larger ones are judged in numbers.
@@ -44,6 +44,10 @@ class ReferenceSystem:
     source_lagrangian: sp.Expr | None = None
     #: A formula near whose own turning arguments there are further states, if it has any.
     printed: sp.Expr | None = None
+    #: Evaluators at the states of models with the same derivation: names do not change these.
+    _evaluators: dict[tuple[str, sp.Expr | None, sp.Expr | None], tuple[Evaluator, ...]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
 
     def with_lagrangian(self, lagrangian: sp.Expr) -> Self:
         """The model with another Lagrangian that has the same equations of motion."""
@@ -119,12 +123,9 @@ class ReferenceSystem:
         system = self.derivation.system
         namespace = {**own_names(system), **self.names}
         rates = {f"{p}_dot": time_derivative(system, value) for p, value in self.momenta.items()}
-        states = (*(self._state(index) for index in range(STATES)), *self._further_states)
-        names = {**rates, **namespace}
-        if self.printed is None:
-            return Context(names, states, (self.momenta,))
-        states = (*states, *islice(self._turning_states(self.printed), MOST_TURNING))
-        return Context(names, states, (self.momenta,), unproved=UNDECIDED)
+        evaluators = self._evaluators_at("generic", self._generic)
+        unproved = IN_NUMBERS if self.printed is None else UNDECIDED
+        return Context({**rates, **namespace}, evaluators, (self.momenta,), unproved=unproved)
 
     @cached_property
     def motions(self) -> Context:
@@ -132,13 +133,10 @@ class ReferenceSystem:
         system, derivation = self.derivation.system, self.derivation
         if system.conditions:
             dependent = frozenset((*system.q, *system.qdot, *system.qddot, *system.multipliers))
-            moved = tuple(self._moved())
-            return replace(self.context, states=moved, implicit=dependent)
-        states = []
-        for state, evaluator in zip(self.context.states, self.context.evaluators, strict=True):
-            values = solved(derivation.mass_matrix, derivation.forcing, evaluator)
-            states.append({**state, **dict(zip(system.qddot, values, strict=True))})
-        context = replace(self.context, states=tuple(states))
+            moved = self._evaluators_at("moved", self._moved)
+            return replace(self.context, evaluators=moved, implicit=dependent)
+        moving = self._evaluators_at("moving", self._moving)
+        context = replace(self.context, evaluators=moving)
         if not self.has_inverse:
             return replace(context, implicit=frozenset(system.qddot))
         accelerations = dict(zip(system.qddot, derivation.accelerations, strict=True))
@@ -155,6 +153,29 @@ class ReferenceSystem:
         value = value.xreplace(self.momenta)
         slopes = (value.diff(one) for one in (*system.q, *system.qdot, TIME))
         return self.context.agreement(*slopes)
+
+    def _evaluators_at(
+        self, kind: str, states: Callable[[], Iterator[State]]
+    ) -> tuple[Evaluator, ...]:
+        """Evaluators at states of a kind, the same for all models with these energies."""
+        key = kind, self.source_lagrangian, self.printed
+        if key not in self._evaluators:
+            self._evaluators[key] = tuple(map(Evaluator, states()))
+        return self._evaluators[key]
+
+    def _generic(self) -> Iterator[State]:
+        """The generic states, and those near the turning arguments of a formula."""
+        yield from map(self._state, range(STATES))
+        yield from self._further_states
+        if self.printed is not None:
+            yield from islice(self._turning_states(self.printed), MOST_TURNING)
+
+    def _moving(self) -> Iterator[State]:
+        """The states with the accelerations of motions."""
+        derivation, qddot = self.derivation, self.derivation.system.qddot
+        for evaluator in self.context.evaluators:
+            values = solved(derivation.mass_matrix, derivation.forcing, evaluator)
+            yield {**evaluator.state, **dict(zip(qddot, values, strict=True))}
 
     def _moved(self) -> Iterator[State]:
         """The states of motions near the generic ones, and those near others that exist."""

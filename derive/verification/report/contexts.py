@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import sympy as sp
 
 from derive.formulas import expression
+from derive.formulas.numeric import Evaluator
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.energies.reduction import reduced
 from derive.system.files.system_catalogue import load
@@ -111,7 +112,7 @@ def rigid_body() -> Context:
     symbols = (*inertia, *omega, *omega_dot)
     namespace = {s.name: s for s in symbols} | _named("tau_x tau_y tau_z", *torque)
     namespace |= _named("I_xx I_yy I_zz", *inertia)
-    return Context(namespace, (_numbers(symbols),), index_count=3)
+    return Context(namespace, (Evaluator(_numbers(symbols)),), index_count=3)
 
 
 def _named(names: str, *values: Any) -> dict[str, Any]:
@@ -156,7 +157,7 @@ def _context(derivation: Derivation, namespace: Mapping[str, Any], *, moving: bo
     for substitution in substitutions:
         for symbol, value in substitution.items():
             state[symbol] = value.evalf(50, subs=state)
-    return Context(namespace, (state,), tuple(substitutions), len(system.q))
+    return Context(namespace, (Evaluator(state),), tuple(substitutions), len(system.q))
 
 
 def _numbers(symbols: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:

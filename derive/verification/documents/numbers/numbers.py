@@ -153,9 +153,9 @@ class Numbers:
 
     def _value(self, text: str, constants: Constants | None = None) -> Value | None:
         """The value of a formula, or None; with `constants`, one without derivatives may do."""
-        needs_rates = constants is None or "ddt(" in text
+        values = self.values if constants is None or "ddt(" in text else constants
         try:
-            return evaluated(text, self.values if needs_rates else constants)
+            return evaluated(text, values)
         except UnknownNameError:
             return None
 
