@@ -18,7 +18,7 @@ from derive.verification.corrections.goals import Goal
 from derive.verification.corrections.monomials import CLOSE, Monomial, Monomials
 from derive.verification.corrections.pieces import FormulaPart, Pieces
 from derive.verification.corrections.source_names import SourceNames
-from derive.verification.corrections.state_samples import Numbers, StateSamples, quotient
+from derive.verification.corrections.state_samples import Numbers, quotient, samples
 from derive.verification.corrections.vocabulary import Vocabulary
 from derive.verification.judging.reference_system import ReferenceSystem, depends_on
 from derive.verification.judging.terms import difference
@@ -51,8 +51,8 @@ class Search:
         self._names, self._goal = names, goal
         self._namespace, derivation = model.context.namespace, model.derivation
         self._qddot = derivation.system.qddot
-        self._samples = StateSamples(model, STATES, along_motions=goal.along_motions)
-        self._elsewhere = StateSamples(model, COMPARED, along_motions=False)
+        self._samples = samples(model, STATES, along_motions=goal.along_motions)
+        self._elsewhere = samples(model, COMPARED, along_motions=False)
         left, equals, right = text.partition("=")
         self._sides = [Pieces(left, 0, self._namespace, self._samples)]
         if equals:

@@ -150,6 +150,12 @@ class StateSamples:
         return [[self(entry) for entry in row] for row in matrix.tolist()], [*map(self, column)]
 
 
+def samples(model: ReferenceSystem, count: int, *, along_motions: bool) -> StateSamples:
+    """The random states of a model, once for all formulas that are judged with it."""
+    key = "samples", count, along_motions
+    return model.once(key, lambda: StateSamples(model, count, along_motions=along_motions))
+
+
 def _solution(matrix: Any, right: Any) -> Any:
     """The solution of linear equations; NaN where they are singular."""
     try:

@@ -1,10 +1,10 @@
 """A derivation with generic states, against which formulas about its system are judged."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
-from typing import Self
+from typing import Any, Self, TypeVar
 
 import sympy as sp
 
@@ -31,6 +31,8 @@ MOST_TURNING = 60
 #: Factors of all variables, by which decisive numbers change their signs.
 SCALES = tuple(sp.Integer(10) ** power for power in (0, 1, -1, 2, -2, 3, -3))
 
+Result = TypeVar("Result")
+
 
 @dataclass(frozen=True)
 class ReferenceSystem:
@@ -44,8 +46,8 @@ class ReferenceSystem:
     source_lagrangian: sp.Expr | None = None
     #: A formula near whose own turning arguments there are further states, if it has any.
     printed: sp.Expr | None = None
-    #: Evaluators at the states of models with the same derivation: names do not change these.
-    _evaluators: dict[tuple[str, sp.Expr | None, sp.Expr | None], tuple[Evaluator, ...]] = field(
+    #: Results that models with the same derivation share: other names do not change them.
+    _shared: dict[tuple[Hashable, ...], Any] = field(
         default_factory=dict, repr=False, compare=False
     )
 
@@ -158,10 +160,15 @@ class ReferenceSystem:
         self, kind: str, states: Callable[[], Iterator[State]]
     ) -> tuple[Evaluator, ...]:
         """Evaluators at states of a kind, the same for all models with these energies."""
-        key = kind, self.source_lagrangian, self.printed
-        if key not in self._evaluators:
-            self._evaluators[key] = tuple(map(Evaluator, states()))
-        return self._evaluators[key]
+        return self.once((kind, self.printed), lambda: tuple(map(Evaluator, states())))
+
+    def once(self, key: Hashable, compute: Callable[[], Result]) -> Result:
+        """A result that depends on the derivation, the Lagrangian and a key alone."""
+        whole = self.source_lagrangian, key
+        if whole not in self._shared:
+            self._shared[whole] = compute()
+        result: Result = self._shared[whole]
+        return result
 
     def _generic(self) -> Iterator[State]:
         """The generic states, and those near the turning arguments of a formula."""
