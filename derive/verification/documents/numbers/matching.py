@@ -186,4 +186,10 @@ def _uses_letters(
 ) -> NDArray[np.bool_]:
     """For each candidate, whether the parameters of a formula have a meaning with it."""
     written = {*formula.words} & {*letters.parameters}
-    return np.array([written <= one.letters for one in tried])
+    # many candidates share their parameters
+    shared = {id(one.parameters): one.parameters for one in tried}
+    others = {key: written - {*own.values()} for key, own in shared.items()}
+    rests = (others[id(one.parameters)] for one in tried)
+    return np.array(
+        [not rest or rest <= one.letters for rest, one in zip(rests, tried, strict=True)]
+    )
