@@ -18,7 +18,7 @@ from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
-from derive.verification.documents.numbers.matching import Match
+from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.statements import Translated
 
 USUAL = SystemCandidate(
@@ -41,6 +41,18 @@ def test_a_usual_convention_decides_between_equal_support_only() -> None:
 def test_formulas_that_do_not_hold_speak_against_a_meaning() -> None:
     assert Match(USUAL, 3, 3).score > Match(USUAL, 3, 6).score
     assert Match(USUAL, 6, 8).score > Match(USUAL, 3, 3).score
+
+
+@pytest.mark.parametrize("text", ["-g*sin(phi)/l", "g*sin(phi)/l", "-g*sin(phi)/l**2", "0"])
+def test_a_system_is_left_out_only_if_all_its_candidates_have_less_support(text: str) -> None:
+    equation = ProgramEquation(1, "acceleration", "phi", "", f"phi_ddot = {text}")
+    formulas = (program_judgement._formula(equation),)
+    letters = replace(LETTERS, parameters=("g", "l"))
+    tried = [*candidates(USUAL.system, letters)]
+    whole = best_matches(tried, letters, formulas, {}, frozenset())
+    most = max(match.support for match in whole)
+    assert best_matches(tried, letters, formulas, {}, frozenset(), most) == whole
+    assert not best_matches(tried, letters, formulas, {}, frozenset(), 1.1)
 
 
 def test_candidates_begin_with_the_usual_convention_and_the_same_indices() -> None:
