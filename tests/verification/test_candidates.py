@@ -9,7 +9,7 @@ import pytest
 from derive.reading.programs.program import ProgramEquation
 from derive.system.files.system_catalogue import load
 from derive.system.system import System
-from derive.verification.documents import program_judgement
+from derive.verification.documents import letter_meanings, program_judgement
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.judges import Judges
 from derive.verification.documents.letters import candidates as module
@@ -53,6 +53,19 @@ def test_a_system_is_left_out_only_if_all_its_candidates_have_less_support(text:
     most = max(match.support for match in whole)
     assert best_matches(tried, letters, formulas, {}, frozenset(), most) == whole
     assert not best_matches(tried, letters, formulas, {}, frozenset(), 1.1)
+
+
+def test_only_a_usual_system_with_which_all_formulas_hold_ends_a_search() -> None:
+    formulas = [program_judgement._formula(ProgramEquation(1, "acceleration", "phi", "", "a = b"))]
+    assert letter_meanings._is_complete(Match(USUAL, 2, 2), formulas * 2)
+    assert not letter_meanings._is_complete(Match(UPRIGHT, 2, 2), formulas * 2)
+    assert not letter_meanings._is_complete(Match(USUAL, 1, 1), formulas * 2)
+    assert not letter_meanings._is_complete(Match(USUAL, 1, 2, frozenset({1})), formulas * 2)
+
+
+def test_a_rival_with_the_support_of_the_best_is_not_left_out() -> None:
+    least = letter_meanings._least_support([Match(USUAL, 2, 2)], letter_meanings.LEAST)
+    assert Match(USUAL, 1, 2, frozenset({1})).support < least <= Match(UPRIGHT, 2, 2).score
 
 
 def test_candidates_begin_with_the_usual_convention_and_the_same_indices() -> None:
