@@ -55,12 +55,26 @@ def test_a_system_is_left_out_only_if_all_its_candidates_have_less_support(text:
     assert not best_matches(tried, letters, formulas, {}, frozenset(), 1.1)
 
 
-def test_only_a_usual_system_with_which_all_formulas_hold_ends_a_search() -> None:
-    formulas = [program_judgement._formula(ProgramEquation(1, "acceleration", "phi", "", "a = b"))]
-    assert letter_meanings._is_complete(Match(USUAL, 2, 2), formulas * 2)
-    assert not letter_meanings._is_complete(Match(UPRIGHT, 2, 2), formulas * 2)
-    assert not letter_meanings._is_complete(Match(USUAL, 1, 1), formulas * 2)
-    assert not letter_meanings._is_complete(Match(USUAL, 1, 2, frozenset({1})), formulas * 2)
+def test_only_a_usual_system_with_which_all_equations_hold_ends_a_search() -> None:
+    whole = Match(USUAL, 2, 2, is_of_all_equations=True)
+    assert whole.is_complete
+    assert not replace(whole, candidate=UPRIGHT).is_complete
+    assert not replace(whole, candidate=replace(USUAL, numbers={"g": "1"})).is_complete
+    assert not replace(whole, candidate=replace(USUAL, parameters={"l": "l"})).is_complete
+    assert not replace(whole, holding=1, failed=frozenset({1})).is_complete
+
+
+def test_a_search_goes_on_where_an_equation_was_not_compared_or_an_energy_is_stated() -> None:
+    letters = replace(LETTERS, parameters=("g", "l"), quantities={"V": "potential_energy"})
+    texts = ("phi_ddot = -g*sin(phi)/l", "0 = phi_ddot + zeta", "V = -m*g*l*cos(phi)")
+    equations = [
+        program_judgement._formula(ProgramEquation(1, "acceleration", "phi", "", text))
+        for text in texts
+    ]
+    tried = [*candidates(USUAL.system, letters)]
+    for formulas in (equations[:1], equations[:2], [equations[0], equations[2]]):
+        match, *_ = best_matches(tried, letters, formulas, {}, frozenset())
+        assert match.is_of_all_equations == (len(formulas) == 1)
 
 
 def test_a_rival_with_the_support_of_the_best_is_not_left_out() -> None:

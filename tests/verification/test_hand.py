@@ -4,7 +4,7 @@ import ast
 import json
 import tomllib
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 from itertools import count
 from pathlib import Path
@@ -184,6 +184,22 @@ def test_at_all_states_the_lagrangian_is_real() -> None:
     model = ReferenceSystem(Derivation(bead), {})
     values = [value(model.derivation.lagrangian) for value in model.context.evaluators]
     assert all(value.rounded().is_real for value in values)
+
+
+def test_models_share_states_only_where_motions_and_momenta_are_the_same() -> None:
+    derivation = Derivation(load("single_pendulum"))
+    system, model = derivation.system, ReferenceSystem(derivation, {})
+    (qdot,), (qddot,), (p,) = system.qdot, system.qddot, system.p
+    free = qddot - derivation.accelerations[0]
+    assert model.agreement(free) is not None
+    renamed = replace(model, names={"phi": system.q[0]})
+    assert renamed.motions.evaluators is model.motions.evaluators
+    loaded = replace(system, reactions=(), forces=(-qdot,))
+    damped = replace(model, derivation=Derivation(loaded))
+    assert damped.agreement(free) is None
+    assert damped.agreement(qddot - damped.derivation.accelerations[0]) is not None
+    shifted = model.with_lagrangian(derivation.lagrangian + qdot)
+    assert shifted.agreement(p - derivation.momenta[0] - 1) is not None
 
 
 def test_keys_can_use_the_names_of_the_source(tmp_path: Path) -> None:

@@ -28,12 +28,7 @@ from derive.verification.documents.letters.stated_positions import (
     stated_candidates,
     stated_systems,
 )
-from derive.verification.documents.numbers.matching import (
-    Match,
-    best_matches,
-    is_equation,
-    trivial_comparisons,
-)
+from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.consequences import Contradictions
 from derive.verification.documents.rules.corrected_formulas import corrected
@@ -188,10 +183,8 @@ def _best(
         stated += [match for match in held if match.candidate.stating]
         for match in held:
             (circular if match.is_circular else matches).append(match)
-        if any(match.is_stated_by_positions for match in result):
-            break
-        if all(map(is_equation, formulas)) and any(_is_complete(one, formulas) for one in matches):
-            break  # no system can suit better
+        if any(match.is_stated_by_positions or match.is_complete for match in result):
+            break  # no other system suits better
     supported = [match for match in matches if not least or _is_supported(match, least)]
 
     def rank(match: Match) -> tuple[float, int, int]:
@@ -223,13 +216,6 @@ def _least_support(matches: Sequence[Match], least: float) -> float:
         return -inf
     supported = (match.score for match in matches if _is_supported(match, least))
     return max(supported, default=-inf) - TIE
-
-
-def _is_complete(match: Match, formulas: Sequence[DocumentFormula]) -> bool:
-    """Whether all formulas hold with a known system in its usual form, and nothing is left over."""
-    one = match.candidate
-    is_known = one.basis == "catalogue" and one.is_usual and not (one.lacking or one.numbers)
-    return is_known and match.compared >= len(formulas) and not match.failed
 
 
 def _fits(judges: Judges, candidate: SystemCandidate) -> bool:

@@ -46,7 +46,7 @@ class ReferenceSystem:
     source_lagrangian: sp.Expr | None = None
     #: A formula near whose own turning arguments there are further states, if it has any.
     printed: sp.Expr | None = None
-    #: Results that models with the same derivation share: other names do not change them.
+    #: Results that do not depend on the names, for all models that replace parts of this one.
     _shared: dict[tuple[Hashable, ...], Any] = field(
         default_factory=dict, repr=False, compare=False
     )
@@ -164,7 +164,7 @@ class ReferenceSystem:
 
     def once(self, key: Hashable, compute: Callable[[], Result]) -> Result:
         """A result that depends on the derivation, the Lagrangian and a key alone."""
-        whole = self.source_lagrangian, key
+        whole = self.derivation, self.source_lagrangian, key
         if whole not in self._shared:
             self._shared[whole] = compute()
         result: Result = self._shared[whole]

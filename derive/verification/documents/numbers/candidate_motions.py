@@ -86,7 +86,7 @@ class CandidateMotions:
         self.speeds = {q: random.uniform(-1, 1, (1, STATES)) for q in names}
         self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
         own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
-        self._signs = _stacked([one.signs for one in tried])
+        self._signs = _table([one.signs for one in tried])
         #: Gradients of energies by coordinates (order 0) or velocities (1), as far as needed.
         self._gradients: dict[tuple[str, int], Mapping[str, Array]] = {}
         self._names = self._system_names(own)
@@ -322,7 +322,7 @@ class CandidateMotions:
             own: [self.parameters[x] if isinstance(x, str) else x * np.pi / 2 for x in own]
             for own in {one.offsets for one in self._tried}
         }
-        offsets = _stacked([one.offsets for one in self._tried], known)
+        offsets = _table([one.offsets for one in self._tried], known)
         q = np.einsum("bij,bjk->bik", self._signs, place) + offsets[:, :, None]
         qdot = np.einsum("bij,bjk->bik", self._signs, speed)
         time = np.linspace(0.4, 0.9, STATES)[np.newaxis]  # the same for all candidates
@@ -345,7 +345,7 @@ def _text(expression: sp.Expr) -> str:
     return str(sp.sstr(expression))
 
 
-def _stacked(
+def _table(
     rows: Sequence[tuple[Any, ...]], values: Mapping[tuple[Any, ...], Any] | None = None
 ) -> Array:
     """An array of rows, or of their values; many candidates share them."""

@@ -53,6 +53,8 @@ class Match:
     signature: bytes = b""
     #: Comparisons that hold because they state the system.
     stating: int = 0
+    #: Whether all formulas are equations of motion, and each was compared.
+    is_of_all_equations: bool = False
 
     @property
     def support(self) -> float:
@@ -70,6 +72,13 @@ class Match:
         """Whether positions of the document state the system, and all its formulas hold."""
         is_full = self.compared >= ENOUGH and not self.failed
         return self.candidate.basis == "positions" and is_full
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all equations hold with a known system in its usual form and all its letters."""
+        one, is_full = self.candidate, self.is_of_all_equations and not self.failed
+        has_all = not (one.lacking or one.numbers)
+        return is_full and has_all and one.is_usual and one.basis == "catalogue"
 
     @property
     def score(self) -> float:
@@ -108,7 +117,7 @@ def best_matches(
         return []
     numbers = Numbers(CandidateMotions(tried, letters), letters, derivatives)
     numbers.define(formulas)
-    others = {w for one in formulas if not (is_equation(one) or one.is_value) for w in one.words}
+    others = {w for one in formulas if not (_is_equation(one) or one.is_value) for w in one.words}
     loads = {*letters.of_kind("force")} - others
     free = {k: _without_loads(tried, loads, one) for k, one in enumerate(formulas)}
     votes = [
@@ -144,9 +153,10 @@ def best_matches(
     for k in sorted(map(int, np.flatnonzero(is_rival)), key=lambda k: -score[k]):
         chosen.setdefault(signatures[k], k)
     rows = np.array([index for index, *_ in votes])
+    is_full = {*map(int, rows)} == {*range(len(formulas))} and all(map(_is_equation, formulas))
     return [
         Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
-              bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows))
+              bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows), is_full)
         for signature, k in [*chosen.items()][:MAX_RIVALS]
     ]  # fmt: skip
 
@@ -161,7 +171,7 @@ def _comparisons(
         yield side, np.where(lacking, other, vote)
 
 
-def is_equation(formula: DocumentFormula) -> bool:
+def _is_equation(formula: DocumentFormula) -> bool:
     """Whether a formula is an equation of motion."""
     return len(formula.sides) == 2 and any(order(word) == 2 for word in formula.words)
 
@@ -174,7 +184,7 @@ def _without_loads(
     With it, the candidates of stated energies without these letters.
     """
     own = loads & {*formula.words}
-    if own and is_equation(formula) and tried[0].basis == "energies":
+    if own and _is_equation(formula) and tried[0].basis == "energies":
         rest = without_unknown_terms(formula, own)
         if rest is not None:
             return rest, np.array([own.isdisjoint(one.letters) for one in tried])
