@@ -65,7 +65,7 @@ def test_only_a_usual_system_with_which_all_equations_hold_ends_a_search() -> No
 
 
 def test_a_search_goes_on_where_an_equation_was_not_compared_or_an_energy_is_stated() -> None:
-    letters = replace(LETTERS, parameters=("g", "l"), quantities={"V": "potential_energy"})
+    letters = replace(LETTERS, parameters=("g", "l", "m"), quantities={"V": "potential_energy"})
     texts = ("phi_ddot = -g*sin(phi)/l", "0 = phi_ddot + zeta", "V = -m*g*l*cos(phi)")
     equations = [
         program_judgement._formula(ProgramEquation(1, "acceleration", "phi", "", text))
