@@ -1,17 +1,24 @@
 """Dimensions of letters decide which of two contrary formulas of a document is wrong."""
 
+import re
 from pathlib import Path
 
 import pytest
 
 from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import formulas as statements_of
+from derive.reading.programs.program_reader import read_program
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letters.dimensions import inhomogeneous_formula
+from derive.verification.documents.letters.hints import without_meaning
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.program_judgement import judge_program
 from derive.verification.documents.rules.evidence import INHOMOGENEOUS
 from derive.verification.documents.statements import Occurrence, translated
+
+#: The note on formulas of no known system.
+NO_SYSTEM = without_meaning(None)
 
 
 def inhomogeneous(*formulas: str) -> int | None:
@@ -33,6 +40,28 @@ def judged(folder: Path, *formulas: str) -> list[FormulaVerdict]:
 
 ENERGY = r"E = \frac{1}{2} m l^2 \dot\theta^2 - m g l \cos\theta + \frac{1}{2} c \theta^2"
 EQUATION = r"m l^2 \ddot\theta = - m g l \sin\theta - c \theta"
+
+
+#: Two masses on springs; velocities stand after positions.
+PROGRAM = """
+def rates(t, y):
+    x1, x2, v1, v2 = y
+    return [v1, v2, {}, {}]
+"""
+
+
+@pytest.mark.parametrize(("rates", "notes"), [
+    (("k*(k*(x2 - x1) - x1)/m", "-k*(x2 - x1) - k*x2"), (INHOMOGENEOUS, NO_SYSTEM)),
+    (("k*(2*(x2 - x1) - x1)/m", "-k*(3*(x2 - x1) + x2)/m"), (NO_SYSTEM, NO_SYSTEM)),
+])  # fmt: skip
+def test_of_no_known_system_an_inhomogeneous_equation_is_noted_and_not_wrong(
+    rates: tuple[str, str], notes: tuple[str, str], tmp_path: Path
+) -> None:
+    program = read_program(PROGRAM.format(*rates), "Python")
+    spaced = [re.sub(r"x(\d)", r"x_\1", one).replace("*", " ") for one in rates]
+    latex = [rf"\ddot x_{k} = {one}" for k, one in enumerate(spaced, 1)]
+    for results in (judge_program(program).formulas, judged(tmp_path, *latex)):
+        assert [(one.verdict, one.note) for one in results] == [("context", one) for one in notes]
 
 
 @pytest.mark.parametrize(("energy", "equation", "term", "number"), [

@@ -47,7 +47,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
 )
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
-from derive.verification.documents.rules.evidence import of_lost_dots, weighed
+from derive.verification.documents.rules.evidence import of_dimensions, weighed
 from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
 from derive.verification.documents.statements import (
@@ -157,9 +157,9 @@ def _judge(
             part = replace(statements, formulas=remaining)
             found = interpretation(part, hints, work, moving)
             if found.match is None:
-                if found.contradictions.lost_dots:
-                    formula = remaining[found.contradictions.inhomogeneous or 0]
-                    result = of_lost_dots(formula, found.contradictions)
+                if (number := found.contradictions.inhomogeneous) is not None:
+                    formula = remaining[number]
+                    result = of_dimensions(formula, found.contradictions)
                     results[formula.occurrence] = formula, result
                 break
             candidate = found.match.candidate

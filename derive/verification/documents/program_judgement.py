@@ -23,7 +23,7 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
 )
 from derive.verification.documents.rules.corrected_formulas import inserted, source_span
-from derive.verification.documents.rules.evidence import HOLDING, weighed
+from derive.verification.documents.rules.evidence import HOLDING, INHOMOGENEOUS, weighed
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.judging.verdict import VerdictName
@@ -43,12 +43,9 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
     negative = {one.name for one in program.constants if one.value.startswith("-")}
     for function in program.functions:
         best = _best(function, negative, hints)
-        if best is None:
-            note = without_meaning(hints)
-            judged += [_plain(equation, note) for equation in function.equations]
-            continue
-        titles.append(best.candidate.system.title)
-        conventions.append(convention(best.candidate))
+        if best.candidate:
+            titles.append(best.candidate.system.title)
+            conventions.append(convention(best.candidate))
         others += best.others
         judged += best.verdicts
     judged += [_finding(one) for one in program.findings]
@@ -62,9 +59,9 @@ def judge_program(program: Program, hints: Hints | None = None) -> DocumentVerdi
 
 @dataclass(frozen=True)
 class _Reading:
-    """The verdicts on equations with the meaning of their letters."""
+    """The verdicts on equations with the meaning of their letters, if one was found."""
 
-    candidate: SystemCandidate
+    candidate: SystemCandidate | None
     verdicts: tuple[FormulaVerdict, ...]
     others: tuple[Alternative, ...]
 
@@ -74,33 +71,34 @@ class _Reading:
         return all(one.verdict in HOLDING for one in self.verdicts)
 
 
-def _best(
-    function: RateFunction, negative: Collection[str], hints: Hints | None
-) -> _Reading | None:
+def _best(function: RateFunction, negative: Collection[str], hints: Hints | None) -> _Reading:
     """The first meaning with which all equations hold, or else the first of all.
 
     Those of names of constants that others define count as well. Other spellings only show that
     equations hold.
     """
-    best: _Reading | None = None
-    has_short = len(function.short) == len(function.equations)
-    for equations in (function.equations, *([function.short] if has_short else [])):
-        reading = _reading(equations, hints)
-        if reading and reading.holds:
+    best = _reading(function.equations, hints)
+    if best.holds:
+        return best
+    if len(function.short) == len(function.equations):
+        reading = _reading(function.short, hints)
+        if reading.holds:
             return reading
-        best = best or reading
+        best = best if best.candidate else reading
     for equations in _spellings(function, negative):
         reading = _reading(equations, hints)
-        if reading and reading.holds:
+        if reading.holds:
             pairs = zip(reading.verdicts, function.equations, strict=True)
             return replace(reading, verdicts=tuple(replace(a, latex=b.text) for a, b in pairs))
     return best
 
 
-def _reading(equations: Sequence[ProgramEquation], hints: Hints | None) -> _Reading | None:
+def _reading(equations: Sequence[ProgramEquation], hints: Hints | None) -> _Reading:
     found = _interpretation(equations, hints)
     if found.match is None:
-        return None
+        odd, note = found.contradictions.inhomogeneous, without_meaning(hints)
+        notes = (INHOMOGENEOUS if k == odd else note for k, _ in enumerate(equations))
+        return _Reading(None, tuple(map(_plain, equations, notes)), ())
     candidate = found.match.candidate
     verdicts = found.judges.verdicts(candidate)
     results = [*weighed(verdicts, candidate, found.contradictions, hints is not None)]
