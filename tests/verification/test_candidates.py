@@ -18,7 +18,7 @@ from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
-from derive.verification.documents.numbers.matching import Match, best_matches
+from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.statements import Translated
 
 USUAL = SystemCandidate(
@@ -55,8 +55,8 @@ def test_a_system_is_left_out_only_if_all_its_candidates_have_less_support(text:
     assert not best_matches(tried, letters, formulas, {}, frozenset(), 1.1)
 
 
-def test_only_a_usual_system_with_which_all_equations_hold_ends_a_search() -> None:
-    whole = Match(USUAL, 2, 2, is_of_all_equations=True)
+def test_only_a_usual_system_with_which_all_formulas_hold_ends_a_search() -> None:
+    whole = Match(USUAL, 2, 2, is_of_all_formulas=True)
     assert whole.is_complete
     assert not replace(whole, candidate=UPRIGHT).is_complete
     assert not replace(whole, candidate=replace(USUAL, numbers={"g": "1"})).is_complete
@@ -64,17 +64,27 @@ def test_only_a_usual_system_with_which_all_equations_hold_ends_a_search() -> No
     assert not replace(whole, holding=1, failed=frozenset({1})).is_complete
 
 
-def test_a_search_goes_on_where_an_equation_was_not_compared_or_an_energy_is_stated() -> None:
-    letters = replace(LETTERS, parameters=("g", "l", "m"), quantities={"V": "potential_energy"})
-    texts = ("phi_ddot = -g*sin(phi)/l", "0 = phi_ddot + zeta", "V = -m*g*l*cos(phi)")
-    equations = [
+@pytest.mark.parametrize(("formulas", "ends"), [
+    (["V = -m*g*l*cos(phi)"], True),
+    (["L = m*l**2*phi_dot**2/2 - V", "V = -m*g*l*cos(phi)"], True),
+    (["phi_dot**2/2 = phi_dot*phi_dot/2"], True),  # for any motion
+    (["V = -m*g*l*sin(phi)"], False),
+    (["0 = phi_ddot + zeta"], False),  # it is not compared
+])  # fmt: skip
+def test_a_search_goes_on_where_a_formula_was_not_compared_or_does_not_hold(
+    formulas: list[str], ends: bool
+) -> None:
+    quantities = {"V": "potential_energy", "L": "lagrangian"}
+    letters = replace(LETTERS, parameters=("g", "l", "m"), quantities=quantities)
+    texts = ("phi_ddot = -g*sin(phi)/l", *formulas)
+    statements = [
         program_judgement._formula(ProgramEquation(1, "acceleration", "phi", "", text))
         for text in texts
     ]
     tried = [*candidates(USUAL.system, letters)]
-    for formulas in (equations[:1], equations[:2], [equations[0], equations[2]]):
-        match, *_ = best_matches(tried, letters, formulas, {}, frozenset())
-        assert match.is_of_all_equations == (len(formulas) == 1)
+    trivial = trivial_comparisons(letters, statements, {})
+    match, *_ = best_matches(tried, letters, statements, {}, trivial)
+    assert match.is_complete == ends
 
 
 def test_a_rival_with_the_support_of_the_best_is_not_left_out() -> None:

@@ -67,8 +67,9 @@ class _Reading:
 
     @property
     def holds(self) -> bool:
-        """Whether all equations hold."""
-        return all(one.verdict in HOLDING for one in self.verdicts)
+        """Whether all equations hold, but for definitions."""
+        verdicts = {one.verdict for one in self.verdicts} - {"definition"}
+        return bool(verdicts) and verdicts <= {*HOLDING}
 
 
 def _best(function: RateFunction, negative: Collection[str], hints: Hints | None) -> _Reading:

@@ -53,8 +53,8 @@ class Match:
     signature: bytes = b""
     #: Comparisons that hold because they state the system.
     stating: int = 0
-    #: Whether all formulas are equations of motion, and each was compared.
-    is_of_all_equations: bool = False
+    #: Whether each formula was compared, but for those that hold whatever the motion is.
+    is_of_all_formulas: bool = False
 
     @property
     def support(self) -> float:
@@ -75,8 +75,8 @@ class Match:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all equations hold with a known system in its usual form and all its letters."""
-        one, is_full = self.candidate, self.is_of_all_equations and not self.failed
+        """Whether all formulas hold with a known system in its usual form and all its letters."""
+        one, is_full = self.candidate, self.is_of_all_formulas and not self.failed
         has_all = not (one.lacking or one.numbers)
         return is_full and has_all and one.is_usual and one.basis == "catalogue"
 
@@ -153,7 +153,7 @@ def best_matches(
     for k in sorted(map(int, np.flatnonzero(is_rival)), key=lambda k: -score[k]):
         chosen.setdefault(signatures[k], k)
     rows = np.array([index for index, *_ in votes])
-    is_full = {*map(int, rows)} == {*range(len(formulas))} and all(map(_is_equation, formulas))
+    is_full = {*map(int, rows), *(index for index, _ in trivial)} == {*range(len(formulas))}
     return [
         Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
               bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows), is_full)

@@ -386,8 +386,8 @@ def _noted(result: SideVerdict, note: str) -> SideVerdict:
 
 def of_dimensions(formula: DocumentFormula, contradictions: Contradictions) -> SideVerdict:
     """The verdict on a formula by its dimensions alone, which show lost dots and no other slip."""
-    if not contradictions.lost_dots:
-        return plain("context", formula, INHOMOGENEOUS)
+    if not contradictions.lost_dots:  # its letters can have another meaning
+        return replace(plain("context", formula, INHOMOGENEOUS), is_understood=False)
     result = plain("wrong", formula, INHOMOGENEOUS)
     verdict = replace(result.verdict, corrections=contradictions.lost_dots)
     return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
