@@ -154,6 +154,8 @@ def test_spans_of_statements_are_their_places_in_the_display() -> None:
         ("", r"\abs{x} + \qty(a + b) \dd{t}", "(|x| + (a + b) d t)"),
         ("", r"\dv{t}\left(\pdv{L}{\dot q}\right) + \dv[2]{x}{t}", "(d(∂(L; q.); t) + d(x; t, t))"),
         ("", r"\pdv{L}{x}{y} - \pdv[2]{L}{x}", "(∂(L; x, y) - ∂(L; x, x))"),
+        ("", r"1 - \cos[2](\theta)\qty(a)", "(1 - cos(theta)^2 a)"),
+        ("", r"\sin [2] + \cos[x](a)", "(sin(2) + cos(x) a)"),
         (r"\newcommand{\abs}[1]{#1^2}", r"\abs{x}", "x^2"),
     ],
 )

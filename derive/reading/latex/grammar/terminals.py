@@ -111,7 +111,20 @@ class Terminals(Enclosures):
             if self.texts(first, stop) == ["-", "1"]:
                 name, at = f"a{name}", after
         result.append(Symbol("FUNCTION", name, span))
-        return at
+        return self._exponent_in_brackets(at, end, result)
+
+    def _exponent_in_brackets(self, at: int, end: int, result: list[Symbol]) -> int:
+        r"""Read the exponent of a function of the package physics: ``\sin[2](x)`` is sin² x."""
+        start = self.skip(at, end)
+        stop = self.partner.get(start, start)
+        digits = "".join(self.texts(start + 1, stop))
+        has_argument = self.kind(self.skip(stop + 1, end), end) == "open"
+        if not (digits.isdigit() and self.tokens[start].text == "[" and has_argument):
+            return at
+        span = self.tokens[start].span[0], self.tokens[stop].span[1]
+        exponent = ("POWER", ""), ("ARGUMENT_OPEN", ""), ("NUMBER", Number(digits, span))
+        result += [Symbol(kind, one, span) for kind, one in (*exponent, ("ARGUMENT_CLOSE", ""))]
+        return stop + 1
 
     # --- commands
 
