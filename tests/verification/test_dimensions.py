@@ -257,3 +257,20 @@ def test_the_odd_one_is_that_whose_dimensions_contradict_all_others(
     number: int, formulas: tuple[str, ...]
 ) -> None:
     assert inhomogeneous(*formulas) == number
+
+
+HANGING = """
+def rates(t, y, m, k, g, l):
+    x, v = y
+    return v, (m*g - k*(x - l){})/m
+"""
+
+
+@pytest.mark.parametrize(("term", "verdict"), [
+    ("", "verified"),
+    (" - 0.2", "context"),  # as another force
+    (" - 0.2*v", "context"),
+])  # fmt: skip
+def test_numbers_in_programs_have_any_unit(term: str, verdict: str) -> None:
+    (result,) = judge_program(read_program(HANGING.format(term), "Python")).formulas
+    assert result.verdict == verdict

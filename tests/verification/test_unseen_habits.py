@@ -734,3 +734,37 @@ $$\frac{\partial L}{\dot{\partial}\theta_1} = m l^2\dot\theta_1$$
 $$\frac{d}{dt}\frac{\partial L}{\dot{\partial}\theta_{1}} = m l^2\ddot\theta_1$$"""
     assert verdicts(tmp_path, text)[1:] == ["verified"] * 2
     assert "wrong" in verdicts(tmp_path, text.replace(r"= m l^2\ddot", r"= m l\ddot"))
+
+
+LEGENDRE = r"""
+$$\mathcal L = \frac12 m a^2\dot\phi^2 - m g a(1 - \cos\phi)$$
+$$m a^2\ddot\phi = - m g a\sin\phi$$ $$p_\phi = m a^2\dot\phi$$
+$$\mathcal H = p_\phi\dot\phi - \mathcal L = \frac{p_\phi^2}{m a^2} - \frac12 m a^2\dot\phi^2
+ + m g a(1 - \cos\phi)$$
+"""
+
+
+def test_a_hamiltonian_with_velocities_can_have_a_constant(tmp_path: Path) -> None:
+    assert verdicts(tmp_path, LEGENDRE)[-1] == "verified"
+    slip = LEGENDRE.replace(r"{m a^2} - \frac12", r"{m a^2} + \frac12")
+    assert verdicts(tmp_path, slip)[-1] == "wrong"
+
+
+BUILDING = r"""
+$$x_1 = \frac a2\sin\alpha, \quad y_1 = \frac a2\cos\alpha$$
+$$x_2 = a\sin\alpha + b\sin\beta, \quad y_2 = a\cos\alpha + b\cos\beta$$
+$$\mathcal L = \frac12 m_1 v_1^2 + \frac12 m_2 v_2^2 + \frac12 I_1\dot\alpha^2
+ - m_1 g y_1 - m_2 g y_2$$
+$$\left(\frac13 m_1 + m_2\right) a^2\ddot\alpha + m_2 a b\ddot\beta\cos(\alpha - \beta)
+ + m_2 a b\dot\beta^2\sin(\alpha - \beta) - \left(\frac12 m_1 + m_2\right) g a\sin\alpha = 0$$
+$$m_2 b^2\ddot\beta + m_2 a b\ddot\alpha\cos(\alpha - \beta)
+ - m_2 a b\dot\alpha^2\sin(\alpha - \beta) - m_2 g b\sin\beta = 0$$
+"""
+
+
+def test_positions_do_not_refute_a_further_moment_of_inertia(tmp_path: Path) -> None:
+    assert "wrong" not in verdicts(tmp_path, BUILDING)
+    # of point masses alone the equation is wrong
+    assert "wrong" in verdicts(tmp_path, BUILDING.replace(r" + \frac12 I_1\dot\alpha^2", ""))
+    # whatever the inertia is, accelerations have no squares
+    assert "wrong" in verdicts(tmp_path, BUILDING.replace(r"b^2\ddot\beta", r"b^2\ddot\beta^2"))

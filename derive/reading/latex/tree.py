@@ -55,11 +55,12 @@ class Product:
 
 @dataclass(frozen=True)
 class Quotient:
-    """A fraction in any spelling."""
+    """A fraction in any spelling; behind a slash the next letter can belong to the denominator."""
 
     numerator: "Node"
     denominator: "Node"
     span: Span
+    is_ambiguous: bool = False
 
 
 @dataclass(frozen=True)

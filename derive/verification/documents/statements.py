@@ -14,6 +14,7 @@ from derive.reading.latex.tree import (
     Matrix,
     Node,
     Number,
+    Power,
     Product,
     Span,
     Statement,
@@ -40,7 +41,7 @@ POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
 CONSTANT = re.compile(r"[ck]onst(?:ante?)?|costante|cte|cste?", re.IGNORECASE)
-#: The name of the constant of one sum.
+#: The name of one such quantity.
 OWN_CONSTANT = re.compile(rf"(?:{CONSTANT.pattern})_\d+", re.IGNORECASE)
 #: Relations of statements that can hold or not.
 EQUALITIES = ("=", ":=", "~")
@@ -179,7 +180,7 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
         texts = [translator.text(side) for side in written]
         pairs = [*zip(("=", *relations), texts, strict=True)]
         if len(texts) > 2:
-            pairs = [one for one in pairs if not CONSTANT.fullmatch(one[1].text)]
+            pairs = [one for one in pairs if not OWN_CONSTANT.fullmatch(one[1].text)]
         yield DocumentFormula(
             occurrence, tuple(text for _, text in pairs), tuple(one for one, _ in pairs[1:]), number
         )
@@ -203,11 +204,13 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         if isinstance(node, Derivative) and isinstance(node.operand, Letter):
             names = {one.name for one in node.variables if isinstance(one, Letter)}
             varied.setdefault(plain.name(node.operand), {*dotted}).update(names)
+    raised = {id(base) for tree in trees for base in _raised_rates(tree)}
     functions = {
         name
         for tree in trees
         for node in nodes(tree)
         if isinstance(node, Application)
+        and id(node) not in raised
         and _are_arguments(node.arguments, varied.get(name := plain.name(node.head), dotted))
     }
     of_letters = {
@@ -243,6 +246,15 @@ def _is_at_one_time(side: Node) -> bool:
     names = [("t", "0"), ("infty", "")]
     is_named = isinstance(argument, Letter) and (argument.name, argument.index) in names
     return isinstance(argument, Number) or is_named
+
+
+def _raised_rates(tree: Node) -> Iterator[Application]:
+    r"""Letters before a rate in brackets with an exponent, ``m (\dot\theta)^2``: factors."""
+    for node in nodes(tree):
+        if isinstance(node, Power) and isinstance(node.base, Application):
+            arguments = node.base.arguments
+            if len(arguments) == 1 and isinstance(arguments[0], Letter) and arguments[0].dots:
+                yield node.base
 
 
 def _is_time(arguments: Sequence[Node]) -> bool:

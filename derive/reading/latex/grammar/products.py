@@ -18,6 +18,7 @@ from derive.reading.latex.layout.tokens import UnreadError
 from derive.reading.latex.tree import (
     Application,
     Call,
+    Dotted,
     Letter,
     Node,
     Number,
@@ -34,7 +35,8 @@ def divided(children: list[Part]) -> list[Part]:
     r"""Factors with the quotients that slashes denote.
 
     A slash divides the factor before it by the factor behind it: ``1/2 m v^2`` is (1/2) m v². A
-    number below the slash takes the factors that follow without a space, as in ``p^2/2m``.
+    number below the slash takes the factors that follow without a space, as in ``p^2/2m``. In
+    ``p / m l`` the quotient is p/m, and ambiguous, since p/(m l) can be meant.
 
     Raises
     ------
@@ -125,7 +127,18 @@ def _quotient(before: list[Part], behind: list[Part]) -> list[Part]:
     ):
         raise UnreadError(AMBIGUOUS)
     below = product([node(part) for part in behind[:count]])
-    return [Quotient(node(left), below, around([left, *behind[:count]])), *behind[count:]]
+    is_number = is_symbol(left, "NUMBER") and is_symbol(right, "NUMBER")
+    is_ambiguous = not is_number and any(map(_is_letter, behind[count : count + 1]))
+    span = around([left, *behind[:count]])
+    return [Quotient(node(left), below, span, is_ambiguous), *behind[count:]]
+
+
+def _is_letter(part: Part) -> bool:
+    """Whether a part is a letter, or a power or a rate of one."""
+    one = part.value if isinstance(part, Symbol) else part
+    while isinstance(one, Power | Dotted):
+        one = one.base if isinstance(one, Power) else one.operand
+    return isinstance(one, Letter)
 
 
 def _ends_with_angle(call: Node) -> bool:

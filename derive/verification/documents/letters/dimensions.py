@@ -38,7 +38,7 @@ FEWEST = 2
 
 
 class _NoDimensionError(ValueError):
-    """A formula whose dimensions are not known, such as one with matrices."""
+    """A formula whose dimensions are not known, such as one with matrices or numbers of units."""
 
 
 def inhomogeneous_formula(
@@ -126,6 +126,7 @@ class _Equations:
             if kind not in MATRICES.values():
                 self._known[name] = ENERGY
         self._formulas, self._derivatives = formulas, derivatives
+        self._are_of_program = letters.are_of_program
         self._equal: list[Dimension] = []
 
     def rows(self) -> dict[int, list[Dimension]]:
@@ -146,7 +147,12 @@ class _Equations:
         return result
 
     def _sum(self, terms: Sequence[ast.expr]) -> Dimension | None:
-        """The dimension of terms, which have the same; None of zero, which has any."""
+        """The dimension of terms, which have the same; None of zero, which has any.
+
+        A number that a program adds, such as a constant force, can have any unit as well.
+        """
+        if self._are_of_program:
+            terms = [one for one in terms if any(isinstance(x, ast.Name) for x in ast.walk(one))]
         known = [one for term in terms if (one := self._dimension(term)) is not None]
         self._equal += [_product(one, known[0], -1) for one in known[1:]]
         return known[0] if known else None
@@ -159,6 +165,8 @@ class _Equations:
     def _dimension(self, node: ast.expr) -> Dimension | None:
         match node:
             case ast.Constant(value=value):
+                if isinstance(value, float) and not (8 * value).is_integer():
+                    raise _NoDimensionError  # as 9.81
                 return ONE if value else None
             case ast.Name(id=name):
                 return self.letter(name)

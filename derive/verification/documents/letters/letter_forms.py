@@ -154,14 +154,14 @@ def _with_functions(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
 
 
 def _with_constants(occurrences: Iterable[Occurrence]) -> list[Occurrence]:
-    """The statements with a letter of its own for each constant of a sum, as that of an energy."""
+    """The statements with a letter of its own for each constant, as that of an energy."""
 
     def change(place: Occurrence, own: set[Span], letter: Letter) -> Letter:
         start = str(place.start + letter.span[0])
         return replace(letter, index=start) if letter.span in own else letter
 
     def changed(place: Occurrence) -> Occurrence:
-        terms = (one for side in place.sides for one in _summands(side))
+        terms = (one for side in place.sides for one in (side, *_summands(side)))
         own = {
             one.span
             for one in terms
@@ -200,11 +200,12 @@ def _is_of_length(place: Occurrence) -> bool:
 
 
 def _terms(sides: Iterable[Node]) -> Iterator[Node]:
-    """Terms of sums that are no factors, and what derivatives apply to."""
+    """Terms of sums that are no factors, what derivatives apply to, and functions of letters."""
     for node in nodes(sides):
-        if isinstance(node, Derivative | Application):
-            operand = node.operand if isinstance(node, Derivative) else node.head
-            yield from (operand, *_summands(operand))
+        if isinstance(node, Derivative):
+            yield from (node.operand, *_summands(node.operand))
+        elif isinstance(node, Application) and {*map(type, node.arguments)} == {Letter}:
+            yield node.head
     for side in sides:
         yield from _summands(side)
 

@@ -15,6 +15,8 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError, syntax_tree
+from derive.reading.latex.grammar.products import AMBIGUOUS
+from derive.reading.latex.tree import Quotient, nodes
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
@@ -30,6 +32,7 @@ from derive.verification.documents.rules.mass_positions import is_no_rate
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import POINT, WORD, DocumentFormula
 from derive.verification.judging.engine import joined
+from derive.verification.judging.motion_verdicts import NOT_LINEAR
 from derive.verification.judging.verdict import Correction
 
 #: Kinds of formulas that no other case of the system gives.
@@ -41,6 +44,8 @@ HOLDING = ("verified", "equivalent")
 AGREEING = 6
 #: A Lagrangian or a Hamiltonian with a word as its index.
 FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
+#: Moments of inertia.
+INERTIA = re.compile(r"[IJ](_\w+)?")
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
 #: The note on a formula whose dimensions contradict those of all others.
@@ -146,10 +151,17 @@ class _Evidence:
     def _doubt(self, number: int) -> str:
         """Why a formula that contradicts the system need not be wrong; empty if it is."""
         formula, result = self._results[number]
+        if any(
+            isinstance(one, Quotient) and one.is_ambiguous
+            for one in nodes(formula.occurrence.sides)
+        ):
+            return AMBIGUOUS
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
         inhomogeneous = self._contradictions.inhomogeneous
         if inhomogeneous is not None and inhomogeneous in self._candidate.stating:
             return opposed(self._lines[inhomogeneous])
+        if self._further_inertia and not result.verdict.note.endswith(NOT_LINEAR):
+            return f"line {self._further_inertia} states an inertia beside the positions"
         if number in self._contradictions.doubts:
             others = self._contradictions.doubts[number] - {number}
             beside = f" and agrees with {_lines(self._lines[k] for k in others)}" if others else ""
@@ -164,6 +176,8 @@ class _Evidence:
             return other_case
         if self._is_weak or self._unsure & {*formula.words} or self._is_of_loads(result):
             return UNSUPPORTED
+        if any(t.correct == "0" and not WORD.search(t.wrong) for t in result.verdict.corrections):
+            return "a number that is added can be a constant force"
         if line := self._special_motion(number):
             return f"it can hold with line {line}"
         if self._is_restated(number):
@@ -175,6 +189,18 @@ class _Evidence:
         if self._is_tie or _adds_letters(formula, result, self._candidate):
             return other_case
         return ""
+
+    @cached_property
+    def _further_inertia(self) -> int | None:
+        """The line of an energy with a moment of inertia, which positions do not state."""
+        if self._candidate.basis != "positions":
+            return None
+        own = self._candidate.letters
+        for number, (formula, one) in enumerate(self._results):
+            others = {*filter(INERTIA.fullmatch, formula.words)} - own
+            if others and not one.is_understood and 1 in map(order, formula.words):
+                return self._lines[number]
+        return None
 
     @cached_property
     def _is_weak(self) -> bool:

@@ -33,6 +33,7 @@ from derive.verification.documents.rules.small_motions import Amplitudes, SmallM
 from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,
+    OWN_CONSTANT,
     POINT,
     SQUARE,
     WORD,
@@ -118,6 +119,10 @@ class Judge:
             return plain("definition", formula, STATES)
         if constant := self._constant_of_motion(formula):
             name, value = constant
+            if OWN_CONSTANT.fullmatch(name):
+                if self._is_conserved(value):
+                    return plain("verified", formula, "it is a constant of the motion")
+                return plain("context", formula, "it changes along most motions")
             if self._is_conserved(value):
                 return plain("verified", formula, f"{name} is a constant of the motion")
             return plain("definition", formula, f"{name} is its value along the motion")

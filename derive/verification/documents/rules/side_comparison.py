@@ -44,6 +44,9 @@ ABOUT_FREQUENCIES = re.compile(
 )
 OF_SMALL_MOTIONS = "it is that of small motions"
 
+#: Energies that have an arbitrary constant.
+ENERGIES = ("energy", "hamiltonian")
+
 
 class SideComparison:
     """Compares sides: as numbers, as matrices, for small motions, and in units of a system."""
@@ -130,9 +133,10 @@ class SideComparison:
         return result
 
     def _is_up_to_a_constant(self, formula: DocumentFormula) -> bool:
-        """Whether a formula states an energy of a part, or has a constant of its own."""
+        """Whether a formula states the energy or one of a part, or has a constant of its own."""
         has_constant = any(map(OWN_CONSTANT.fullmatch, formula.words))
-        return has_constant or energy_of_part(formula.subject) is not None
+        is_energy = self._namespace.letters.quantities.get(formula.subject) in ENERGIES
+        return has_constant or is_energy or energy_of_part(formula.subject) is not None
 
     def _is_substituted(self, difference: sp.Expr) -> bool:
         """Whether a difference vanishes by constraints that are integrable."""
