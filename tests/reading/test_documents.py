@@ -93,6 +93,10 @@ DELIMITERS = [
     ("a.html", r"<p>«\begin{multline}x\end{multline}»", "multline", False),
     ("a.html", '<SCRIPT type="math/tex; mode=display">«x = 1»</SCRIPT>', "math/tex", False),
     ("a.html", '<script type="math/tex">«x = 1»</script>', "math/tex", True),
+    ("a.html", '<div id="e" class="math-display">«x = 1»</div>', "math/tex", False),
+    ("a.html", '<span class="math display">«x = 1»</span>', "math/tex", False),
+    ("a.html", '<span class="math inline">«x = 1»</span>', "math/tex", True),
+    ("a.html", '<span class="math inline">\\(«x = 1»\\)</span>', r"\(", True),
     (
         "a.html",
         '<math display="block"><mi>x</mi><annotation encoding="application/x-tex">«x = 1»'

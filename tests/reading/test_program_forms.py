@@ -1,6 +1,7 @@
 """Forms of programs: their equations are those that a person reads from the same lines."""
 
 import math
+import re
 
 import pytest
 
@@ -485,3 +486,35 @@ while t < 3:
 def test_a_momentum_is_divided_by_its_mass() -> None:
     text = "while t < 3:\n    p = p - k*x*dt\n    x = x + p/m*dt\n"
     assert [one.text for one in read_program(text, "Python").equations] == ["x_ddot = -k*x/m"]
+
+
+COUPLED = """
+def acceleration(t, x):
+    return -k*x/m
+def velocity(t, v):
+    return v
+def step(x, v, t, h):
+    a1 = h*acceleration(t, x)
+    b1 = h*velocity(t, v)
+    a2 = h*acceleration(t + h/2, x + b1/2)
+    b2 = h*velocity(t + h/2, v + a1/2)
+    a3 = h*acceleration(t + h/2, x + b2/2)
+    b3 = h*velocity(t + h/2, v + a2/2)
+    a4 = h*acceleration(t + h, x + b3)
+    b4 = h*velocity(t + h, v + a3)
+    x = x + (b1 + 2*b2 + 2*b3 + b4)/6
+    v = v + (a1 + 2*a2 + 2*a3 + a4)/6
+    return x, v
+"""
+
+
+def test_rates_are_added_to_their_own_variables() -> None:
+    assert not any(one.is_fault for one in methods(COUPLED, "Python"))
+
+    def exchanged(term: re.Match[str]) -> str:
+        return f"{term[1]} + {'ba'[term[1] == 'x']}{term[2]}"
+
+    slip = re.sub(r"([xv]) \+ [ab](\d)", exchanged, COUPLED)
+    assert [one.text for one in methods(slip, "Python") if one.is_fault] == [
+        "stages add rates to other variables: those of x to v, those of v to x",
+    ]

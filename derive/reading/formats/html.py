@@ -27,6 +27,12 @@ def raw_end(opening: re.Match[str]) -> str:
     return rf"(?P<end>(?i:</{name}\b))"
 
 
+#: Elements of the class ``math`` that hold LaTeX without delimiters, as KaTeX gets it of Pandoc.
+CLASS, BARE = r"\b[^<>]{0,200}?\bclass=[\"'][^\"'<>]*\bmath", r"\b[^<>]*+>)(?!\s*(?:\\[(\[]|[$<]))"
+ELEMENTS = (
+    Delimiter(rf"(?i:<(?:div{CLASS}|span{CLASS}[ -]display){BARE}", raw_end, "math/tex"),
+    Delimiter(rf"(?i:<span{CLASS}{BARE}", raw_end, "math/tex", is_inline=True),
+)
 #: Formulas in MathML.
 MATH = (
     Delimiter(r"(?i:<math\b[^<>]{0,300}?display=[\"']?block[^<>]*+>)", MATHML, "math", inner=LATEX),
@@ -38,6 +44,7 @@ TOKENS = (
     Delimiter(SCRIPT + r";\s*mode=display[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex"),
     Delimiter(SCRIPT + r"[^<>]*+>)", r"(?P<end>(?i:</script))", "math/tex", is_inline=True),
     *MATH,
+    *ELEMENTS,
     Delimiter(PREFORMATTED, raw_end, BLOCK, is_inline=True),
     Delimiter(RAW, raw_end),
     Delimiter(TAG),

@@ -1,7 +1,7 @@
 """Verdicts on all formulas of a document, from its displays alone."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from derive.reading.document import Display, Document, divided
@@ -30,6 +30,7 @@ from derive.verification.documents.letters.letter_forms import (
     with_own_letters,
 )
 from derive.verification.documents.letters.letter_roles import letters_of
+from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.subjects import (
     Formulas,
@@ -45,11 +46,12 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
+from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
 from derive.verification.documents.rules.evidence import of_dimensions, weighed
 from derive.verification.documents.rules.identities import Identities
-from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict
+from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import (
     IMPLIED,
     DocumentFormula,
@@ -170,6 +172,8 @@ def _judge(
             if not titles or any(result.is_understood for _, result in verdicts):
                 titles.append(candidate.title)
                 conventions.append(convention(candidate))
+            elsewhere = {*statements.formulas} - {*remaining}
+            verdicts = [*_without_foreign(verdicts, found.judges.letters, elsewhere)]
             contrary = [*alternatives(found, verdicts, written)]
             others += contrary
             verdicts = [*unopposed(verdicts, contrary)]
@@ -214,6 +218,23 @@ def _judge(
     return DocumentVerdicts(
         document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
+
+
+def _without_foreign(
+    verdicts: Sequence[WithVerdict], letters: Letters, others: Collection[DocumentFormula]
+) -> Iterator[WithVerdict]:
+    """The verdicts, with `context` for wrong formulas with letters that other parts define."""
+    lines = {
+        one.subject: one.occurrence.line
+        for one in others
+        if one.subject in letters.parameters and len(one.words) > 1
+    }
+    for formula, result in verdicts:
+        foreign = [word for word in formula.words if word in lines and word != formula.subject]
+        if foreign and result.verdict.verdict == "wrong":
+            note = f"line {lines[foreign[0]]} defines {foreign[0]} for another system"
+            result = plain("context", formula, note)
+        yield formula, result
 
 
 def _read(document: Document) -> tuple[list[Occurrence], list[FormulaVerdict]]:

@@ -134,6 +134,8 @@ class Layout:
             return self._brace(token, at)
         elif name in ("stackrel", "overset", "underset"):
             return self._over_relation(token, at)
+        elif name == "underline" and self._is_long(at):
+            return self._frame(token, at)
         elif name in LAYOUT:
             at = self.star(at)
             for _ in range(LAYOUT[name]):
@@ -143,6 +145,11 @@ class Layout:
         else:
             self.result.append(token)
         return at
+
+    def _is_long(self, at: int) -> bool:
+        """Whether an argument in braces is no single letter."""
+        inside, _ = argument(self.tokens, at) or ((at, at), at)
+        return sum(one.kind != "space" for one in self.tokens[slice(*inside)]) > 1
 
     def _frame(self, token: Token, at: int) -> int:
         """The brace behind a command that frames its content belongs to the command."""

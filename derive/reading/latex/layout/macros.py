@@ -117,7 +117,18 @@ PHYSICS = {
     "dd": Macro("dd", r"\mathrm{d}"),
     "vu": Macro("vu", r"\hat{\mathbf{#1}}", 1),
     "qty": Macro("qty", ""),
+    "qc": Macro("qc", r",\quad "),
+    "qq": Macro("qq", r"\quad\text{#1}\quad ", 1),
 }
+#: Words of that package between formulas, such as ``\qand``.
+QUAD_WORDS = (
+    "if then else otherwise unless given using where while assume since let for all and or as in"
+)
+PHYSICS |= {
+    f"q{one}": Macro(f"q{one}", rf"\quad\text{{{one}}}\quad ") for one in QUAD_WORDS.split()
+}
+#: Matrices of that package, in the brackets that follow.
+MATRICES = ("mqty", "matrixquantity", "bmqty", "pmqty")
 DERIVATIVES = {"dv": r"\mathrm{d}", "odv": r"\mathrm{d}", "pdv": r"\partial"}
 
 
@@ -147,10 +158,15 @@ def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> li
         elif token.text in known:
             if depth >= MAX_DEPTH:
                 raise UnreadError(rf"the macro \{token.text} calls itself")
+            if token.text in PHYSICS:
+                _skip_star(waiting)
             body = _call(known[token.text], token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
         elif token.text in DERIVATIVES:
             body = _derivative(DERIVATIVES[token.text], token, waiting)
+            waiting += [(t, depth + 1) for t in reversed(body)]
+        elif token.text in MATRICES:
+            body = _matrix(token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
         else:
             result.append(token)
@@ -196,6 +212,32 @@ def _derivative(sign: str, call: Token, waiting: list[tuple[Token, int]]) -> lis
     if body is None:
         raise UnreadError(rf"\{call.text} needs an argument in braces")
     return _substituted(Macro(call.text, body, len(arguments)), arguments, (call.span[0], end))
+
+
+def _skip_star(waiting: list[tuple[Token, int]]) -> None:
+    if waiting and waiting[-1][0].kind == "*":
+        waiting.pop()
+
+
+def _matrix(call: Token, waiting: list[tuple[Token, int]]) -> list[Token]:
+    r"""The matrix that ``\mqty[a & b \\ c & d]`` is, of any brackets."""
+    _skip_star(waiting)
+    while waiting and waiting[-1][0].kind == "space":
+        waiting.pop()
+    closing = {"[": "]", "(": ")", "{": "}"}.get(waiting[-1][0].kind if waiting else "")
+    if closing is None:
+        raise UnreadError(rf"\{call.text} needs entries in brackets")
+    waiting.pop()
+    body, depth = list[Token](), 0
+    while waiting:
+        token = waiting.pop()[0]
+        if depth == 0 and token.kind == closing:
+            edges = (tokenize(rf"\{one}{{bmatrix}}") for one in ("begin", "end"))
+            first, last = ([replace(t, span=call.span) for t in edge] for edge in edges)
+            return [*first, *body, *last]
+        depth += {"[": 1, "(": 1, "{": 1, "]": -1, ")": -1, "}": -1}.get(token.kind, 0)
+        body.append(token)
+    raise UnreadError("a bracket is never closed")
 
 
 def _substituted(macro: Macro, arguments: list[list[Token]], span: Span) -> list[Token]:

@@ -130,6 +130,7 @@ def _encloses_statement(tokens: list[Token], at: int, partner: dict[int, int]) -
     return any(
         tokens[place].kind in ("relation", "&", "row", "prose")
         or (tokens[place].kind == "begin" and tokens[place].text in ROWS)
+        or (tokens[place].kind == "{" and _encloses_statement(tokens, place, partner))
         for place in inside(start, end, partner)
     )
 

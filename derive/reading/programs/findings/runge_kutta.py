@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 from derive.reading.programs.evaluation.numeric_values import combined
 from derive.reading.programs.evaluation.sums import inner
+from derive.reading.programs.findings.stages import RATES
+from derive.reading.programs.findings.updates import names
 from derive.reading.programs.syntax.trees import (
     Array,
     Expression,
@@ -97,6 +99,21 @@ def method(increment: Expression) -> tuple[Method, Expression] | None:
     return result, _result(increment, calls[order[0]]) or increment
 
 
+def shifted(increment: Expression) -> set[str]:
+    """The names to which the arguments of functions of the program add multiples of stages."""
+    calls = _with_earlier(_calls(inner(increment)))
+    result: set[str] = set()
+    for call in calls:
+        if getattr(call.function, "path", RATES) == RATES:
+            continue
+        for part in (part for argument in call.arguments for part in _parts(argument)):
+            row = _coefficients(part, calls)
+            if row and any(row) and _is_proportional(part, calls, row):
+                start = value_at(part, {}, calls)
+                result |= {one for one in names(part) if value_at(part, {one: 2.0}, calls) != start}
+    return result
+
+
 def _result(tree: Expression, call: FunctionCall) -> Expression | None:
     """The value of a call in a combination."""
     if called(tree) == call:
@@ -151,8 +168,7 @@ def _row(call: FunctionCall, calls: list[FunctionCall]) -> tuple[float, ...] | N
     """The coefficients of earlier calls in the argument of a call."""
     rows = set()
     for argument in call.arguments:
-        value = inner(argument)
-        for part in value.items if isinstance(value, Array) else (argument,):
+        for part in _parts(argument):
             row = _coefficients(part, calls)
             if row is None:
                 return None
@@ -161,6 +177,12 @@ def _row(call: FunctionCall, calls: list[FunctionCall]) -> tuple[float, ...] | N
     if not rows:
         return (0.0,) * len(calls)
     return rows.pop() if len(rows) == 1 else None
+
+
+def _parts(argument: Expression) -> Sequence[Expression]:
+    """The entries of an argument that is an array, else itself."""
+    value = inner(argument)
+    return value.items if isinstance(value, Array) else (argument,)
 
 
 def _is_proportional(tree: Expression, calls: list[FunctionCall], row: tuple[float, ...]) -> bool:

@@ -3,12 +3,12 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from derive.reading.programs.evaluation.mathematics import split
 from derive.reading.programs.evaluation.sums import inner, terms, total
 from derive.reading.programs.findings.regions import Region
-from derive.reading.programs.findings.runge_kutta import Method, method, value_at
+from derive.reading.programs.findings.runge_kutta import Method, method, shifted, value_at
 from derive.reading.programs.findings.updates import Pair, Update, Updates, names
 from derive.reading.programs.program import Finding
 from derive.reading.programs.syntax.code import Definition, Lambda, Return
@@ -35,6 +35,8 @@ class WrittenMethod:
     line: int
     method: Method
     rates: dict[str, Expression]
+    #: Variables, and the other ones to which their stages add their rates instead.
+    exchanged: dict[str, str] = field(default_factory=dict)
 
 
 def written_methods(updates: Updates, returned: Expression | None) -> list[WrittenMethod]:
@@ -56,6 +58,9 @@ def written_methods(updates: Updates, returned: Expression | None) -> list[Writt
             if one is None:
                 found.append(one := WrittenMethod(line, result[0], {}))
             one.rates[name] = result[1]
+            others = shifted(increment)
+            if name not in others and (other := {each for each, *_ in changes} & others):
+                one.exchanged[name] = min(other)
     return found
 
 
@@ -92,7 +97,11 @@ def runge_kutta_findings(written: Sequence[WrittenMethod], function: str) -> Ite
         one, possible = result.method, min(result.method.stages, 4)
         text = f"a Runge-Kutta method of {one.stages} stages and order {one.order} is written out"
         is_fault = one.order < possible
-        if is_fault:
+        if result.exchanged:
+            is_fault = True
+            pairs = (f"those of {name} to {other}" for name, other in result.exchanged.items())
+            text = f"stages add rates to other variables: {', '.join(pairs)}"
+        elif is_fault:
             weights = ", ".join(f"{x:.4g}" for x in one.b)
             nodes = ", ".join(f"{sum(row):.4g}" for row in one.A)
             text += f": weights {weights}, stages at {nodes} of the step"

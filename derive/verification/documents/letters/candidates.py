@@ -344,7 +344,10 @@ def _choices(
     others = [*chosen, *(one for one in same if one not in chosen)]
     if len(own) == len(names):
         return [own, *(one for one in others if one != own)]
-    return others if named else [{}, *others]
+    if not named:
+        return [{}, *others]
+    # a mass called mu can be a friction
+    return [*others, {}] if kind == "mass" and {*named} <= {*letters.of_kind("damping")} else others
 
 
 def _has_partner(letter: str, usual: Sequence[str]) -> bool:

@@ -7,6 +7,7 @@ letters; others follow from the document.
 """
 
 import ast
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -33,6 +34,8 @@ ENERGY: Dimension = {MASS: Fraction(1), LENGTH: Fraction(2), TIME: Fraction(-2)}
 FUNCTIONS = ("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh", "asin", "acos", "atan")
 #: Letters of coordinates and of parameters that are lengths.
 COORDINATES, PARAMETERS = ("x", "y", "z", "r", "s"), ("l", "ell")
+#: Names of the numbers of a state in programs, whatever they are.
+STATE = re.compile(r"[a-zA-Z]+_\d+")
 #: The fewest formulas with dimensions.
 FEWEST = 2
 
@@ -115,6 +118,8 @@ class _Equations:
                 self._known[name] = GRAVITY
         for name in (*letters.coordinates, *letters.parameters):
             letter, is_coordinate = name.partition("_")[0], name in letters.coordinates
+            if letters.are_of_program and STATE.fullmatch(name):
+                continue
             if letter in (COORDINATES if is_coordinate else PARAMETERS):
                 self._known[name] = {LENGTH: Fraction(1)}
             elif is_coordinate and letter in ANGLES and letter != "q":

@@ -18,7 +18,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.formula_translation import order
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_LAGRANGIAN, STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.implied_energies import (
@@ -68,7 +68,7 @@ def systems_of_energies(
     for T, V, numbers in stated_energies(letters, formulas, stated, values):
         moving = [one for one in q if T.has(velocity(one))]
         matrix = _quadratic_form(T, moving)
-        accelerated = {symbols[name] for name in letters.accelerated}
+        accelerated = {symbols[name] for name in _beside(letters, formulas, moving)}
         if (
             matrix is None
             or not {*moving} >= ({*q} & (V.free_symbols | T.free_symbols)) | accelerated
@@ -93,6 +93,15 @@ def systems_of_energies(
             own = [symbols[w] for k in numbers for w in formulas[k].words if w in symbols]
             if system := stated_system(name, title, letters, moving, matrix, V, forces, own):
                 yield system, numbers
+
+
+def _beside(
+    letters: Letters, formulas: Sequence[DocumentFormula], moving: Sequence[sp.Symbol]
+) -> set[str]:
+    """The accelerated coordinates in formulas with coordinates that move; others are separate."""
+    names = {one.name for one in moving}
+    stems = [{*map(stem, one.words)} for one in formulas]
+    return {*letters.accelerated} & set[str]().union(*(one for one in stems if one & names))
 
 
 def stated_forces(

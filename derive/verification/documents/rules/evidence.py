@@ -178,12 +178,14 @@ class _Evidence:
             return UNSUPPORTED
         if any(t.correct == "0" and not WORD.search(t.wrong) for t in result.verdict.corrections):
             return "a number that is added can be a constant force"
-        if line := self._special_motion(number):
+        if line := self._special_motion(number) or self._value_in_time(formula):
             return f"it can hold with line {line}"
         if self._is_restated(number):
             return other_case
         if self._holds_constant(formula):
             return "a derivative can hold a constant of the motion"
+        if result.kind in OF_ENERGIES and self._has_further_coordinates:
+            return other_case
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
             return other_case if _is_driven(self._candidate) else ""
         if self._is_tie or _adds_letters(formula, result, self._candidate):
@@ -261,6 +263,19 @@ class _Evidence:
                 return self._lines[k]
         return None
 
+    def _value_in_time(self, formula: DocumentFormula) -> int | None:
+        """The line of a value of a function of time that is no coordinate, such as its start."""
+        if "t" not in formula.words or formula.subject in self._candidate.coordinates:
+            return None
+        return next(
+            (
+                self._lines[k]
+                for k, (one, _) in enumerate(self._results)
+                if one.subject == formula.subject and "t" not in one.words
+            ),
+            None,
+        )
+
     def _is_restated(self, number: int) -> bool:
         """Whether a component of a position is stated again with further letters."""
         formula, _ = self._results[number]
@@ -305,6 +320,13 @@ class _Evidence:
         """Whether equations that state a system are no more certain than one that differs."""
         is_alone = len(self._independent) == 1 and self._holding >= 2 and self._misfits == 0
         return self._candidate.is_of_equations and not is_alone
+
+    @cached_property
+    def _has_further_coordinates(self) -> bool:
+        """Whether equations that state the system have a coordinate that no energy contains."""
+        energies = (formula for formula, one in self._results if one.kind in OF_ENERGIES)
+        moving = {stem(word) for formula in energies for word in formula.words}
+        return self._candidate.is_of_equations and not {*self._candidate.coordinates} <= moving
 
     @cached_property
     def _has_cases(self) -> bool:
