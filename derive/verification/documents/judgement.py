@@ -223,11 +223,14 @@ def _judge(
 def _without_foreign(
     verdicts: Sequence[WithVerdict], letters: Letters, others: Collection[DocumentFormula]
 ) -> Iterator[WithVerdict]:
-    """The verdicts, with `context` for wrong formulas with letters that other parts define."""
+    """The verdicts, with `context` for wrong formulas with letters that are no parameters.
+
+    Other parts of the document define these by coordinates.
+    """
     lines = {
         one.subject: one.occurrence.line
         for one in others
-        if one.subject in letters.parameters and len(one.words) > 1
+        if one.subject in letters.parameters and {*one.words} & {*letters.coordinates}
     }
     for formula, result in verdicts:
         foreign = [word for word in formula.words if word in lines and word != formula.subject]

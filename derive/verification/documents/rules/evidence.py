@@ -178,7 +178,7 @@ class _Evidence:
             return UNSUPPORTED
         if any(t.correct == "0" and not WORD.search(t.wrong) for t in result.verdict.corrections):
             return "a number that is added can be a constant force"
-        if line := self._special_motion(number) or self._value_in_time(formula):
+        if line := self._special_motion(number) or self._value_in_time(formula, result):
             return f"it can hold with line {line}"
         if self._is_restated(number):
             return other_case
@@ -263,9 +263,11 @@ class _Evidence:
                 return self._lines[k]
         return None
 
-    def _value_in_time(self, formula: DocumentFormula) -> int | None:
-        """The line of a value of a function of time that is no coordinate, such as its start."""
-        if "t" not in formula.words or formula.subject in self._candidate.coordinates:
+    def _value_in_time(self, formula: DocumentFormula, result: SideVerdict) -> int | None:
+        """The line of a value of a function of time that has no meaning, such as its start."""
+        is_energy = result.kind in OF_ENERGIES
+        has_meaning = is_energy or formula.subject in self._candidate.coordinates
+        if has_meaning or "t" not in formula.words:
             return None
         return next(
             (
