@@ -274,3 +274,16 @@ def rates(t, y, m, k, g, l):
 def test_numbers_in_programs_have_any_unit(term: str, verdict: str) -> None:
     (result,) = judge_program(read_program(HANGING.format(term), "Python")).formulas
     assert result.verdict == verdict
+
+
+HOOP = """
+function derivatives(t, y) {
+    return [y[1]/r, r*Math.sin(y[0])*(w*w*Math.cos(y[0]) - g/r) - k*y[1]];
+}
+"""
+
+
+def test_numbers_of_a_state_have_no_unit_by_their_letter() -> None:
+    results = judge_program(read_program(HOOP, "JavaScript")).formulas
+    assert len(results) == 2
+    assert INHOMOGENEOUS not in {one.note for one in results}

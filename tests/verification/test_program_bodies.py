@@ -1,7 +1,5 @@
 """Loops over pairs of different bodies."""
 
-import pytest
-
 from derive.reading.programs.program_reader import read_program
 from derive.verification.documents.program_judgement import judge_program
 
@@ -47,14 +45,21 @@ def verdicts(text: str, language: str) -> list[str]:
     return [one.verdict for one in formulas if one.latex != "method of integration"]
 
 
-@pytest.mark.parametrize(("condition", "end"), [
-    ("if (i == j) continue;", ""), ("if (j != i) {", "}"),
-])  # fmt: skip
-def test_bodies_attract_others_alone(condition: str, end: str) -> None:
-    text = C.replace("CONDITION", condition).replace("END", end)
-    assert verdicts(text, "C") == ["verified"] * 4
-    slip = text.replace("b[j].m * dy / (r*r*r)", "b[j].m * dy / (r*r)")
+SKIP = C.replace("CONDITION", "if (i == j) continue;").replace("END", "")
+
+
+def test_bodies_attract_others_alone() -> None:
+    assert verdicts(SKIP, "C") == ["verified"] * 4
+    slip = SKIP.replace("b[j].m * dy / (r*r*r)", "b[j].m * dy / (r*r)")
     assert verdicts(slip, "C") == ["verified", "verified", "wrong", "wrong"]
+
+
+def test_other_bodies_can_be_chosen_by_a_condition() -> None:
+    enclosed = C.replace("CONDITION", "if (j != i) {").replace("END", "}")
+    pair = [read_program(text, "C").equations for text in (SKIP, enclosed)]
+    first, second = ([one.text for one in equations] for equations in pair)
+    assert len(first) == 4
+    assert first == second
 
 
 def test_what_follows_a_jump_is_for_the_others() -> None:
