@@ -155,7 +155,7 @@ def test_spans_of_statements_are_their_places_in_the_display() -> None:
         ("", r"\dv{t}\left(\pdv{L}{\dot q}\right) + \dv[2]{x}{t}", "(d(∂(L; q.); t) + d(x; t, t))"),
         ("", r"\pdv{L}{x}{y} - \pdv[2]{L}{x}", "(∂(L; x, y) - ∂(L; x, x))"),
         ("", r"a \qand* b = c \qq*{so that} d = e", "a | b = c | d = e"),
-        ("", r"\mqty[a & (b) \\ c & d] = \mqty*{x \\ y}", "[a, b; c, d] = [x; y]"),
+        ("", r"\mqty(a & (b) \\ c & d) = \mqty*{x \\ y}", "[a, b; c, d] = [x; y]"),
         ("", r"\abs*{x} + \underline{y}", "(|x| + yunder)"),
         ("", r"\underline{\underline{x = y}}", "x = y"),
         ("", r"1 - \cos[2](\theta)\qty(a)", "(1 - cos(theta)^2 a)"),

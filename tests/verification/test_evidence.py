@@ -14,6 +14,7 @@ from derive.verification.documents.rules.consequences import Contradictions, Wit
 from derive.verification.documents.rules.evidence import weighed
 from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import DocumentFormula, Occurrence, translated
+from derive.verification.judging.motion_verdicts import NOT_LINEAR
 from derive.verification.judging.verdict import Correction
 
 
@@ -77,5 +78,24 @@ def test_a_value_of_a_function_of_time_is_no_definition(
 ) -> None:
     first, last = formulas(start, r"r = r_0\cosh(\omega t)")
     results = [with_verdict(first, "definition"), with_verdict(last, "wrong", kind)]
+    judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
+    assert judged[-1][1].verdict.verdict == expected
+
+
+@pytest.mark.parametrize(("term", "expected"), [("- 0.2", "context"), ("- 0.2*c", "wrong")])
+def test_a_number_that_is_added_can_be_a_force(term: str, expected: str) -> None:
+    (formula,) = formulas(r"m\ddot s = - k s - 0.2")
+    _, result = with_verdict(formula, "wrong")
+    corrected = replace(result.verdict, corrections=(Correction(term, "0"),))
+    results = [(formula, replace(result, verdict=corrected))]
+    judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
+    assert judged[-1][1].verdict.verdict == expected
+
+
+@pytest.mark.parametrize(("note", "expected"), [(f"it {NOT_LINEAR}", "wrong"), ("", "context")])
+def test_whatever_the_inertia_is_accelerations_have_no_squares(note: str, expected: str) -> None:
+    energy, equation = formulas(r"L = \frac12 I_1\dot s^2", r"m\ddot s^2 = - k s")
+    unknown = replace(plain("context", energy, ""), is_understood=False)
+    results = [(energy, unknown), (equation, plain("wrong", equation, note))]
     judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
     assert judged[-1][1].verdict.verdict == expected

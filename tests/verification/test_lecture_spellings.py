@@ -103,6 +103,10 @@ def test_what_stands_below_a_slash_is_not_wrong_if_more_can_be_meant(tmp_path: P
     assert (
         kinds(tmp_path, INVERSE.replace("p_\\phi / m a^2", "p_\\phi / (m a^2)"))[-1] == "verified"
     )
+    # one half is a factor of what follows
+    half = INVERSE + r"$$T = 1/2 m a^2\dot\phi^2$$"
+    assert kinds(tmp_path, half)[-1] == "verified"
+    assert kinds(tmp_path, half.replace("1/2 m", "3/2 m"))[-1] == "wrong"
     # the sine belongs to no denominator
     sine = INVERSE.replace(r"a\ddot\phi = - g\sin\phi", r"\ddot\phi = - g / a \sin\phi")
     assert kinds(tmp_path, sine)[1] == "verified"

@@ -766,5 +766,20 @@ def test_positions_do_not_refute_a_further_moment_of_inertia(tmp_path: Path) -> 
     assert "wrong" not in verdicts(tmp_path, BUILDING)
     # of point masses alone the equation is wrong
     assert "wrong" in verdicts(tmp_path, BUILDING.replace(r" + \frac12 I_1\dot\alpha^2", ""))
-    # whatever the inertia is, accelerations have no squares
-    assert "wrong" in verdicts(tmp_path, BUILDING.replace(r"b^2\ddot\beta", r"b^2\ddot\beta^2"))
+
+
+SLIDING = r"""
+$$K = \frac12 m (l^2\dot\theta^2 + 2 l\cos\theta\,\dot\theta\dot s + \dot s^2)$$
+$$V = - m g l\cos\theta$$
+$$m\ddot s + m l\cos\theta\,\ddot\theta - m l\sin\theta\,\dot\theta^2 = 0$$
+$$m l^2\ddot\theta + m l\cos\theta\,\ddot s + m g l\sin\theta = 0$$ $$\ddot y = - g$$
+"""
+
+
+def test_a_separate_coordinate_leaves_the_energies_of_others_to_state_the_system(
+    tmp_path: Path,
+) -> None:
+    expected = ["definition", "definition", "verified", "verified", "definition"]
+    assert verdicts(tmp_path, SLIDING + r"$$\ddot y = - g$$")[:-1] == expected
+    slip = SLIDING.replace(r"+ m l\cos\theta\,\ddot s", r"- m l\cos\theta\,\ddot s")
+    assert verdicts(tmp_path, slip)[3] == "wrong"
