@@ -7,6 +7,7 @@ import pytest
 
 from derive.verification.documents.letters.hints import hints
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
+from derive.verification.documents.rules.consequences import opposed
 from derive.verification.source_files import judge_file
 from solvers.app.cli import main
 from solvers.runge_kutta.order_conditions import order
@@ -201,3 +202,23 @@ $$T = \frac12 m (a^2\dot\alpha^2 + b^2(\dot\alpha+\dot\beta)^2
     # the rate of no position
     wrong = judged(tmp_path, text.replace(r"b\dot\beta(", r"2 b\dot\beta("))
     assert verdicts(wrong)[2] == "wrong"
+
+
+PAIR = r"""
+$$L = \frac12 m\dot x^2 (1 + a x) - k x^5$$
+$$m\ddot x (1 + a x) + \frac12 m a\dot x^2 = - 5 k x^4$$
+"""
+
+
+def test_two_formulas_that_contradict_each_other_name_each_other(tmp_path: Path) -> None:
+    assert verdicts(judged(tmp_path, PAIR)) == ["definition", "verified"]
+    slip = judged(tmp_path, PAIR.replace("- 5 k", "- 4 k")).formulas
+    assert [(one.verdict, one.note) for one in slip] == [
+        ("context", opposed(3)),
+        ("context", opposed(2)),
+    ]
+
+
+def test_a_formula_that_several_contradict_is_not_said_to_contradict_one(tmp_path: Path) -> None:
+    slip = PAIR.replace("- 5 k", "- 4 k") + r"$$m\ddot x = - k x^4 - \frac12 m a\dot x^2$$"
+    assert {one.note for one in judged(tmp_path, slip).formulas}.isdisjoint(map(opposed, (2, 3, 4)))

@@ -17,6 +17,7 @@ from derive.reading.latex.tree import (
 from derive.reading.plain_formulas import PLAIN
 from derive.verification.documents.formula_translation import RATES, FormulaTranslator, stem
 from derive.verification.documents.letter_meanings import (
+    Interpretation,
     Work,
     alternatives,
     general_verdicts,
@@ -46,10 +47,10 @@ from derive.verification.documents.pages.verdicts_in_place import (
     DocumentVerdicts,
     FormulaVerdict,
 )
-from derive.verification.documents.rules.consequences import WithVerdict
+from derive.verification.documents.rules.consequences import WithVerdict, opposed
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
-from derive.verification.documents.rules.evidence import of_dimensions, weighed
+from derive.verification.documents.rules.evidence import INHOMOGENEOUS, of_lost_dots, weighed
 from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import (
@@ -151,6 +152,7 @@ def _judge(
     titles, conventions, others = list[str](), list[str](), list[Alternative]()
     results: dict[Occurrence, tuple[DocumentFormula, SideVerdict]] = {}
     known: set[Occurrence] = set()  # formulas that a known system judges
+    reasons: dict[Occurrence, str] = {}  # why formulas without a system have none
     waiting = [*parts]
     while waiting:
         remaining, count, moving = waiting.pop(0), 0, set[str]()
@@ -159,10 +161,12 @@ def _judge(
             part = replace(statements, formulas=remaining)
             found = interpretation(part, hints, work, moving)
             if found.match is None:
-                if (number := found.contradictions.inhomogeneous) is not None:
-                    formula = remaining[number]
-                    result = of_dimensions(formula, found.contradictions)
+                if found.contradictions.lost_dots:
+                    formula = remaining[found.contradictions.inhomogeneous or 0]
+                    result = of_lost_dots(formula, found.contradictions)
                     results[formula.occurrence] = formula, result
+                for number, reason in _reasons(found, remaining):
+                    reasons.setdefault(remaining[number].occurrence, reason)
                 break
             candidate = found.match.candidate
             moving.update(candidate.coordinates)
@@ -209,7 +213,7 @@ def _judge(
     implied = {one.occurrence for one in statements.formulas if one.occurrence.display == IMPLIED}
     results = {place: pair for place, pair in results.items() if place not in implied}
     places = {one.occurrence for one in statements.formulas} - {*results, *implied}
-    judged += [_plain(place, "context", note) for place in places]
+    judged += [_plain(place, "context", reasons.get(place, note)) for place in places]
     judged += [_judged(*pair, written, place in known) for place, pair in results.items()]
     partial = (PARTIAL,) if work.left < 0 and titles else ()
     notes = (*document.notes, *partial, *_unused(hints, statements.formulas))
@@ -218,6 +222,20 @@ def _judge(
     return DocumentVerdicts(
         document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
+
+
+def _reasons(found: Interpretation, formulas: Formulas) -> Iterator[tuple[int, str]]:
+    """Why formulas have no system, by their numbers.
+
+    The dimensions of one contradict those of all others, or it contradicts the one that states a
+    system.
+    """
+    if (number := found.contradictions.inhomogeneous) is not None:
+        yield number, INHOMOGENEOUS
+    if found.refuted:
+        stating, (failed,) = found.refuted.candidate.stating, found.refuted.failed
+        yield failed, opposed(formulas[min(stating)].occurrence.line)
+        yield from ((one, opposed(formulas[failed].occurrence.line)) for one in sorted(stating))
 
 
 def _without_foreign(

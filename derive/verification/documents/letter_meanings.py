@@ -80,6 +80,8 @@ class Interpretation:
     #: Other candidates that can be meant as well, the likeliest first.
     rivals: tuple[Match, ...] = ()
     contradictions: Contradictions = field(default_factory=Contradictions)
+    #: Without a match, a system that formulas state and with which one other does not hold.
+    refuted: Match | None = None
 
 
 def interpretation(
@@ -196,8 +198,10 @@ def _best(
     if best is None:
         # of a stated system another formula can follow, such as for small angles
         stated = sorted(stated, key=lambda one: -one.score)[:MAX_VERIFIED]
-        fitting = (one for one in stated if _fits(judges, one.candidate))
-        return Interpretation(judges, next(fitting, None))
+        fitting = next((one for one in stated if _fits(judges, one.candidate)), None)
+        by_energies = (one for one in stated if not one.candidate.is_of_equations)
+        refuted = next((one for one in by_energies if one.is_refuted_by_one), None)
+        return Interpretation(judges, fitting, refuted=None if fitting else refuted)
     best = with_direction(best, matches, judges)
     best, is_decided = with_fewest_slips(best, matches, judges)
     rivals = tuple(_rivals(best, matches))

@@ -81,6 +81,11 @@ class Match:
         return is_full and has_all and one.is_usual and one.basis == "catalogue"
 
     @property
+    def is_refuted_by_one(self) -> bool:
+        """Whether one formula alone does not hold, beside those that state the system."""
+        return len(self.failed) == 1 and self.failed.isdisjoint(self.candidate.stating)
+
+    @property
     def score(self) -> float:
         """The support, less for a convention that is not the usual one."""
         return self.support - UNUSUAL * (not self.candidate.is_usual)

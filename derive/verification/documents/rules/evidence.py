@@ -143,7 +143,7 @@ class _Evidence:
             noted = _noted(result, INHOMOGENEOUS)
             return _noted(noted, f"given {self._given}") if self._given else noted
         if self._contradictions.lost_dots:
-            return of_dimensions(formula, self._contradictions)
+            return of_lost_dots(formula, self._contradictions)
         if verdict.verdict == "definition":
             return plain("context", formula, INHOMOGENEOUS)
         return None
@@ -434,10 +434,8 @@ def _noted(result: SideVerdict, note: str) -> SideVerdict:
     return replace(result, verdict=replace(verdict, note=joined(verdict.note, note)))
 
 
-def of_dimensions(formula: DocumentFormula, contradictions: Contradictions) -> SideVerdict:
-    """The verdict on a formula by its dimensions alone, which show lost dots and no other slip."""
-    if not contradictions.lost_dots:  # its letters can have another meaning
-        return replace(plain("context", formula, INHOMOGENEOUS), is_understood=False)
+def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> SideVerdict:
+    """The verdict on a formula that lacks dots, which its dimensions alone show."""
     result = plain("wrong", formula, INHOMOGENEOUS)
     verdict = replace(result.verdict, corrections=contradictions.lost_dots)
     return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
