@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from derive.formulas.typeset.typesetting import Formula
 from derive.reading.document import Document
 from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import macros_of
@@ -181,6 +182,27 @@ def test_the_page_fits_narrow_screens_and_hides_verdicts(driver: Any, tmp_path: 
     driver.find_element("css selector", "#show-verified").click()
     assert [item.is_displayed() for item in items] == [False, False, True]
     assert driver.get_log("browser") == []
+
+
+def test_dots_stand_below_the_line_of_a_fraction(driver: Any, tmp_path: Path) -> None:
+    latex = r"p = \frac{\partial L}{\partial\dot\phi}"
+    read = document(tmp_path, f"$${latex}$$", "a.md")
+    text = page([(judged(read, (latex, {})), read)]) + Formula("p = d(L, phi_dot)").html
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
+    driver.get((tmp_path / "page.html").as_uri())
+    tops = driver.execute_script("""
+        const top = (element) => element.getBoundingClientRect().top;
+        return [...document.querySelectorAll("mfrac")].map(
+            (fraction) => [top(fraction.children[1]), top(fraction.querySelector("mover"))]);
+    """)
+    assert len(tops) == 2
+    assert all(dots >= below for below, dots in tops)
+
+
+def test_dots_between_letters_are_shown_as_dots(tmp_path: Path) -> None:
+    latex = r"q = (q_1, \ldots, q_n)"
+    text = page([(judged(read := document(tmp_path, f"$${latex}$$", "a.md"), (latex, {})), read)])
+    assert "<mi>…</mi>" in text
 
 
 def test_several_documents_stand_on_one_page(tmp_path: Path) -> None:

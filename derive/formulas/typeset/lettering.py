@@ -65,6 +65,12 @@ def dotted(markup: str, dots: int, height: str = "0.75em") -> str:
     return f'<mpadded height="{height}">{over}</mpadded>' if dots else markup
 
 
+def denominator(element: str) -> str:
+    """Return the element of a denominator, with room for dots below the line of the fraction."""
+    has_dots = "</mover></mpadded>" in element
+    return f'<mrow><mspace height="1.1em"/>{element}</mrow>' if has_dots else element
+
+
 def _index_markup(index: str) -> str:
     if index == "next":
         return "<mi>i</mi><mo>+</mo><mn>1</mn>"

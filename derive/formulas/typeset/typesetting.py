@@ -13,7 +13,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from derive.formulas.syntax import RELATION, ExpressionError, is_sum, syntax_tree
-from derive.formulas.typeset.lettering import letter_and_index, name_markup
+from derive.formulas.typeset.lettering import denominator, letter_and_index, name_markup
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -108,7 +108,10 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
             return _operand(left, PRODUCT) + TIMES + gap + _operand(right, PRODUCT), PRODUCT
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             if isinstance(left, ast.Constant) or not isinstance(right, ast.Constant):
-                return f"<mfrac>{grouped(_markup(left))}{grouped(_markup(right))}</mfrac>", PRODUCT
+                return (
+                    f"<mfrac>{grouped(_markup(left))}{denominator(grouped(_markup(right)))}</mfrac>",
+                    PRODUCT,
+                )
             # a numeric factor before a long numerator, instead of a long fraction
             factor = ast.BinOp(ast.Constant(1), ast.Div(), right)
             return _markup_and_binding(ast.BinOp(factor, ast.Mult(), left))
@@ -156,7 +159,8 @@ def _call(name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
         case "d", [value, variable]:
             simple = isinstance(arguments[0], ast.Name)
             above = grouped(f"<mo>∂</mo>{value if simple else ''}")
-            fraction = f"<mfrac>{above}{grouped(f'<mo>∂</mo>{variable}')}</mfrac>"
+            below = denominator(grouped(f"<mo>∂</mo>{variable}"))
+            fraction = f"<mfrac>{above}{below}</mfrac>"
             return fraction + ("" if simple else brackets(value)), PRODUCT
         case "ddt", [_]:
             fraction = f"<mfrac><mi>d</mi>{grouped('<mi>d</mi><mi>t</mi>')}</mfrac>"

@@ -21,6 +21,7 @@ SYMBOLS = GREEK | {
     "nabla": "∇",
     "partial": "∂",
     "infty": "∞",
+    "dots": "…",
 }
 
 #: Endings of names, for marks over a letter.

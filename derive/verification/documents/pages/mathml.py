@@ -6,6 +6,7 @@ from dataclasses import fields
 from html import escape
 from itertools import groupby, pairwise
 
+from derive.formulas.typeset.lettering import denominator
 from derive.formulas.typeset.typesetting import APPLY, MINUS, TIMES, brackets, grouped, infix
 from derive.reading.latex.tree import (
     Application,
@@ -257,4 +258,4 @@ def _function(name: str) -> str:
 
 
 def _fraction(above: str, below: str) -> str:
-    return f"<mfrac>{above}{below}</mfrac>"
+    return f"<mfrac>{above}{denominator(below)}</mfrac>"
