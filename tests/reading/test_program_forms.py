@@ -1,7 +1,11 @@
 """Forms of programs: their equations are those that a person reads from the same lines."""
 
 import math
+import os
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -518,3 +522,31 @@ def test_rates_are_added_to_their_own_variables() -> None:
     assert [one.text for one in methods(slip, "Python") if one.is_fault] == [
         "stages add rates to other variables: those of x to v, those of v to x",
     ]
+
+
+BALLS = "".join(f"{one}.pos = vector(1, 0, 0)\n{one}.v = vector(0, 1, 0)\n" for one in "abcdef")
+BALLS += "while t < 9:\n" + "".join(
+    f"    {one}.v = {one}.v - k*{one}.pos*dt\n    {one}.pos = {one}.pos + {one}.v*dt\n"
+    for one in "abcdef"
+)
+ROOT = Path(__file__).parents[2]
+READING = """
+import sys
+from derive.reading.programs.program_reader import read_program
+print([one.text for one in read_program(sys.argv[1], "Python").equations])
+"""
+
+
+def test_names_do_not_depend_on_the_hash_seed() -> None:
+    equations = {
+        subprocess.run(
+            [sys.executable, "-c", READING, BALLS],
+            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in "123"
+    }
+    assert len(equations) == 1
+    assert equations.pop().count("_ddot") == 18

@@ -270,7 +270,7 @@ def _kept(
         if path not in whole and (root(path) not in changed or "." in path)
     }
     first = context.language.first_index
-    for path in whole & {*before}:  # vectors that change keep their length
+    for path in [one for one in before if one in whole]:  # vectors that change keep their length
         items = entries(before[path]) or ()
         if 1 < len(items) <= MAX_VECTOR and not any(map(entries, items)):
             names = (Name(loop.line, f"{path}[{i + first}]") for i in range(len(items)))
