@@ -82,9 +82,13 @@ def test_a_value_of_a_function_of_time_is_no_definition(
     assert judged[-1][1].verdict.verdict == expected
 
 
-@pytest.mark.parametrize(("term", "expected"), [("- 0.2", "context"), ("- 0.2*c", "wrong")])
-def test_a_number_that_is_added_can_be_a_force(term: str, expected: str) -> None:
-    (formula,) = formulas(r"m\ddot s = - k s - 0.2")
+@pytest.mark.parametrize(("latex", "term", "expected"), [
+    (r"m\ddot s = - k s - 0.2", "- 0.2", "context"),
+    (r"m\ddot s = - k s - 0.2 c", "- 0.2*c", "wrong"),
+    (r"v = \dot s - 0.2", "- 0.2", "wrong"),  # no equation of motion
+])  # fmt: skip
+def test_a_number_that_is_added_can_be_a_force(latex: str, term: str, expected: str) -> None:
+    (formula,) = formulas(latex)
     _, result = with_verdict(formula, "wrong")
     corrected = replace(result.verdict, corrections=(Correction(term, "0"),))
     results = [(formula, replace(result, verdict=corrected))]

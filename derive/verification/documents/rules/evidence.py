@@ -176,7 +176,8 @@ class _Evidence:
             return other_case
         if self._is_weak or self._unsure & {*formula.words} or self._is_of_loads(result):
             return UNSUPPORTED
-        if any(t.correct == "0" and not WORD.search(t.wrong) for t in result.verdict.corrections):
+        added = [t for t in result.verdict.corrections if t.correct == "0"]
+        if any(not WORD.search(t.wrong) for t in added) and 2 in map(order, formula.words):
             return "a number that is added can be a constant force"
         if line := self._special_motion(number) or self._value_in_time(formula, result):
             return f"it can hold with line {line}"
