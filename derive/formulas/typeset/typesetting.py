@@ -108,10 +108,8 @@ def _markup_and_binding(node: ast.expr) -> tuple[str, int]:
             return _operand(left, PRODUCT) + TIMES + gap + _operand(right, PRODUCT), PRODUCT
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             if isinstance(left, ast.Constant) or not isinstance(right, ast.Constant):
-                return (
-                    f"<mfrac>{grouped(_markup(left))}{denominator(grouped(_markup(right)))}</mfrac>",
-                    PRODUCT,
-                )
+                above, below = grouped(_markup(left)), denominator(grouped(_markup(right)))
+                return f"<mfrac>{above}{below}</mfrac>", PRODUCT
             # a numeric factor before a long numerator, instead of a long fraction
             factor = ast.BinOp(ast.Constant(1), ast.Div(), right)
             return _markup_and_binding(ast.BinOp(factor, ast.Mult(), left))

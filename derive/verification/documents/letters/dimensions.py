@@ -118,7 +118,7 @@ class _Equations:
                 self._known[name] = GRAVITY
         for name in (*letters.coordinates, *letters.parameters):
             letter, is_coordinate = name.partition("_")[0], name in letters.coordinates
-            if letters.are_of_program and STATE.fullmatch(name):
+            if is_coordinate and letters.are_of_program and STATE.fullmatch(name):
                 continue
             if letter in (COORDINATES if is_coordinate else PARAMETERS):
                 self._known[name] = {LENGTH: Fraction(1)}

@@ -45,7 +45,7 @@ ABOUT_FREQUENCIES = re.compile(
 OF_SMALL_MOTIONS = "it is that of small motions"
 
 #: Energies that have an arbitrary constant.
-ENERGIES = ("energy", "hamiltonian")
+TOTAL_ENERGIES = ("energy", "hamiltonian")
 
 
 class SideComparison:
@@ -135,7 +135,7 @@ class SideComparison:
     def _is_up_to_a_constant(self, formula: DocumentFormula) -> bool:
         """Whether a formula states the energy or one of a part, or has a constant of its own."""
         has_constant = any(map(OWN_CONSTANT.fullmatch, formula.words))
-        is_energy = self._namespace.letters.quantities.get(formula.subject) in ENERGIES
+        is_energy = self._namespace.letters.quantities.get(formula.subject) in TOTAL_ENERGIES
         return has_constant or is_energy or energy_of_part(formula.subject) is not None
 
     def _is_substituted(self, difference: sp.Expr) -> bool:
