@@ -162,3 +162,10 @@ def test_constraints_without_a_motion_belong_to_no_meaning() -> None:
     assert not judges.has_motions(replace(free, constraints=(at_centre,)))
     of_nothing = StatedConstraint("f - f", frozenset({"f"}), 0)
     assert not judges.has_motions(replace(free, constraints=(of_nothing,)))
+
+
+def test_a_system_is_refuted_by_one_other_formula() -> None:
+    stating = replace(USUAL, stating=frozenset({0}))
+    failed = [{1}, {0}, {1, 2}, set[int]()]
+    matches = [Match(stating, 1, 3, frozenset(one)) for one in failed]
+    assert [one.is_refuted_by_one for one in matches] == [True, False, False, False]
