@@ -492,6 +492,56 @@ def test_a_momentum_is_divided_by_its_mass() -> None:
     assert [one.text for one in read_program(text, "Python").equations] == ["x_ddot = -k*x/m"]
 
 
+ORBIT = """
+r, v, h = np.array([1.0, 0.5]), np.array([0.0, 1.0]), 0.01
+def orbit(r, v, h):
+    for i in range(100):
+        middle = r + v*h/2
+        v += -k*middle/np.linalg.norm(middle)**3*h
+        r = middle + v*h/2
+        places.append(r)
+    return r
+orbit(r, v, h)
+"""
+
+
+def test_calls_give_the_lengths_of_vectors() -> None:
+    program = read_program(ORBIT, "Python")
+    expected = [f"r_{i}_ddot = -k*r_{i}/sqrt(r_0**2 + r_1**2)**3" for i in (0, 1)]
+    assert [one.text for one in program.equations] == expected
+    assert not program.unread  # the loop is read by itself
+    other = ORBIT + "r = np.array([1.0, 0.5, 2.0])\norbit(r, r, h)\n"
+    assert not read_program(other, "Python").equations
+
+
+def test_an_array_with_an_entry_for_each_time_is_no_vector() -> None:
+    text = """
+def rate(y, t):
+    return np.array([y[1], -k*y[0]])
+def solved(y, t, n):
+    for i in range(n):
+        a = rate(y[i], t[i])
+        b = rate(y[i] + h/2*a, t[i] + h/2)
+        y[i+1] = y[i] + h*b
+    return y
+y = solved(np.array([[1.0, 0.0], [0.0, 0.0]]), times, 1)
+"""
+    (midpoint,) = methods(text, "Python")
+    assert "order 2" in midpoint.text
+    assert not read_program(text, "Python").unread
+
+
+def test_values_can_be_kept_for_the_next_time() -> None:
+    text = """
+for i in range(n - 1):
+    v[i+1] = v[i] - k*x[i]/d[i]**3*h
+    x[i+1] = x[i] + v[i+1]*h
+    d[i+1] = sqrt(x[i+1]**2 + a**2)
+"""
+    (equation,) = read_program(text, "Python").equations
+    assert equation.text == "x_ddot = -k*x/sqrt(x**2 + a**2)**3"
+
+
 COUPLED = """
 def acceleration(t, x):
     return -k*x/m

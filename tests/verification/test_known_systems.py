@@ -25,6 +25,9 @@ ACCELERATIONS = {
     "damped_oscillator_by_rates": ["-2*gamma*x_dot - omega0**2*x"],
     "driven_oscillator_by_rates": ["A*cos(Omega*t)/m - 2*gamma*x_dot - omega0**2*x"],
     "duffing_unit_wells_sine": ["gamma*sin(Omega*t) - delta*x_dot + x - beta*x**3"],
+    "duffing_by_frequency_cosine": [
+        "gamma*cos(Omega*t) - delta*x_dot - omega0**2*x - beta*x**3",
+    ],
     "pendulum_by_arc": ["-g*sin(x/l)"],
     "projectile_with_linear_drag_by_mass_2": ["-c*x_dot", "-g - c*y_dot"],
     "duffing_two_wells_cosine": ["gamma*cos(Omega*t) - delta*x_dot + alpha*x - beta*x**3"],
@@ -143,6 +146,10 @@ EQUATIONS = {
         " - m*L*l/2*sin(theta)*theta_dot**2 + m*l**2/3*sin(2*theta)*phi_dot*theta_dot",
         "m*L*l/2*cos(theta)*phi_ddot + m*l**2/3*theta_ddot"
         " - m*l**2/6*sin(2*theta)*phi_dot**2 + m*g*l/2*sin(theta)",
+    ],
+    "pendulum_on_spring_cart": [
+        "(m1 + m2)*x_ddot + m2*l*cos(theta)*theta_ddot - m2*l*theta_dot**2*sin(theta) + k*x",
+        "cos(theta)*x_ddot + l*theta_ddot + g*sin(theta)",
     ],
     "two_rods_by_centres": [
         "(m1*l1**2/3 + m2*l1**2)*theta1_ddot + m2*l1*r2*cos(theta1 - theta2)*theta2_ddot"

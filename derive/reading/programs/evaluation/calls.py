@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from derive.reading.programs.evaluation.arrays import of_arrays, of_entries
+from derive.reading.programs.evaluation.arrays import entries, of_arrays, of_entries
 from derive.reading.programs.evaluation.context import (
     APPENDING,
     OWN_OBJECTS,
@@ -157,8 +157,12 @@ class Calls(Values):
         changed = assigned(function.body)
         variables = {k: v for k, v in self.variables.items() if root(k) not in own}
         named = dict(call.keywords)
+        lengths = self.context.passed.setdefault(id(function.body), {})
         for index, name in enumerate(parameters):
             if index < len(call.arguments):
+                if not isinstance(call.arguments[index], Name | Opaque):
+                    length = len(entries(call.arguments[index]) or ())
+                    lengths.setdefault(name, set()).add(length)
                 variables[name] = call.arguments[index]
                 place = self.place(given[index])
                 if place and changed[name]:

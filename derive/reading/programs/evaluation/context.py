@@ -35,6 +35,8 @@ class ProgramContext:
     fixed: dict[int, set[str]] = field(default_factory=dict)
     #: The bounds of loops over bodies in a function, by the identity of its statements.
     counts: dict[int, set[str]] = field(default_factory=dict)
+    #: Lengths of the arrays that calls pass for parameters, by the identity of the statements.
+    passed: dict[int, dict[str, set[int]]] = field(default_factory=dict)
     #: Lengths of arrays with an entry for each body.
     lengths: set[int] = field(default_factory=set)
     #: The values of those with one value in the whole program.

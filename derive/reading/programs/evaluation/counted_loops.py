@@ -48,7 +48,7 @@ def counts(body: tuple[Statement, ...]) -> set[str]:
         for key in (bound(loop.bounds[1]),)
         if key in {*_inner(loop.body)} or key in {*_dependent(loop)}
     }
-    ranges = [one for one in _trees(body) if isinstance(one, Slice)]
+    ranges = [one for one in expressions(body) if isinstance(one, Slice)]
     lower, upper = (
         {bound(one.lower) for one in ranges if one.lower},
         {bound(one.upper) for one in ranges if one.upper},
@@ -91,18 +91,18 @@ def _inner(body: tuple[Statement, ...]) -> Iterator[str]:
     for one in statements(body, inner=False):
         if isinstance(one, Loop) and one.bounds:
             yield bound(one.bounds[1])
-    yield from (bound(one.upper) for one in _trees(body) if isinstance(one, Comprehension))
+    yield from (bound(one.upper) for one in expressions(body) if isinstance(one, Comprehension))
 
 
 def _dependent(loop: Loop) -> Iterator[str]:
     """The bound of a loop if ranges that start at its index stand in its body."""
     assert loop.bounds
-    for one in _trees(loop.body):
+    for one in expressions(loop.body):
         if isinstance(one, Slice) and one.lower and mentions(one.lower, {loop.variable}):
             yield bound(loop.bounds[1])
 
 
-def _trees(body: Sequence[Statement]) -> Iterator[Expression]:
+def expressions(body: Sequence[Statement]) -> Iterator[Expression]:
     """All expressions in statements, with their parts."""
     for one in statements(tuple(body), inner=False):
         match one:
@@ -121,7 +121,7 @@ def _parts(tree: Expression) -> Iterator[Expression]:
 
 def has_index(loop: Loop) -> bool:
     """Whether the index of a loop stands in its body, unlike that of steps."""
-    return any(mentions(one, {loop.variable}) for one in _trees(loop.body))
+    return any(mentions(one, {loop.variable}) for one in expressions(loop.body))
 
 
 def changed_vectors(loop: Loop) -> set[str]:

@@ -56,6 +56,8 @@ class Findings:
         self._named: list[RateFunction] = []
         self._findings: list[Finding] = []
         self._unread: list[UnreadPart] = []
+        #: Lines of loops that change coordinates step by step, which are regions of their own.
+        self._loops: set[int] = set()
         #: Functions that are passed to integrators, and initial states.
         self._integrated: dict[str, Expression] = {}
         #: Whether sines are those of degrees, as a library for drawing allows.
@@ -162,6 +164,8 @@ class Findings:
         changed = {name for one in written for name in one.rates}
         pairs = tuple(one for one in updates.pairs if one.coordinate.variable not in changed)
         self._unread += [UnreadPart(line, why, region.name) for line, why in updates.unread]
+        if region.is_loop and (written or pairs or updates.recurrences):
+            self._loops.add(region.line)
         used, result = {}, list(written_pairs(updates, written))
         for pair in pairs:
             q = pair.coordinate.variable
@@ -215,7 +219,7 @@ class Findings:
                         q, items[index], self._context.constants, name
                     )
         functions = self._own_equations()
-        read = {equation.line for one in functions for equation in one.equations}
+        read = {equation.line for one in functions for equation in one.equations} | self._loops
         unread = {(one.line, one.reason): one for one in self._unread if one.line not in read}
         starts = {one.name: one.line for one in functions}
         findings: dict[tuple[int, str], Finding] = {}

@@ -13,7 +13,7 @@ from derive.reading.programs.evaluation.context import (
     static_path,
     targets,
 )
-from derive.reading.programs.evaluation.counted_loops import counts, integer
+from derive.reading.programs.evaluation.counted_loops import counts, expressions, integer
 from derive.reading.programs.evaluation.following import Follower
 from derive.reading.programs.evaluation.numeric_values import constant, number
 from derive.reading.programs.evaluation.values import root
@@ -31,6 +31,7 @@ from derive.reading.programs.syntax.trees import (
     Array,
     Expression,
     FunctionCall,
+    Item,
     Member,
     Name,
     Opaque,
@@ -200,12 +201,28 @@ def _regions(context: ProgramContext, body: tuple[Statement, ...]) -> Iterator[R
     yield from _followed(context, Definition(1, "", (), body), {}, body)
     for one in statements(body, inner=True):
         if isinstance(one, Definition):
-            yield from _followed(context, one, {}, one.body)
+            yield from _followed(context, one, _vectors(context, one), one.body)
         elif isinstance(one, Return) and isinstance(one.value, Lambda):
             yield from _followed(context, one.value.function, {}, one.value.function.body)
         elif isinstance(one, ExpressionStatement | Assignment):
             for callback in _callbacks(one.value):
                 yield from _followed(context, callback, {}, callback.body)
+
+
+def _vectors(context: ProgramContext, function: Definition) -> dict[str, Expression]:
+    """The parameters of a function for which all calls pass vectors of one length."""
+    first, result = context.language.first_index, dict[str, Expression]()
+    series = {  # with an index that counts, such as that of time
+        static_path(one.base)
+        for one in expressions(function.body)
+        if isinstance(one, Item) and any(number(index) is None for index in one.indices)
+    }
+    for name, lengths in context.passed.get(id(function.body), {}).items():
+        is_vector = len(lengths) == 1 and name not in series
+        if is_vector and 1 < (length := min(lengths)) <= MAX_VECTOR:
+            entry = (Name(function.line, f"{name}[{i + first}]") for i in range(length))
+            result[name] = Array(function.line, tuple(entry))
+    return result
 
 
 def _callbacks(tree: Expression) -> Iterator[Definition]:

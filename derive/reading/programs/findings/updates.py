@@ -112,9 +112,9 @@ class Updates:
         #: Values that are used in the next step, such as accelerations.
         self._kept: dict[str, Expression] = {}
         others = {
-            path: self._restored(value, set())
+            self._old.get(path, path): self._restored(value, set())
             for path, value in final.items()
-            if path not in self.updates and value.parts
+            if self._old.get(path, path) not in self.updates and value.parts
         }
         self._kept = {path: one for path, one in others.items() if path not in {*names(one)}}
         #: Coordinates that grow by their last change and an acceleration, by Verlet's method.

@@ -103,8 +103,12 @@ def _oscillators() -> Iterator[System]:
             parameters(m="kg", k="N/m", A="N", Omega="rad/s"), [PointMass(m, (x, 0))],
             potential=spring - A * x * drive,
         )  # fmt: skip
-        for sign, stiffness in (("", alpha), ("two_wells_", -alpha), ("unit_wells_", -1)):
-            own = {} if stiffness == -1 else {"alpha": ""}
+        for sign, stiffness, own in (
+            ("", alpha, {"alpha": ""}),
+            ("two_wells_", -alpha, {"alpha": ""}),
+            ("unit_wells_", -1, {}),
+            ("by_frequency_", omega0**2, {"omega0": "rad/s"}),
+        ):
             yield System(
                 f"duffing_{sign}{phase}", "Duffing's oscillator of a unit mass", place,
                 parameters(**own, beta="", gamma="", delta="", Omega="rad/s"),
@@ -126,6 +130,13 @@ def _coupled() -> Iterator[System]:
             potential=k1 * (x1 - ground)**2 / 2 + k2 * (x2 - x1)**2 / 2,
             dissipation=c2 * (velocity(x2) - velocity(x1))**2 / 2,
         )  # fmt: skip
+    yield System(
+        "pendulum_on_spring_cart", "Pendulum on a cart that a spring holds",
+        coordinates((x, "m"), (theta, "rad")),
+        parameters(m1="kg", m2="kg", k="N/m", l="m", g="m/s^2"),
+        [PointMass(m1, (x, 0)), PointMass(m2, (x + l * sin(theta), -l * cos(theta)))],
+        potential=k * x**2 / 2 - m2 * g * l * cos(theta),
+    )  # fmt: skip
     yield System(
         "three_oscillators", "Three masses between springs", lengths(x1, x2, x3),
         parameters(m1="kg", m2="kg", m3="kg", k="N/m"),
