@@ -506,7 +506,7 @@ orbit(r, v, h)
 
 
 def test_calls_give_the_lengths_of_vectors() -> None:
-    program = read_program(ORBIT, "Python")
+    program = read_program(ORBIT + "orbit(start, speed, h)\n", "Python")
     expected = [f"r_{i}_ddot = -k*r_{i}/sqrt(r_0**2 + r_1**2)**3" for i in (0, 1)]
     assert [one.text for one in program.equations] == expected
     assert not program.unread  # the loop is read by itself
@@ -531,6 +531,18 @@ y = solved(np.array([[1.0, 0.0], [0.0, 0.0]]), times, 1)
     assert not read_program(text, "Python").unread
 
 
+def test_a_loop_of_verlet_steps_is_read_by_itself() -> None:
+    text = """
+def positions(x, n):
+    for i in range(1, n):
+        x[i+1] = 2*x[i] - x[i-1] - k*x[i]*h**2
+    return x
+"""
+    program = read_program(text, "Python")
+    assert [one.text for one in program.equations] == ["x_ddot = -k*x"]
+    assert not program.unread
+
+
 def test_values_can_be_kept_for_the_next_time() -> None:
     text = """
 for i in range(n - 1):
@@ -540,6 +552,68 @@ for i in range(n - 1):
 """
     (equation,) = read_program(text, "Python").equations
     assert equation.text == "x_ddot = -k*x/sqrt(x**2 + a**2)**3"
+
+
+def equations(text: str, language: str) -> list[str]:
+    return [one.text for one in read_program(text, language).equations]
+
+
+def test_a_velocity_can_be_damped_before_its_change() -> None:
+    text = "while (true) {\n  v *= c;\n  v += -k*x;\n  x += v;\n}\n"
+    assert equations(text, "JavaScript") == ["x_ddot = -k*x"]
+
+
+@pytest.mark.parametrize(("value", "expected"), [
+    ("a{-k*x/m}", ["x_ddot = -k*x/m"]), ("a[1]{-k/m}", ["x_0_ddot = -k/m"]),
+])  # fmt: skip
+def test_a_value_in_braces_is_no_array(value: str, expected: list[str]) -> None:
+    text = f"void step() {{\n  double {value};\n  v += a*h;\n  x += v*h;\n}}\n"
+    assert equations(text, "C++") == expected
+
+
+def test_a_word_of_fixed_form_can_be_continued() -> None:
+    text = """
+      program spring
+      do while (t < 9)
+        v = v - k*x*del
+     1ta
+        x = x + v*delta
+      end do
+      end program spring
+"""
+    assert equations(text, "Fortran 77") == ["x_ddot = -k*x"]
+    apart = text.replace("del\n     1ta", "delta\n     1 - 3")
+    assert equations(apart, "Fortran 77") == ["x_ddot = (-k*x*delta - 3)/delta"]
+
+
+@pytest.mark.parametrize("types", ["{T<:Number}", "{S, T}", "T"])
+def test_types_of_parameters_convert_numbers(types: str) -> None:
+    text = f"function f(u::Vector{{T}}, k) where {types}\n    [u[2], -T(2.0)*k*u[1]]\nend\n"
+    assert equations(text, "Julia") == ["u_1_ddot = -2.0*k*u_1"]
+    assert not equations(text.replace("T(2.0)", "R(2.0)"), "Julia")
+
+
+@pytest.mark.parametrize(("name", "meaning"), [
+    ("tempo", "t"), ("sim_time", "t"), ("self.t", "t"), ("theta", "theta"), ("phase", "phase"),
+])  # fmt: skip
+def test_a_variable_that_grows_by_the_step_size_is_the_time(name: str, meaning: str) -> None:
+    text = "while run:\n    t0 += dt\n    v += (sin(w*t0) - k*x)*dt\n    x += v*dt\n"
+    text = text.replace("t0", name)
+    assert equations(text, "Python") == [f"x_ddot = sin(w*{meaning}) - k*x"]
+    faster = text.replace(f"{name} += dt", f"{name} += 2*dt")
+    assert equations(faster, "Python") == [f"x_ddot = sin(w*{name.removeprefix('self.')}) - k*x"]
+
+
+def test_parameters_can_state_accelerations() -> None:
+    text = "function f(ddu, du, u, p, t)\n    ddu[1] = -k*u[2]\n    ddu[2] = -k*u[1]\nend\n"
+    assert equations(text, "Julia") == ["u_1_ddot = -k*u_2", "u_2_ddot = -k*u_1"]
+    first_order = text.replace("ddu, du, u", "dw, du, u").replace("ddu", "dw")
+    assert equations(first_order, "Julia") == ["u_1_dot = -k*u_2", "u_2_dot = -k*u_1"]
+
+
+def test_accelerations_in_arrays_are_known_by_their_names() -> None:
+    text = "function f(p, x, dx, ddx)\n    ddx[1] = -k*x[1] - c*dx[1]\nend\n"
+    assert equations(text, "Julia") == ["x_1_ddot = -k*x_1 - c*x_1_dot"]
 
 
 COUPLED = """

@@ -13,6 +13,7 @@ ACCELERATIONS = {
     "scaled_pendulum": ["-omega0**2*sin(theta)"],
     "forced_pendulum_sine": ["-g/l*sin(theta) + A*sin(Omega*t)/(m*l**2)"],
     "accelerated_pendulum_sine": ["-g/l*sin(theta) + A*sin(Omega*t)"],
+    "small_accelerated_pendulum_cosine": ["-g/l*theta + A*cos(Omega*t)"],
     "scaled_forced_pendulum_cosine": ["-omega0**2*sin(theta) + A*cos(Omega*t)"],
     "shaken_pendulum_cosine_up": ["-(g - a*Omega**2*cos(Omega*t))/l*sin(theta)"],
     "shaken_pendulum_sine_down": ["-(g + a*Omega**2*sin(Omega*t))/l*sin(theta)"],

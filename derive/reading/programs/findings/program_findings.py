@@ -38,12 +38,12 @@ from derive.reading.programs.program import (
     RateFunction,
     UnreadPart,
 )
-from derive.reading.programs.syntax.code import Assignment, Statement
+from derive.reading.programs.syntax.code import Assignment, Definition, Statement
 from derive.reading.programs.syntax.formula_text import UnwrittenError, Writer
 from derive.reading.programs.syntax.trees import Expression, Name, Opaque
 
-#: Names of accelerations, such as theta_ddot and ddx.
-NAMED = re.compile(r"([^\W\d]\w*?)_?ddot|dd([^\W\d]\w*)")
+#: Names of accelerations, such as theta_ddot, ddx, and ddx[1] of arrays.
+NAMED = re.compile(r"(?:([^\W\d]\w*?)_?ddot|dd([^\W\d]\w*))(\[\d+\])?")
 
 
 class Findings:
@@ -78,7 +78,8 @@ class Findings:
         for path, state in integrated(follower.calls):
             if entries(state) is not None:
                 self._integrated.setdefault(path.rpartition(".")[2], state)
-        result = rates(region.definition, region.follower)
+        has_accelerations = _is_of_second_order(region.definition)
+        result = None if has_accelerations else rates(region.definition, region.follower)
         if result and result.is_step:
             lines = result.lines
             follower.steps += [
@@ -125,20 +126,25 @@ class Findings:
         }
 
     def _add_named(self, region: Region) -> None:
-        """Add accelerations by their names, as xddot of a function with xdot, as a last choice."""
+        """Add accelerations by their names, as xddot of a function with xdot.
+
+        They are a last choice, unless the parameters of the function state them.
+        """
         follower = region.follower
         names = Names(follower.steps)
         equations = FunctionEquations(region.name, names)
+        is_stated = _is_of_second_order(region.definition)
         found = {step.path: step for step in follower.steps if NAMED.fullmatch(step.path)}
         used = {path for step in found.values() for path in paths(step.value)}
         pairs = []
         for step in found.values():
             match = NAMED.fullmatch(step.path)
-            name = (match and (match[1] or match[2])) or ""
+            name, entry = (match[1] or match[2], match[3] or "") if match else ("", "")
             rates = (f"{name}dot", f"{name}_dot", f"d{name}")
-            values = (follower.variables.get(one, Name(step.line, one)) for one in (name, *rates))
+            given = (f"{one}{entry}" for one in (name, *rates))
+            values = (follower.variables.get(one, Name(step.line, one)) for one in given)
             q, *rest = (one.path if isinstance(one, Name) else "" for one in values)
-            v = next((one for one in rest if one in used), "")
+            v = rest[-1] if is_stated else next((one for one in rest if one in used), "")
             pairs.append((step, q, v))
             if q and v:
                 names.define(v, f"{names(q)}_dot")
@@ -148,7 +154,8 @@ class Findings:
         equations.end()
         if equations.equations and not equations.unread:
             own = tuple(equations.equations)
-            self._named.append(RateFunction(region.name, region.line, own, names.read))
+            functions = self._functions if is_stated else self._named
+            functions.append(RateFunction(region.name, region.line, own, names.read))
 
     def _add_updates(self, region: Region, *, is_met: bool) -> None:
         updates = Updates(region.follower, is_met=is_met)
@@ -166,6 +173,8 @@ class Findings:
         self._unread += [UnreadPart(line, why, region.name) for line, why in updates.unread]
         if region.is_loop and (written or pairs or updates.recurrences):
             self._loops.add(region.line)
+        for path in updates.times:
+            names.define(path, "t")
         used, result = {}, list(written_pairs(updates, written))
         for pair in pairs:
             q = pair.coordinate.variable
@@ -271,6 +280,14 @@ def _misuses(
     for line in updates.misplaced:
         text = "a stage of a Runge-Kutta method adds another to the rate, not to the state"
         yield Finding(line, "runge_kutta", function, text, True)
+
+
+def _is_of_second_order(function: Definition) -> bool:
+    """Whether parameters are accelerations, velocities and coordinates, as in Julia's libraries."""
+    match [one.name for one in function.parameters]:
+        case [accelerations, velocities, coordinates, *_]:
+            return (accelerations, velocities) == (f"dd{coordinates}", f"d{coordinates}")
+    return False
 
 
 def _is_part(rates: tuple[ProgramEquation, ...], others: tuple[ProgramEquation, ...]) -> bool:

@@ -41,6 +41,8 @@ TIMED = re.compile(r"(.*?)\[([^\W\d]\w*)([+-]\d+)?\](.*)")
 
 
 NO_STEP = NumberLiteral(0, "1")
+#: A name of the time, such as tempo and sim_time, and not theta.
+TIME = re.compile(r"(?i)(?:^|[._])(?:t(?:em.*)?|.*time|zeit)$")
 LAST = re.compile(r"(.*?)\[(-1|end)()\](.*)")
 
 
@@ -185,7 +187,7 @@ class Updates:
     def _damped(self, old: str, line: int, result: list[Term]) -> Update | None:
         """The update of a variable that is first multiplied by a factor."""
         for term in result:
-            parts = factors(term[1], self._is_whole)
+            parts = factors(term[1], lambda tree: self._owners.get(id(tree), old) != old)
             others = [one for one in parts if one != Name(0, old)]
             if term[0] == 1 and len(others) == len(parts) - 1 and others:
                 rest = tuple(one for one in result if one is not term)
@@ -204,6 +206,16 @@ class Updates:
         ]  # fmt: skip
         velocities = {pair.velocity.variable for pair in result}
         return tuple(pair for pair in result if pair.coordinate.variable not in velocities)
+
+    @cached_property
+    def times(self) -> tuple[str, ...]:
+        """The variables that grow by the step size alone and have names of times."""
+        steps = [pair.step for pair in self.pairs if pair.step]
+        return tuple(
+            one.variable
+            for one in self.updates.values()
+            if TIME.search(one.variable) and [*one.increment] in [[(1, step)] for step in steps]
+        )
 
     def _pair(self, coordinate: Update) -> Pair | None:
         for sign, term in coordinate.increment:

@@ -73,14 +73,14 @@ language = Language(
     },
 )
 
-#: Lines of fixed form: comments, and those that continue the line before.
+#: Lines of fixed form: comments, and those that continue the line before, even within a word.
 COMMENT = re.compile(r"^[cC*].*$", re.MULTILINE)
-CONTINUED = re.compile(r"\n {5}[^\s0]")
+CONTINUED = re.compile(r"(?:(\b\w+)(?=\n {5}[^\s0]\w))?\n {5}[^\s0]")
 
 
 def prepared(text: str) -> str:
     """The text in free form, with the same lines."""
-    return CONTINUED.sub("&\n      ", COMMENT.sub("", text))
+    return CONTINUED.sub(r"&\n      \1", COMMENT.sub("", text))
 
 
 fixed_form = replace(

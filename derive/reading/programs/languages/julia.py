@@ -8,10 +8,19 @@ from derive.reading.programs.languages.language import Language
 NUMBER = re.compile(r"(?<![\w.])(\d[\d_]*+\.?+\d*+(?:e[+-]?\d++)?+)(?=[ \t]+[^\W\d])")
 #: An operator between a number and a bracket; the grammar would read the call of a function.
 OPERATOR = re.compile(r"(?<=\d)(\.?)([-+*/^])(?=\()")
+#: Parameters that are types, whose calls convert numbers.
+TYPES = re.compile(r"\bwhere\s+(?:\{([^{}]*)\}|(\w+))")
 
 
 def prepared(text: str) -> str:
-    """The text with such numbers in brackets, and spaces around such operators."""
+    """The text with such numbers in brackets, spaces around such operators, no conversions."""
+    types = {
+        word.partition("<:")[0].strip()
+        for braces, single in TYPES.findall(text)
+        for word in (braces or single).split(",")
+    }
+    for name in types:
+        text = re.sub(rf"\b{re.escape(name)}(?=\()", " " * len(name), text)
     return OPERATOR.sub(r"\1 \2 ", NUMBER.sub(r"(\1)", text))
 
 

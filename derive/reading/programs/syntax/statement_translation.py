@@ -183,7 +183,8 @@ class StatementTranslator(DefinitionTranslator):
             return
         signs = [text(one) for one in node.children if one not in (left, right)]
         operator = next((one[:-1].strip(".:") for one in signs if one.endswith("=")), "")
-        if self.role(right) == "arguments":  # of a constructor of C++
+        is_initialized = self.role(right) == "array" and self.role(left) == "name" and not signs
+        if self.role(right) == "arguments" or is_initialized:  # x(1) and x{1} of C++
             values = self.children(right)
             array = Array(line(right), self._trees(values))
             value = self.tree(values[0]) if len(values) == 1 else array

@@ -225,7 +225,10 @@ class _Evidence:
         is_several = is_unsure and len(self._wrong) > 1
         hardly_agrees = any(_agreeing(*one) < AGREEING for one in self._results if _is_wrong(one))
         has_none = self._holding == 0 and (
-            is_several or hardly_agrees or bool(self._candidate.constraints)
+            is_several
+            or hardly_agrees
+            or bool(self._candidate.constraints)
+            or any(_added(*one) for one in self._results)
         )
         is_open = self._is_partial or self._candidate.has_unusual_letters
         return self._is_known and (is_open or not has_all or has_none or slips > few)
@@ -480,13 +483,17 @@ def _adds_letters(
 
     Of a system that equations state, these are all letters.
     """
-    terms = [one for one in result.verdict.corrections if one.correct != f"{one.wrong}_dot"]
-    added = {w for one in terms for w in WORD.findall(one.correct)}  # but for a lost dot
+    added = _added(formula, result)
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
     loads |= {*_of_drives(candidate)}
-    return bool(
-        (added - {*formula.words, *FUNCTIONS}) & (added if candidate.is_of_equations else loads)
-    )
+    return bool(added & (added if candidate.is_of_equations else loads))
+
+
+def _added(formula: DocumentFormula, result: SideVerdict) -> set[str]:
+    """The letters of corrections that a formula has not, but for a lost dot."""
+    terms = [one for one in result.verdict.corrections if one.correct != f"{one.wrong}_dot"]
+    names = {word for one in terms for word in WORD.findall(one.correct)}
+    return names - {*formula.words, *FUNCTIONS}
 
 
 def _of_drives(candidate: SystemCandidate) -> Iterator[str]:

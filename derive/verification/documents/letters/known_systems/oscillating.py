@@ -48,11 +48,12 @@ def _pendulums() -> Iterator[System]:
             parameters(m="kg", l="m", g="m/s^2", A="N m", Omega="rad/s"),
             [PointMass(m, (l * theta, 0))], potential=-m * g * l * cos(theta) - A * theta * drive,
         )  # fmt: skip
-        yield System(
-            f"accelerated_pendulum_{phase}", "Pendulum with a harmonic acceleration", angle,
-            parameters(l="m", g="m/s^2", A="1/s^2", Omega="rad/s"), [PointMass(1, (theta, 0))],
-            potential=-g / l * cos(theta) - A * theta * drive,
-        )  # fmt: skip
+        for size, fall in (("", -cos(theta)), ("small_", theta**2 / 2)):
+            yield System(
+                f"{size}accelerated_pendulum_{phase}", "Pendulum with a harmonic acceleration",
+                angle, parameters(l="m", g="m/s^2", A="1/s^2", Omega="rad/s"),
+                [PointMass(1, (theta, 0))], potential=g / l * fall - A * theta * drive,
+            )  # fmt: skip
         yield System(
             f"scaled_forced_pendulum_{phase}", "Pendulum with a harmonic acceleration", angle,
             parameters(A="1/s^2", Omega="rad/s", omega0="rad/s"), [PointMass(1, (theta, 0))],
