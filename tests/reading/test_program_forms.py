@@ -594,7 +594,7 @@ def test_types_of_parameters_convert_numbers(types: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "meaning"), [
-    ("tempo", "t"), ("sim_time", "t"), ("self.t", "t"), ("theta", "theta"), ("phase", "phase"),
+    ("tempo", "t"), ("sim_time", "t"), ("self.tempo", "t"), ("theta", "theta"), ("phase", "phase"),
 ])  # fmt: skip
 def test_a_variable_that_grows_by_the_step_size_is_the_time(name: str, meaning: str) -> None:
     text = "while run:\n    t0 += dt\n    v += (sin(w*t0) - k*x)*dt\n    x += v*dt\n"
@@ -606,7 +606,10 @@ def test_a_variable_that_grows_by_the_step_size_is_the_time(name: str, meaning: 
 
 def test_parameters_can_state_accelerations() -> None:
     text = "function f(ddu, du, u, p, t)\n    ddu[1] = -k*u[2]\n    ddu[2] = -k*u[1]\nend\n"
-    assert equations(text, "Julia") == ["u_1_ddot = -k*u_2", "u_2_ddot = -k*u_1"]
+    other = "function g(y)\n    [y[2], -q*y[1]]\nend\n"
+    assert equations(text + other, "Julia") == [
+        "u_1_ddot = -k*u_2", "u_2_ddot = -k*u_1", "y_1_ddot = -q*y_1",
+    ]  # fmt: skip
     first_order = text.replace("ddu, du, u", "dw, du, u").replace("ddu", "dw")
     assert equations(first_order, "Julia") == ["u_1_dot = -k*u_2", "u_2_dot = -k*u_1"]
 

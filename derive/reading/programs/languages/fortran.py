@@ -75,7 +75,7 @@ language = Language(
 
 #: Lines of fixed form: comments, and those that continue the line before, even within a word.
 COMMENT = re.compile(r"^[cC*].*$", re.MULTILINE)
-CONTINUED = re.compile(r"(?:(\b\w+)(?=\n {5}[^\s0]\w))?\n {5}[^\s0]")
+CONTINUED = re.compile(r"(\b\w+)?\n {5}[^\s0]")
 
 
 def prepared(text: str) -> str:
