@@ -9,6 +9,7 @@ from derive.reading.latex.display_reader import formulas as statements_of
 from derive.system.files.system_catalogue import load
 from derive.verification.documents.judgement import _without_foreign
 from derive.verification.documents.letters.candidates import BY_EQUATIONS, STATED, SystemCandidate
+from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.rules.consequences import Contradictions, WithVerdict
 from derive.verification.documents.rules.evidence import weighed
@@ -58,6 +59,7 @@ def stated(name: str, stating: frozenset[int] = frozenset()) -> SystemCandidate:
 
 @pytest.mark.parametrize(("energy", "expected"), [
     (r"T = m\dot s^2", "context"), (r"T = m(\dot s^2 + \dot y^2)", "wrong"),
+    (r"T = m(\dot s^2 + \dot y^2 + \dot z^2)", "context"),
 ])  # fmt: skip
 def test_equations_of_a_further_coordinate_refute_no_energy(energy: str, expected: str) -> None:
     *equations, last = formulas(r"m\ddot s = - k s", r"\ddot y = - g", energy)
@@ -68,6 +70,47 @@ def test_equations_of_a_further_coordinate_refute_no_energy(energy: str, expecte
     candidate = stated(BY_EQUATIONS, frozenset({0, 1}))
     judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
     assert judged[-1][1].verdict.verdict == expected
+
+
+def known(name: str, coordinates: tuple[str, ...], **letters: str) -> SystemCandidate:
+    """A candidate of a known system in its usual form."""
+    count = range(len(coordinates))
+    signs = tuple(tuple(int(i == k) for i in count) for k in count)
+    return SystemCandidate(named(name), coordinates, signs, (0,) * len(coordinates), letters)
+
+
+def with_correction(formula: DocumentFormula, wrong: str, correct: str) -> WithVerdict:
+    _, result = with_verdict(formula, "wrong")
+    corrected = replace(result.verdict, corrections=(Correction(wrong, correct),))
+    return formula, replace(result, verdict=corrected)
+
+
+@pytest.mark.parametrize(("correct", "expected"), [
+    ("2*w*y_dot*sin(s)", "context"), ("2*w*sin(w*s)", "wrong"),
+])  # fmt: skip
+def test_a_known_system_of_which_nothing_holds_adds_no_letters(correct: str, expected: str) -> None:
+    (formula,) = formulas(r"\ddot x = -\frac gl x - c \dot x + \frac12\sin(w s)")
+    letters = {"g": "g", "l": "l", "Omega": "w", "latitude": "s"}
+    results = [with_correction(formula, "1/2*sin(w*s)", correct)]
+    candidate = known("small_foucault", ("x", "y"), **letters)
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert judged[0][1].verdict.verdict == expected
+
+
+@pytest.mark.parametrize(("latex", "wrong", "correct", "expected"), [
+    (r"m\ddot x = 0", "", "k*x", "context"),  # a free motion
+    (r"m\ddot x = 0", "0", "-k*x", "context"),
+    (r"m\ddot x + x = 0", "x", "k*x", "wrong"),
+    (r"m\ddot x + k = 0", "", "k*x", "wrong"),
+])  # fmt: skip
+def test_an_equation_without_a_term_of_a_known_system_can_be_another_case(
+    latex: str, wrong: str, correct: str, expected: str
+) -> None:
+    first, last = formulas(r"m\ddot x + k x = 0", latex)
+    results = [with_verdict(first, "verified"), with_correction(last, wrong, correct)]
+    candidate = known("oscillator", ("x",), m="m", k="k")
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert judged[1][1].verdict.verdict == expected
 
 
 @pytest.mark.parametrize(("start", "kind", "expected"), [

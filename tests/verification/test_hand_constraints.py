@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from derive.mechanics.constraints import differentiated_constraints
 from derive.verification.hand_derivation_files import judge
 from derive.verification.judging.verdict import Verdict
 
@@ -173,6 +174,17 @@ def test_substitution_into_the_lagrangian_is_recognised(system: str, tmp_path: P
         assert "must not be used before the Lagrangian is differentiated" in one.note
     assert [one.note.count("without") for one in verdicts] == [1, 1, 0]
     assert verdicts[-1].note.startswith("it is the Lagrangian of motions alone")
+
+
+def test_integrability_of_constraints_is_decided_for_few_slips(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decisions = []
+    monkeypatch.setattr(
+        differentiated_constraints, "integrability", lambda *given: decisions.append(given)
+    )
+    judged(tmp_path, "sleigh", ["(J + 2*m*a**2)*theta_ddot = 0"], 'lagrangian = "m*x_dot**2"')
+    assert not decisions  # which take long for some constraints
 
 
 def test_forces_count_in_equations_by_substitution(tmp_path: Path) -> None:

@@ -128,3 +128,10 @@ def test_unit_vectors_along_fixed_axes_and_vector_products(
     found = verdicts(tmp_path, AREA.replace(old, new))
     assert [k for k, one in enumerate(found) if one == "wrong"] == [number] * bool(old)
     assert old or {*found} == {"definition", "verified"}
+
+
+def test_components_of_vectors_that_are_not_known_are_not_compared(tmp_path: Path) -> None:
+    text = r"""$$\vec r = \vec r\,' - \vec r_0$$ $$\vec v = \dot{\vec r}$$
+$$\vec\omega = \omega\hat z$$ in the directions $\hat x$, $\hat y$:
+$$\dot v_x = -2(\omega_y v_z - \omega_z v_y)$$ $$\vec a = \vec\omega\times\vec b$$"""
+    assert verdicts(tmp_path, text)[2:] == ["context"] * 3

@@ -783,3 +783,16 @@ def test_a_separate_coordinate_leaves_the_energies_of_others_to_state_the_system
     assert verdicts(tmp_path, SLIDING + r"$$\ddot y = - g$$")[:-1] == expected
     slip = SLIDING.replace(r"+ m l\cos\theta\,\ddot s", r"- m l\cos\theta\,\ddot s")
     assert verdicts(tmp_path, slip)[3] == "wrong"
+
+
+def test_a_number_can_be_another_one_in_another_case(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m\dot x^2 - \frac12 k x^2$$ $$m\ddot x = - k x$$ $$b = 1$$
+$$a = -b$$ or $$a = b$$ with $$\omega = \sqrt{\frac km}$$ and $$\omega = \sqrt{\frac{k}{b}}$$"""
+    expected = ["verified", "verified", "definition", "definition", "definition"]
+    assert verdicts(tmp_path, text)[:5] == expected
+
+
+def test_an_acceleration_of_another_system_has_no_value_of_its_own(tmp_path: Path) -> None:
+    text = r"""$$\ddot x = -g\sin\theta$$ $$\ddot x = g\sin\theta$$
+$$T = \frac12 m\dot r^2 + \frac12 m (r\dot\theta)^2$$"""
+    assert "wrong" not in verdicts(tmp_path, text)

@@ -40,7 +40,8 @@ from derive.verification.documents.statements import DocumentFormula, Translated
 LEAST, ENOUGH = 0.3, 3
 #: Numbers in the moments of inertia of rods.
 THIRD = re.compile(r"\b(?:3|6|12|24)\b")
-#: The least part if the meaning of letters is not the usual one.
+#: The least part if the meaning of letters is not the usual one, and of all formulas that must
+#: hold for a known system.
 UNUSUAL = 0.4
 #: What a system can rest on, of two with the same score the last.
 BASES = ("equations", "energies", "catalogue", "positions")
@@ -238,7 +239,9 @@ def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidat
 
 def _is_supported(best: Match, least: float) -> bool:
     """Whether enough comparisons hold: more of them if most do not, or letters are unusual."""
-    if best.support < 0 and best.compared - len(best.failed) < ENOUGH:
+    held = best.compared - len(best.failed)
+    is_known = best.candidate.basis == "catalogue"
+    if best.support < 0 and held < (UNUSUAL * best.compared if is_known else ENOUGH):
         return False
     holding, compared = best.holding - best.stating, best.compared - best.stating
     if best.candidate.is_usual:
@@ -332,7 +335,7 @@ def alternatives(
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
         taken, rival_one = result.match.candidate, rival.candidate
         is_odd = taken.is_usual and rival_one.is_turned
-        opposes = {taken.basis, rival_one.basis} == {"catalogue"} and not is_odd
+        opposes = taken.basis == "catalogue" and not is_odd
         changed = tuple(_differences(pairs, written, opposes))
         kinds = tuple((one.line, one.latex, one.verdict) for one in changed)
         is_usual = rival_one.is_usual and not taken.is_usual

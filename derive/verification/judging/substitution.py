@@ -16,23 +16,25 @@ def substituted_constraints(model: ReferenceSystem, kind: str, value: sp.Expr) -
     Such a Lagrangian is that of motions alone: its derivatives lack the displacements by which
     varied motions leave the constraints.
     """
-    derivation = model.derivation
-    if not derivation.system.conditions or not derivation.integrability.nonholonomic:
+    derivation, note = model.derivation, ""
+    if not derivation.system.conditions:
         return ""
     reason = (
         "constraints that are not integrable must not be used before the Lagrangian is "
         "differentiated: they restrict velocities, not varied motions; add multipliers instead"
     )
     if kind == "lagrangian" and model.motions.is_small(value - derivation.lagrangian):
-        return f"it is the Lagrangian of motions alone; {reason}"
-    if kind == "euler_lagrange":
+        note = f"it is the Lagrangian of motions alone; {reason}"
+    elif kind == "euler_lagrange":
         for removed in _removals(model):
             if any(
                 _is_multiple(model, value, wrong, removed) for wrong in _equations(model, removed)
             ):
                 names = ", ".join(map(str, removed))
-                return f"it follows from the Lagrangian without {names}; {reason}"
-    return ""
+                note = f"it follows from the Lagrangian without {names}; {reason}"
+                break
+    # which takes long for some constraints
+    return note if note and derivation.integrability.nonholonomic else ""
 
 
 def _removals(model: ReferenceSystem) -> Iterator[Removed]:

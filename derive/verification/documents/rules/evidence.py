@@ -185,7 +185,9 @@ class _Evidence:
             return other_case
         if self._holds_constant(formula):
             return "a derivative can hold a constant of the motion"
-        if result.kind in OF_ENERGIES and self._has_further_coordinates:
+        if result.kind in OF_ENERGIES and (
+            self._has_further_coordinates or self._has_further_rates(formula)
+        ):
             return other_case
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
             return other_case if _is_driven(self._candidate) else ""
@@ -334,6 +336,11 @@ class _Evidence:
         moving = {stem(word) for formula in energies for word in formula.words}
         return self._candidate.is_of_equations and not {*self._candidate.coordinates} <= moving
 
+    def _has_further_rates(self, formula: DocumentFormula) -> bool:
+        """Whether an energy has rates of coordinates that the stating equations do not contain."""
+        moving = {stem(word) for word in formula.words if order(word)}
+        return self._candidate.is_of_equations and not moving <= {*self._candidate.coordinates}
+
     @cached_property
     def _has_cases(self) -> bool:
         """Whether an energy is stated again, with other equations, as for another case."""
@@ -481,12 +488,18 @@ def _adds_letters(
 ) -> bool:
     """Whether a correction has forces or friction that a formula, as of a case without, has not.
 
-    Of a system that equations state, these are all letters.
+    Of a system that equations state, these are all letters; of a known system, the parameters of
+    whole terms, too.
     """
     added = _added(formula, result)
+    if candidate.is_of_equations:
+        return bool(added)
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
     loads |= {*_of_drives(candidate)}
-    return bool(added & (added if candidate.is_of_equations else loads))
+    lacks_terms = any(one.wrong in ("", "0") for one in result.verdict.corrections)
+    if candidate.basis == "catalogue" and lacks_terms:
+        loads |= {*candidate.parameters.values()}
+    return bool(added & loads)
 
 
 def _added(formula: DocumentFormula, result: SideVerdict) -> set[str]:

@@ -30,6 +30,12 @@ RATE_OF = {"v_column": "r_column", "a_column": "v_column", "vbar": "rbar", "abar
 ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, IndexError)
 
 
+def _cross(one: Value, other: Value) -> Value:
+    if not isinstance(one, sp.MatrixBase) or not isinstance(other, sp.MatrixBase):
+        raise ExpressionError("the cross product of what is no vector")
+    return one.cross(other)
+
+
 class Identities:
     """The formulas of a document as identities in letters, which may be any functions of time."""
 
@@ -128,7 +134,7 @@ class Identities:
                 yield holds, used
 
     def _value(self, text: str, depth: int = 0) -> Value:
-        functions = {**FUNCTIONS, "ddt": self._rate, "cross": lambda one, other: one.cross(other)}
+        functions = {**FUNCTIONS, "ddt": self._rate, "cross": _cross}
         words = {*WORD.findall(text)} - {*functions}
         return parse(text, {**functions, **{word: self._name(word, depth) for word in words}})
 
@@ -144,7 +150,10 @@ class Identities:
             value = self._rate(self._name(place, depth + 1))
         if value is None and (column := self._column(name)):
             unit = self._units[name.removeprefix(column.removesuffix("column"))]
-            value = self._name(column, depth + 1).dot(self._name(unit, depth + 1))
+            vector, direction = (self._name(one, depth + 1) for one in (column, unit))
+            if not isinstance(vector, sp.MatrixBase) or not isinstance(direction, sp.MatrixBase):
+                raise ExpressionError(f"{name} is the component of a vector that is not known")
+            value = vector.dot(direction)
         if value is None:
             return TIME if word == "t" else self._symbol(word)
         for _ in range(order(word)):

@@ -33,7 +33,7 @@ class OtherStatements:
 
     def verdict(self, formula: DocumentFormula, result: SideVerdict) -> SideVerdict | None:
         """The verdict on a formula for which `result` is not correct; None if it is no other."""
-        if self.relates_parameters(formula):
+        if self.relates_parameters(formula) or self._is_other_number(formula):
             return plain("definition", formula, "")
         operands = (self._namespace.derivatives.get(one, (one,))[0] for one in formula.words)
         if letters := sorted(self._ambiguous.intersection(operands)):
@@ -117,6 +117,13 @@ class OtherStatements:
         return is_relation and all(
             callable(one) or (isinstance(one, sp.Expr) and one.free_symbols <= known)
             for one in values
+        )
+
+    def _is_other_number(self, formula: DocumentFormula) -> bool:
+        """Whether a formula gives a letter that is a number another one, as in another case."""
+        values = [self._namespace.all_names.get(word) for word in formula.words]
+        return formula.subject in formula.words and all(
+            isinstance(one, sp.Expr) and one.is_number is True for one in values
         )
 
     def _with_an_energy(self, formula: DocumentFormula) -> SideVerdict | None:

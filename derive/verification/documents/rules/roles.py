@@ -50,7 +50,10 @@ class Roles:
         elif subject in letters.momenta:
             kind, name = "momenta", letters.momenta[subject]
         elif (
-            subject.isidentifier() and order(subject) == 2 and stem(subject) in letters.coordinates
+            subject.isidentifier()
+            and order(subject) == 2
+            and stem(subject) in letters.coordinates
+            and stem(subject) in self._namespace.names
         ):
             kind, name = "accelerations", stem(subject)
         if kind == "accelerations" and depends_on(right, system.qddot):
