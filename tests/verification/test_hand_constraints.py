@@ -1,11 +1,15 @@
 """Hand derivations of systems with constraints: multipliers, reduced equations, and mistakes."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
+import sympy as sp
 
-from derive.mechanics.constraints import differentiated_constraints
 from derive.verification.hand_derivation_files import judge
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.judging.substitution import substituted_constraints
 from derive.verification.judging.verdict import Verdict
 
 MASS = """
@@ -176,15 +180,20 @@ def test_substitution_into_the_lagrangian_is_recognised(system: str, tmp_path: P
     assert verdicts[-1].note.startswith("it is the Lagrangian of motions alone")
 
 
+@pytest.mark.parametrize(("is_lagrangian_of_motions", "nonholonomic", "count"), [
+    (False, None, 0), (True, (), 0), (True, ("y_dot",), 1),
+])  # fmt: skip
 def test_integrability_of_constraints_is_decided_for_few_slips(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    is_lagrangian_of_motions: bool, nonholonomic: tuple[str, ...] | None, count: int
 ) -> None:
-    decisions = []
-    monkeypatch.setattr(
-        differentiated_constraints, "integrability", lambda *given: decisions.append(given)
+    decision = SimpleNamespace(nonholonomic=nonholonomic) if nonholonomic is not None else None
+    derivation = SimpleNamespace(
+        system=SimpleNamespace(conditions=("y_dot",)), integrability=decision, lagrangian=0
     )
-    judged(tmp_path, "sleigh", ["(J + 2*m*a**2)*theta_ddot = 0"], 'lagrangian = "m*x_dot**2"')
-    assert not decisions  # which take long for some constraints
+    motions = SimpleNamespace(is_small=lambda _difference: is_lagrangian_of_motions)
+    model = cast("ReferenceSystem", SimpleNamespace(derivation=derivation, motions=motions))
+    note = substituted_constraints(model, "lagrangian", sp.S.One)
+    assert note.count("it is the Lagrangian of motions alone") == count
 
 
 def test_forces_count_in_equations_by_substitution(tmp_path: Path) -> None:

@@ -133,5 +133,5 @@ def test_unit_vectors_along_fixed_axes_and_vector_products(
 def test_components_of_vectors_that_are_not_known_are_not_compared(tmp_path: Path) -> None:
     text = r"""$$\vec r = \vec r\,' - \vec r_0$$ $$\vec v = \dot{\vec r}$$
 $$\vec\omega = \omega\hat z$$ in the directions $\hat x$, $\hat y$:
-$$\dot v_x = -2(\omega_y v_z - \omega_z v_y)$$ $$\vec a = \vec\omega\times\vec b$$"""
-    assert verdicts(tmp_path, text)[2:] == ["context"] * 3
+$$\dot v_x = -2(\omega_y v_z - \omega_z v_y)$$"""
+    assert verdicts(tmp_path, text)[2:] == ["context"] * 2

@@ -30,12 +30,6 @@ RATE_OF = {"v_column": "r_column", "a_column": "v_column", "vbar": "rbar", "abar
 ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, IndexError)
 
 
-def _cross(one: Value, other: Value) -> Value:
-    if not isinstance(one, sp.MatrixBase) or not isinstance(other, sp.MatrixBase):
-        raise ExpressionError("the cross product of what is no vector")
-    return one.cross(other)
-
-
 class Identities:
     """The formulas of a document as identities in letters, which may be any functions of time."""
 
@@ -134,7 +128,7 @@ class Identities:
                 yield holds, used
 
     def _value(self, text: str, depth: int = 0) -> Value:
-        functions = {**FUNCTIONS, "ddt": self._rate, "cross": _cross}
+        functions = {**FUNCTIONS, "ddt": self._rate, "cross": lambda one, other: one.cross(other)}
         words = {*WORD.findall(text)} - {*functions}
         return parse(text, {**functions, **{word: self._name(word, depth) for word in words}})
 

@@ -122,9 +122,7 @@ class OtherStatements:
     def _is_other_number(self, formula: DocumentFormula) -> bool:
         """Whether a formula gives a letter that is a number another one, as in another case."""
         values = [self._namespace.all_names.get(word) for word in formula.words]
-        return formula.subject in formula.words and all(
-            isinstance(one, sp.Expr) and one.is_number is True for one in values
-        )
+        return all(isinstance(one, sp.Expr) and one.is_number is True for one in values)
 
     def _with_an_energy(self, formula: DocumentFormula) -> SideVerdict | None:
         """The verdict on a formula that contains an energy, which can have another constant."""
