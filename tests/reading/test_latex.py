@@ -161,6 +161,11 @@ def test_spans_of_statements_are_their_places_in_the_display() -> None:
         ("", r"1 - \cos[2](\theta)\qty(a)", "(1 - cos(theta)^2 a)"),
         ("", r"\sin [2] + \cos[x](a)", "(sin(2) + cos(x) a)"),
         (r"\newcommand{\abs}[1]{#1^2}", r"\abs{x}", "x^2"),
+        ("", r"\half\thetadot^2 + \xddot\ddotalpha_1", "([1 / 2] theta.^2 + x.. alpha_1..)"),
+        ("", r"\frac{\d x}{\d t} + \Vec{q}\Ddot y \mbf{p}", "(d(x; t) + bold q y.. bold p)"),
+        ("", r"b\cdot\ddot a + \dots", "(b a.. + dots)"),
+        ("", r"a \odot b", r"unreadable: the command \odot is not known"),
+        (r"\newcommand{\rdot}{\dot R}\def\d{\delta}", r"\rdot\d", "R. delta"),
     ],
 )
 def test_macros_are_expanded(definitions: str, latex: str, tree: str) -> None:

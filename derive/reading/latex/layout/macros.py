@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
+from derive.reading.latex.layout.latex_symbols import GREEK
 from derive.reading.latex.layout.tokens import (
     Token,
     UnreadError,
@@ -127,6 +128,22 @@ QUAD_WORDS = (
 PHYSICS |= {
     f"q{one}": Macro(f"q{one}", rf"\quad\text{{{one}}}\quad ") for one in QUAD_WORDS.split()
 }
+#: Macros that many documents define in other files, and accents of older packages.
+USUAL = {
+    "d": Macro("d", r"\mathrm{d}"),
+    "half": Macro("half", r"\frac{1}{2}"),
+    "mbf": Macro("mbf", r"\mathbf{#1}", 1),
+}
+USUAL |= {
+    one: Macro(one, rf"\{one.lower()}{{#1}}", 1)
+    for one in ("Dot", "Ddot", "Hat", "Bar", "Tilde", "Vec")
+}
+#: Letters with dots as macros of other files, such as ``\xddot`` and ``\dottheta``.
+LETTER = "|".join(["[A-Za-z]", *sorted(GREEK)])
+DOTTED = re.compile(
+    rf"(?!(?:c|o|d+)?dots?$)(?:(?P<letter>{LETTER})(?P<dots>d{{0,2}}dot)"
+    rf"|(?P<dots_before>d{{0,2}}dot)(?P<letter_after>{LETTER}))"
+)
 #: Matrices of that package, in the brackets that follow.
 MATRICES = ("mqty", "matrixquantity", "bmqty", "pmqty")
 DERIVATIVES = {"dv": r"\mathrm{d}", "odv": r"\mathrm{d}", "pdv": r"\partial"}
@@ -140,7 +157,7 @@ def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> li
     Unread
         If a macro calls itself, has too few arguments, or becomes too long.
     """
-    known = PHYSICS | dict(macros)
+    known = PHYSICS | USUAL | dict(macros)
     result: list[Token] = []
     waiting = [(token, 0) for token in reversed(tokens)]  # with the number of macros around it
     at = 0
@@ -162,6 +179,10 @@ def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> li
                 _skip_star(waiting)
             body = _call(known[token.text], token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
+        elif match := DOTTED.fullmatch(token.text):
+            dots, letter = match["dots"] or match["dots_before"], match["letter"]
+            body = _dotted(dots, letter or match["letter_after"])
+            waiting += [(replace(t, span=token.span), depth + 1) for t in reversed(body)]
         elif token.text in DERIVATIVES:
             body = _derivative(DERIVATIVES[token.text], token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
@@ -212,6 +233,11 @@ def _derivative(sign: str, call: Token, waiting: list[tuple[Token, int]]) -> lis
     if body is None:
         raise UnreadError(rf"\{call.text} needs an argument in braces")
     return _substituted(Macro(call.text, body, len(arguments)), arguments, (call.span[0], end))
+
+
+def _dotted(dots: str, letter: str) -> list[Token]:
+    name = letter if len(letter) == 1 else rf"\{letter}"
+    return tokenize(rf"\{dots}{{{name}}}")
 
 
 def _skip_star(waiting: list[tuple[Token, int]]) -> None:
