@@ -87,6 +87,14 @@ def test_conserved_momenta_are_constants_of_an_effective_potential(tmp_path: Pat
     assert last(tmp_path, SPHERE + potential.replace("SCALE", "2")) == "wrong"
 
 
+def test_conserved_momenta_by_mass_are_constants_of_an_effective_potential(tmp_path: Path) -> None:
+    orbit = r"""$$L = \frac m2(\dot r^2 + r^2\dot\theta^2) - V, \quad V = -\frac{G M m}{r}$$
+$$h = r^2\dot\theta, \quad W = V + \frac{m h^2}{2 r^2}$$ $$m\ddot r = - SCALE\frac{d W}{d r}$$"""
+    assert last(tmp_path, orbit.replace("SCALE", "")) == "verified"
+    assert last(tmp_path, orbit.replace("SCALE", "2")) == "wrong"
+    assert last(tmp_path, orbit.replace("SCALE", "").replace("h = r^2", "h = r")) != "verified"
+
+
 def test_small_motions_without_a_system_are_no_double_pendulum(tmp_path: Path) -> None:
     text = r"$$m\ddot\epsilon + k\epsilon = 0, \quad (l + m g/k)\ddot\theta + g\theta = 0$$"
     assert "wrong" not in verdicts(tmp_path, text)

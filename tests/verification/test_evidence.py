@@ -113,6 +113,17 @@ def test_an_equation_without_a_term_of_a_known_system_can_be_another_case(
     assert judged[1][1].verdict.verdict == expected
 
 
+@pytest.mark.parametrize(("latex", "kind", "expected"), [
+    (r"\omega_1 = \sqrt 3", "", "context"), (r"\omega_1 = k\sqrt 3", "", "wrong"),
+    (r"\ddot s = 3", "", "wrong"), ("s = 3", "", "wrong"), ("V = 3", "potential_energy", "wrong"),
+])  # fmt: skip
+def test_a_name_can_have_a_number_in_another_case(latex: str, kind: str, expected: str) -> None:
+    (formula,) = formulas(latex)
+    results = [with_verdict(formula, "wrong", kind)]
+    judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
+    assert judged[0][1].verdict.verdict == expected
+
+
 @pytest.mark.parametrize(("start", "kind", "expected"), [
     ("r = r_0", "", "context"), ("b = r_0", "", "wrong"), ("r = r_0", "lagrangian", "wrong"),
 ])  # fmt: skip

@@ -75,8 +75,9 @@ def weighed(
     it, in which case neither these nor what holds with them alone is verified; nor if one of
     several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
     it has the index of a further Lagrangian, as of L_small; nor if it is the rate of a position
-    that a system of energies or equations does not contain. A system
-    that is known from elsewhere must have a letter for each of its parameters in formulas that are
+    that a system of energies or equations does not contain; nor if it gives a name a number, as in
+    an example. A system that is known from elsewhere must have a formula that holds, or corrections
+    in the letters of the formula; a letter for each of its parameters in formulas that are
     judged, unless that is a factor of the Lagrangian, such as the mass of a single body, and the
     accelerations as written have no potential of their own; a letter for several of them, such as
     for both masses, in a formula that holds; and no more formulas with more than one wrong term, or
@@ -181,7 +182,7 @@ class _Evidence:
             return "a number that is added can be a constant force"
         if line := self._special_motion(number) or self._value_in_time(formula, result):
             return f"it can hold with line {line}"
-        if self._is_restated(number):
+        if self._is_restated(number) or self._is_number(formula, result):
             return other_case
         if self._holds_constant(formula):
             return "a derivative can hold a constant of the motion"
@@ -293,6 +294,13 @@ class _Evidence:
             {*one.words} for one, _ in self._results[:number] if one.subject == formula.subject
         ]
         return bool(earlier) and not {*formula.words} <= set[str]().union(*earlier)
+
+    def _is_number(self, formula: DocumentFormula, result: SideVerdict) -> bool:
+        """Whether a name that is no coordinate has a number alone, as in an example."""
+        values = {word for side in formula.sides[1:] for word in WORD.findall(side.text)}
+        is_other = result.kind not in OF_ENERGIES and not order(formula.subject)
+        is_name = formula.subject not in {"", *self._candidate.coordinates}
+        return is_other and is_name and values <= {*FUNCTIONS}
 
     def _holds_constant(self, formula: DocumentFormula) -> bool:
         """Whether a derivative contains a letter for a function of velocities, as ℓ of m r² φ̇."""

@@ -12,7 +12,6 @@ import sympy as sp
 from derive.formulas.expression import Value, parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
-from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.mechanics.routhian import Routhian
 from derive.system.parts import Parameter
@@ -312,12 +311,18 @@ class DocumentNamespace:
         return value, {dummy: self.names[word] for word, dummy in dummies.items()}
 
     def _is_conserved(self, name: str) -> bool:
-        """Whether a name stands for the momentum of a coordinate that L does not depend on."""
+        """Whether a name stands for the momentum of a coordinate that L does not depend on.
+
+        It can be one by mass, such as h = r² φ̇.
+        """
         value, d = self.names.get(name), self.derivation
         if not isinstance(value, sp.Expr) or not depends_on(value, self._system.qdot):
             return False
+        moving = (*self._system.q, *self._system.qdot)
         return any(
-            not d.lagrangian.diff(q) and not force and vanishes(value - momentum)
+            not d.lagrangian.diff(q)
+            and not force
+            and not depends_on(sp.cancel(value / momentum), moving)
             for q, momentum, force in zip(
                 self._system.q, d.momenta, self._system.applied, strict=True
             )
