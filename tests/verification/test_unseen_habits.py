@@ -796,3 +796,8 @@ def test_an_acceleration_of_another_system_has_no_value_of_its_own(tmp_path: Pat
     text = r"""$$\ddot x = -g\sin\theta$$ $$\ddot x = g\sin\theta$$
 $$T = \frac12 m\dot r^2 + \frac12 m (r\dot\theta)^2$$"""
     assert "wrong" not in verdicts(tmp_path, text)
+
+
+def test_a_division_by_zero_has_no_value(tmp_path: Path) -> None:
+    text = r"$$\ddot x + \omega^2 x = 0$$ $$a = \frac{b}{\omega^2 - \omega^2}$$"
+    assert verdicts(tmp_path, text)[1] != "verified"  # and no warning
