@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
@@ -20,7 +19,6 @@ from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
-from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import Translated
 
 USUAL = SystemCandidate(
@@ -51,22 +49,6 @@ def test_two_fifths_of_the_formulas_hold_for_a_known_system(failed: int, is_enou
     assert letter_meanings._is_supported(match, letter_meanings.LEAST) is is_enough
     stated = replace(match, candidate=replace(USUAL, stating=frozenset({10})))
     assert letter_meanings._is_supported(stated, letter_meanings.LEAST)
-
-
-@pytest.mark.parametrize(("taken", "verdict"), [(frozenset(), "context"), ({1}, "wrong")])
-def test_what_a_stated_system_verifies_is_not_wrong_by_a_known_one(
-    taken: frozenset[int], verdict: str
-) -> None:
-    equation = ProgramEquation(1, "acceleration", "phi", "", "phi_ddot = a*phi")
-    formula = program_judgement._formula(equation)
-    own = Match(replace(USUAL, stating=frozenset(taken)), 3, 4, frozenset({0}))
-    rival = Match(replace(USUAL, stating=frozenset({2})), 4, 4)
-    judge = SimpleNamespace(verdict=lambda one: plain("verified", one, ""))
-    judges = cast("Judges", SimpleNamespace(judge=lambda _: judge))
-    meaning = letter_meanings.Interpretation(judges, own, (rival,))
-    results = [(formula, plain("wrong", formula, ""))]
-    (other,) = letter_meanings.alternatives(meaning, results, {})
-    assert [one.instead_of for one in other.differences] == [verdict]
 
 
 @pytest.mark.parametrize("text", ["-g*sin(phi)/l", "g*sin(phi)/l", "-g*sin(phi)/l**2", "0"])

@@ -335,7 +335,7 @@ def alternatives(
         other = sum(one.verdict.verdict not in CORRECT for _, _, one in pairs)
         taken, rival_one = result.match.candidate, rival.candidate
         is_odd = taken.is_usual and rival_one.is_turned
-        opposes = taken.basis == "catalogue" and not is_odd
+        opposes = {taken.basis, rival_one.basis} == {"catalogue"} and not is_odd
         changed = tuple(_differences(pairs, written, opposes))
         kinds = tuple((one.line, one.latex, one.verdict) for one in changed)
         is_usual = rival_one.is_usual and not taken.is_usual

@@ -126,7 +126,8 @@ class Numbers:
             if isinstance(left, Jet) and isinstance(right, np.ndarray) and right.size == 1:
                 right = right[0, 0]
             try:
-                differences = np.ravel(np.array(left - right, dtype=object))
+                with np.errstate(invalid="ignore"):  # infinities
+                    differences = np.ravel(np.array(left - right, dtype=object))
             except (ValueError, TypeError, AttributeError):  # matrices of other shapes, or a number
                 continue
             if start or not self._is_definition(formula, side.text):  # which decides nothing

@@ -496,17 +496,19 @@ def _adds_letters(
 ) -> bool:
     """Whether a correction has forces or friction that a formula, as of a case without, has not.
 
-    Of a system that equations state, these are all letters; of a known system, the parameters of
-    whole terms, too.
+    Of a system that equations state, these are all letters; of a known system parameters, too, if
+    the formula is that of a free motion.
     """
     added = _added(formula, result)
     if candidate.is_of_equations:
         return bool(added)
     loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
     loads |= {*_of_drives(candidate)}
-    lacks_terms = any(one.wrong in ("", "0") for one in result.verdict.corrections)
-    if candidate.basis == "catalogue" and lacks_terms:
-        loads |= {*candidate.parameters.values()}
+    parameters = {*candidate.parameters.values()}
+    is_zero = any(side.text == "0" for side in formula.sides)
+    is_free = is_zero and all(order(one) == 2 or one in parameters for one in formula.words)
+    if candidate.basis == "catalogue" and is_free:
+        loads |= parameters
     return bool(added & loads)
 
 
