@@ -103,6 +103,7 @@ def test_a_known_system_of_which_nothing_holds_adds_no_letters(correct: str, exp
     (r"m\ddot x + x = 0", "x", "k*x", "wrong"),
     (r"m\ddot x + k = 0", "", "k*x", "wrong"),
     (r"m\ddot x = - c \dot x", "", "k*x", "wrong"),  # with a force
+    (r"m\ddot x = m", "", "k*x", "wrong"),
 ])  # fmt: skip
 def test_a_free_motion_can_be_another_case_than_a_known_system(
     latex: str, wrong: str, correct: str, expected: str
