@@ -128,6 +128,9 @@ QUAD_WORDS = (
 PHYSICS |= {
     f"q{one}": Macro(f"q{one}", rf"\quad\text{{{one}}}\quad ") for one in QUAD_WORDS.split()
 }
+#: Matrices of that package, in the brackets that follow.
+MATRICES = ("mqty", "matrixquantity", "bmqty", "pmqty")
+DERIVATIVES = {"dv": r"\mathrm{d}", "odv": r"\mathrm{d}", "pdv": r"\partial"}
 #: Macros that many documents define in other files, and accents of older packages.
 USUAL = {
     "d": Macro("d", r"\mathrm{d}"),
@@ -138,15 +141,12 @@ USUAL |= {
     one: Macro(one, rf"\{one.lower()}{{#1}}", 1)
     for one in ("Dot", "Ddot", "Hat", "Bar", "Tilde", "Vec")
 }
-#: Letters with dots as macros of other files, such as ``\xddot`` and ``\dottheta``.
 LETTER = "|".join(["[A-Za-z]", *sorted(GREEK)])
+#: Letters with dots as macros of other files, such as ``\xddot`` and ``\dottheta``.
 DOTTED = re.compile(
     rf"(?!(?:c|o|d+)?dots?$)(?:(?P<letter>{LETTER})(?P<dots>d{{0,2}}dot)"
     rf"|(?P<dots_before>d{{0,2}}dot)(?P<letter_after>{LETTER}))"
 )
-#: Matrices of that package, in the brackets that follow.
-MATRICES = ("mqty", "matrixquantity", "bmqty", "pmqty")
-DERIVATIVES = {"dv": r"\mathrm{d}", "odv": r"\mathrm{d}", "pdv": r"\partial"}
 
 
 def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> list[Token]:
@@ -172,17 +172,13 @@ def expanded(latex: str, tokens: list[Token], macros: Mapping[str, Macro]) -> li
                 raise UnreadError(rf"\{token.text} defines no macro")
             known[found[0].name] = found[0]
             del waiting[len(waiting) - found[1] + 1 :]
-        elif token.text in known:
+        elif macro := known.get(token.text) or _dotted(token.text):
             if depth >= MAX_DEPTH:
                 raise UnreadError(rf"the macro \{token.text} calls itself")
             if token.text in PHYSICS:
                 _skip_star(waiting)
-            body = _call(known[token.text], token, waiting)
+            body = _call(macro, token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
-        elif match := DOTTED.fullmatch(token.text):
-            dots, letter = match["dots"] or match["dots_before"], match["letter"]
-            body = _dotted(dots, letter or match["letter_after"])
-            waiting += [(replace(t, span=token.span), depth + 1) for t in reversed(body)]
         elif token.text in DERIVATIVES:
             body = _derivative(DERIVATIVES[token.text], token, waiting)
             waiting += [(t, depth + 1) for t in reversed(body)]
@@ -235,9 +231,14 @@ def _derivative(sign: str, call: Token, waiting: list[tuple[Token, int]]) -> lis
     return _substituted(Macro(call.text, body, len(arguments)), arguments, (call.span[0], end))
 
 
-def _dotted(dots: str, letter: str) -> list[Token]:
-    name = letter if len(letter) == 1 else rf"\{letter}"
-    return tokenize(rf"\{dots}{{{name}}}")
+def _dotted(name: str) -> Macro | None:
+    """The macro of a letter with dots."""
+    match = DOTTED.fullmatch(name)
+    if match is None:
+        return None
+    letter = match["letter"] or match["letter_after"]
+    body = letter if len(letter) == 1 else rf"\{letter}"
+    return Macro(name, rf"\{match['dots'] or match['dots_before']}{{{body}}}")
 
 
 def _skip_star(waiting: list[tuple[Token, int]]) -> None:
