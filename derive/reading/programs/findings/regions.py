@@ -211,7 +211,7 @@ def _regions(context: ProgramContext, body: tuple[Statement, ...]) -> Iterator[R
 
 def _vectors(context: ProgramContext, function: Definition) -> dict[str, Expression]:
     """The parameters of a function for which all calls pass vectors of one length."""
-    first, result = context.language.first_index, dict[str, Expression]()
+    result = dict[str, Expression]()
     series = {  # with an index that counts, such as that of time
         static_path(one.base)
         for one in expressions(function.body)
@@ -220,9 +220,14 @@ def _vectors(context: ProgramContext, function: Definition) -> dict[str, Express
     for name, lengths in context.passed.get(id(function.body), {}).items():
         is_vector = len(lengths) == 1 and name not in series
         if is_vector and 1 < (length := min(lengths)) <= MAX_VECTOR:
-            entry = (Name(function.line, f"{name}[{i + first}]") for i in range(length))
-            result[name] = Array(function.line, tuple(entry))
+            result[name] = _vector(context, name, function.line, length)
     return result
+
+
+def _vector(context: ProgramContext, path: str, line: int, length: int) -> Array:
+    """A vector of names for its entries."""
+    first = context.language.first_index
+    return Array(line, tuple(Name(line, f"{path}[{i + first}]") for i in range(length)))
 
 
 def _callbacks(tree: Expression) -> Iterator[Definition]:
@@ -286,10 +291,8 @@ def _kept(
         for path, value in before.items()
         if path not in whole and (root(path) not in changed or "." in path)
     }
-    first = context.language.first_index
     for path in [one for one in before if one in whole]:  # vectors that change keep their length
         items = entries(before[path]) or ()
         if 1 < len(items) <= MAX_VECTOR and not any(map(entries, items)):
-            names = (Name(loop.line, f"{path}[{i + first}]") for i in range(len(items)))
-            kept[path] = Array(loop.line, tuple(names))
+            kept[path] = _vector(context, path, loop.line, len(items))
     return kept
