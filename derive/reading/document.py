@@ -118,15 +118,16 @@ Item = TypeVar("Item")
 #: A heading in Markdown, LaTeX, HTML or reStructuredText, or a line that starts an example.
 HEADING = re.compile(
     r"^(?:[ \t]*(?P<marks>#{1,6})[ \t]"
-    r"|[ \t]*\\(?P<subs>(?:sub)*)section\b"
+    r"|[ \t]*\\(?P<subs>(?:sub)*)(?P<unit>section|paragraph)\b"
     r"|.*<h(?P<number>[1-6])\b"
     r"|(?P<line>\S.*)\n(?:={3,}|-{3,}|~{3,}|\^{3,})[ \t]*$"
-    r"|[ \t]*[*_]{0,2}(?P<word>example|problem|exercise|case|beispiel|aufgabe|ejemplo|ejercicio"
-    r"|exemple|exercice|esempio|esercizio|problema|exemplo)\b)",
+    r"|[ \t]*(?:[*_]{0,2}|\\(?:begin\{)?)(?P<word>example|problem|exercise|question|case|beispiel"
+    r"|aufgabe|ejemplo|ejercicio|exemple|exercice|esempio|esercizio|problema|exemplo)\b"
+    r"|(?P<count>\d{1,2}[.)])(?!\S))",
     re.IGNORECASE | re.MULTILINE,
 )
-#: The level of a line that starts an example: below all headings.
-DEEPEST = 7
+#: The levels of a line that starts an example and of a number: below all headings.
+EXAMPLE, NUMBERED = 7, 8
 
 
 def divided(
@@ -161,7 +162,9 @@ def _level(heading: re.Match[str]) -> int:
     if heading["marks"]:
         return len(heading["marks"])
     if heading["subs"] is not None:
-        return 1 + heading["subs"].count("sub")
+        return (1 if heading["unit"] == "section" else 4) + heading["subs"].count("sub")
     if heading["number"]:
         return int(heading["number"])
-    return 1 if heading["line"] else DEEPEST
+    if heading["line"]:
+        return 1
+    return NUMBERED if heading["count"] else EXAMPLE

@@ -50,6 +50,9 @@ def test_a_slip_below_a_heading_is_not_verified(
     "<h1>A</h1>\n@a\n<h2>B</h2>\n@b\n<h1>C</h1>\n@c\n",
     "# A\n@a\n**Example 1.** @b\n# C\n@c\n",
     "A\n===\n@a\n\nProblem 1\n@b\n\nC\n===\n@c\n",
+    "\\paragraph{A}\n@a\n\\subparagraph{B}\n@b\n\\paragraph{C}\n@c\n",
+    "\\begin{question}\n@a\n1. @b\n\\end{question}\n\\begin{question}\n@c\n\\end{question}\n",
+    "\\section{A}\n@a\n\\problem\n@b\n\\section{C}\n@c\n",
 ])  # fmt: skip
 def test_the_highest_headings_divide_a_text(text: str) -> None:
     def place(name: str) -> int:
@@ -220,6 +223,7 @@ $$ m \ddot x + k x + b x^3 = 0 $$
 HEADINGS = [
     {"first": "## Harmonic oscillator", "second": "## Anharmonic oscillator"},
     {"first": "A mass on a spring has", "second": "A harder spring adds a term:"},
+    {"first": "1. a. The Lagrangian", "second": "2.\na."},
 ]
 
 
