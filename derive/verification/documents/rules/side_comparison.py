@@ -105,6 +105,9 @@ class SideComparison:
         small = "it holds for small motions about the origin"
         if is_product:
             return self._scaled(formula, side, left, right)
+        if is_lagrangian and (reduced := self._without_dependent(left, right)) is not None:
+            result = self._roles.value(side, first.text, reduced)
+            return replace(result, verdict=replace(result.verdict, note=SUBSTITUTED))
         result = self._roles.judged(first, side, left, right)
         if result.verdict.verdict in CORRECT:
             return result
@@ -144,6 +147,21 @@ class SideComparison:
         if not derivation.system.conditions or derivation.integrability.nonholonomic:
             return False
         return self._model.about(difference).agreement(difference) not in (None, UNDECIDED)
+
+    def _without_dependent(self, lagrangian: sp.Expr, other: sp.Expr) -> sp.Expr | None:
+        """A Lagrangian without the velocities that another one lacks, by its constraints."""
+        derivation = self._namespace.derivation
+        system = derivation.system
+        if not system.conditions or derivation.integrability.nonholonomic:
+            return None
+        pairs = zip(system.q, system.qdot, strict=True)
+        lacking = [
+            v for q, v in pairs if lagrangian.has(v) and not (other.has(v) or lagrangian.has(q))
+        ]
+        if len(lacking) != len(system.conditions):
+            return None
+        values = sp.solve([*derivation.constraint_rates], lacking, dict=True)
+        return lagrangian.subs(values[0]) if values else None
 
     def _witness(
         self, formula: DocumentFormula, value: sp.Expr, derived: sp.Expr
