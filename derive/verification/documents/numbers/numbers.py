@@ -147,8 +147,11 @@ class Numbers:
         """For each candidate, numbers that are the same for those of the same motions."""
         motions = self._motions
         potential = motions.energies["potential_energy"]
-        tables = [*motions.accelerations.values(), motions.energies["kinetic_energy"],
-                  potential - potential[:, :1]]  # fmt: skip
+        with np.errstate(invalid="ignore"):  # infinities
+            differences = potential - potential[:, :1]
+        tables = [
+            *motions.accelerations.values(), motions.energies["kinetic_energy"], differences
+        ]  # fmt: skip
         table = np.concatenate([np.broadcast_to(one, motions.shape) for one in tables], axis=1)
         return [row.tobytes() for row in np.round(table, DIGITS) + 0.0]  # no negative zeros
 

@@ -1,6 +1,7 @@
 """The names of a document as values of its system: letters, energies, definitions, derivatives."""
 
 import re
+import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -12,7 +13,7 @@ import sympy as sp
 from derive.formulas.expression import Value, parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
-from derive.mechanics.derivation import Derivation
+from derive.mechanics.derivation import Derivation, RedundancyWarning
 from derive.mechanics.routhian import Routhian
 from derive.system.parts import Parameter
 from derive.system.symbols import TIME, acceleration, velocity
@@ -62,7 +63,9 @@ class DocumentNamespace:
             if text == name
         }
         self._system = _with_constants(system_letters.system, constants.values())
-        self.derivation = Derivation(self._system)
+        with warnings.catch_warnings():  # documents state constraints again
+            warnings.simplefilter("ignore", RedundancyWarning)
+            self.derivation = Derivation(self._system)
         self.letters, self.derivatives, self.formulas = letters, derivatives, formulas
         #: Names with their values.
         self.names: dict[str, Any] = dict(_functions(self._system, self.derivation))
