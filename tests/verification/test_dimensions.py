@@ -15,7 +15,7 @@ from derive.verification.documents.letters.hints import without_meaning
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 from derive.verification.documents.program_judgement import judge_program
-from derive.verification.documents.rules.evidence import INHOMOGENEOUS
+from derive.verification.documents.rules.evidence.weighing import INHOMOGENEOUS
 from derive.verification.documents.statements import Occurrence, translated
 
 #: The note on formulas of no known system.

@@ -12,7 +12,7 @@ from derive.verification.documents.letters.candidates import BY_EQUATIONS, STATE
 from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.rules.consequences import Contradictions, WithVerdict
-from derive.verification.documents.rules.evidence import weighed
+from derive.verification.documents.rules.evidence.weighing import weighed
 from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import DocumentFormula, Occurrence, translated
 from derive.verification.judging.motion_verdicts import NOT_LINEAR
@@ -30,6 +30,14 @@ def formulas(*latex: str) -> tuple[DocumentFormula, ...]:
 
 def with_verdict(formula: DocumentFormula, verdict: str, kind: str = "") -> WithVerdict:
     return formula, replace(plain(verdict, formula, ""), kind=kind)
+
+
+def with_correction(
+    formula: DocumentFormula, wrong: str, correct: str, kind: str = ""
+) -> WithVerdict:
+    _, result = with_verdict(formula, "wrong", kind)
+    corrected = replace(result.verdict, corrections=(Correction(wrong, correct),))
+    return formula, replace(result, verdict=corrected)
 
 
 def verdicts(results: Sequence[WithVerdict]) -> list[tuple[str, str]]:
@@ -63,10 +71,8 @@ def stated(name: str, stating: frozenset[int] = frozenset()) -> SystemCandidate:
 ])  # fmt: skip
 def test_equations_of_a_further_coordinate_refute_no_energy(energy: str, expected: str) -> None:
     *equations, last = formulas(r"m\ddot s = - k s", r"\ddot y = - g", energy)
-    wrong, result = with_verdict(last, "wrong", "kinetic_energy")
-    corrected = replace(result.verdict, corrections=(Correction("m", "m/2"),))
     results = [with_verdict(one, "verified") for one in equations]
-    results.append((wrong, replace(result, verdict=corrected)))
+    results.append(with_correction(last, "m", "m/2", "kinetic_energy"))
     candidate = stated(BY_EQUATIONS, frozenset({0, 1}))
     judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
     assert judged[-1][1].verdict.verdict == expected
@@ -77,12 +83,6 @@ def known(name: str, coordinates: tuple[str, ...], **letters: str) -> SystemCand
     count = range(len(coordinates))
     signs = tuple(tuple(int(i == k) for i in count) for k in count)
     return SystemCandidate(named(name), coordinates, signs, (0,) * len(coordinates), letters)
-
-
-def with_correction(formula: DocumentFormula, wrong: str, correct: str) -> WithVerdict:
-    _, result = with_verdict(formula, "wrong")
-    corrected = replace(result.verdict, corrections=(Correction(wrong, correct),))
-    return formula, replace(result, verdict=corrected)
 
 
 @pytest.mark.parametrize(("correct", "expected"), [
@@ -121,7 +121,7 @@ def test_a_free_motion_can_be_another_case_than_a_known_system(
 ])  # fmt: skip
 def test_a_name_can_have_a_number_in_another_case(latex: str, kind: str, expected: str) -> None:
     (formula,) = formulas(latex)
-    results = [with_verdict(formula, "wrong", kind)]
+    results = [with_correction(formula, formula.sides[-1].text, "k", kind)]
     judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
     assert judged[0][1].verdict.verdict == expected
 
@@ -133,21 +133,8 @@ def test_a_value_of_a_function_of_time_is_no_definition(
     start: str, kind: str, expected: str
 ) -> None:
     first, last = formulas(start, r"r = r_0\cosh(\omega t)")
-    results = [with_verdict(first, "definition"), with_verdict(last, "wrong", kind)]
-    judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
-    assert judged[-1][1].verdict.verdict == expected
-
-
-@pytest.mark.parametrize(("latex", "term", "expected"), [
-    (r"m\ddot s = - k s - 0.2", "- 0.2", "context"),
-    (r"m\ddot s = - k s - 0.2 c", "- 0.2*c", "wrong"),
-    (r"v = \dot s - 0.2", "- 0.2", "wrong"),  # no equation of motion
-])  # fmt: skip
-def test_a_number_that_is_added_can_be_a_force(latex: str, term: str, expected: str) -> None:
-    (formula,) = formulas(latex)
-    _, result = with_verdict(formula, "wrong")
-    corrected = replace(result.verdict, corrections=(Correction(term, "0"),))
-    results = [(formula, replace(result, verdict=corrected))]
+    wrong = with_correction(last, "cosh(omega*t)", "sinh(omega*t)", kind)
+    results = [with_verdict(first, "definition"), wrong]
     judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
     assert judged[-1][1].verdict.verdict == expected
 

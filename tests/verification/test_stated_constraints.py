@@ -1,5 +1,6 @@
 """Constraints that documents state themselves: multipliers are judged with them, or not at all."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,9 +17,10 @@ from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
 from derive.verification.documents.rules.consequences import Contradictions
-from derive.verification.documents.rules.evidence import weighed
+from derive.verification.documents.rules.evidence.weighing import weighed
 from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import translated
+from derive.verification.judging.verdict import Correction
 
 PENDULUM = r"""
 A bob at $(x, y)$ is subject to the constraint $x^2 + y^2 = l^2$.
@@ -240,6 +242,8 @@ def test_a_known_system_with_a_stated_constraint_contradicts_no_single_formula(
     candidate = SystemCandidate(
         load("henon_heiles"), ("x", "y"), ((1, 0), (0, 1)), (0, 0), {}, constraints=constraint
     )
-    judged = [(formula, plain("wrong", formula, ""))]
+    result = plain("wrong", formula, "")
+    corrected = replace(result.verdict, corrections=(Correction("x*y", "2*x*y"),))
+    judged = [(formula, replace(result, verdict=corrected))]
     ((_, result),) = weighed(judged, candidate, Contradictions(), is_stated=False)
     assert result.verdict.verdict == verdict

@@ -50,7 +50,11 @@ from derive.verification.documents.pages.verdicts_in_place import (
 from derive.verification.documents.rules.consequences import WithVerdict, opposed
 from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
-from derive.verification.documents.rules.evidence import INHOMOGENEOUS, of_lost_dots, weighed
+from derive.verification.documents.rules.evidence.weighing import (
+    INHOMOGENEOUS,
+    of_lost_dots,
+    weighed,
+)
 from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import (

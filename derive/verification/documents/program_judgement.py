@@ -23,8 +23,8 @@ from derive.verification.documents.pages.verdicts_in_place import (
     FormulaVerdict,
 )
 from derive.verification.documents.rules.corrected_formulas import inserted, source_span
-from derive.verification.documents.rules.evidence import HOLDING, INHOMOGENEOUS, weighed
-from derive.verification.documents.rules.side_verdict import SideVerdict
+from derive.verification.documents.rules.evidence.weighing import INHOMOGENEOUS, weighed
+from derive.verification.documents.rules.side_verdict import HOLDING, SideVerdict
 from derive.verification.documents.statements import DocumentFormula, Occurrence, Translated
 from derive.verification.judging.verdict import VerdictName
 

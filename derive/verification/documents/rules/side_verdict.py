@@ -9,6 +9,8 @@ from derive.verification.judging.verdict import Verdict
 
 #: Verdicts on formulas that are correct.
 CORRECT = ("verified", "equivalent", "definition")
+#: Verdicts on formulas that hold.
+HOLDING = ("verified", "equivalent")
 
 
 @dataclass(frozen=True)

@@ -6,42 +6,38 @@ No right formula is to be called wrong: a verdict without enough evidence become
 import ast
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import combinations
 
-import sympy as sp
-
-from derive.formulas.expression import FUNCTIONS, parse
-from derive.formulas.syntax import ExpressionError, syntax_tree
+from derive.formulas.expression import FUNCTIONS
+from derive.formulas.syntax import syntax_tree
 from derive.reading.latex.grammar.products import AMBIGUOUS
-from derive.reading.latex.tree import Quotient, nodes
-from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
-from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
-from derive.verification.documents.letters.document_system import derivation
+from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.rules.consequences import (
-    FOLLOWS,
     UNDECIDED,
     Contradictions,
     WithVerdict,
     opposed,
 )
+from derive.verification.documents.rules.evidence.loads import (
+    adds_letters,
+    exchanges_loads,
+    is_driven,
+    of_friction,
+)
+from derive.verification.documents.rules.evidence.support import (
+    OF_ENERGIES,
+    Support,
+    is_ambiguous,
+)
 from derive.verification.documents.rules.mass_positions import is_no_rate
-from derive.verification.documents.rules.side_verdict import SideVerdict, plain
+from derive.verification.documents.rules.side_verdict import HOLDING, SideVerdict, plain
 from derive.verification.documents.statements import POINT, WORD, DocumentFormula
 from derive.verification.judging.engine import joined
 from derive.verification.judging.motion_verdicts import NOT_LINEAR
-from derive.verification.judging.verdict import Correction
 
-#: Kinds of formulas that no other case of the system gives.
-OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
-#: Verdicts on formulas that hold.
-HOLDING = ("verified", "equivalent")
-
-#: Letters outside of wrong terms from which on a formula speaks for a system by itself.
-AGREEING = 6
 #: A Lagrangian or a Hamiltonian with a word as its index.
 FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
 #: Moments of inertia.
@@ -57,6 +53,8 @@ UNSUPPORTED = (
     "it does not hold for the system that fits best, but this fits too few other formulas to call "
     "it wrong: state the system by --system"
 )
+#: The end of a reason of a verdict on a formula with more than a slip.
+UNEXPLAINED = "but not by one slip: it can be one of another system"
 #: The reason of a verdict on an equation that differs from other equations.
 OTHER_CASE = "it can be another case, or one of these can be wrong"
 
@@ -102,17 +100,12 @@ class _Evidence:
         is_partial: bool,
     ) -> None:
         self._results, self._candidate, self._contradictions = results, candidate, contradictions
-        self._is_stated, self._is_partial = is_stated, is_partial
+        self._is_stated = is_stated
         self._is_known = candidate.basis == "catalogue" and not is_stated
         self._lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
-        self._wrong = [one for _, one in results if one.verdict.verdict == "wrong"]
-        self._independent = [one for one in self._wrong if FOLLOWS not in one.verdict.note]
-        self._misfits = sum(len(one.verdict.corrections) != 1 for one in self._independent)
-        held = (formula for formula, one in results if one.verdict.verdict in HOLDING)
-        self._holding = sum(not _is_vacant(formula) for formula in held)
-        self._has_energy = any(one.kind in OF_ENERGIES for one in self._wrong)
+        self._support = Support(results, candidate, is_partial)
         self._given = _lines(self._lines[k] for k in candidate.stating)
-        self._undecided = {*_of_friction(results, candidate)}
+        self._undecided = {*of_friction(results, candidate)}
 
     def weighed(self, number: int) -> SideVerdict:
         """The verdict on a formula in the light of the others."""
@@ -124,7 +117,7 @@ class _Evidence:
         is_wrong = result.verdict.verdict == "wrong"
         if is_wrong and is_no_rate(formula, self._candidate):
             return _noted(result, NO_RATE)
-        if self._is_known and self._holding == 0 and result.verdict.verdict in HOLDING:
+        if self._is_known and self._support.holding == 0 and result.verdict.verdict in HOLDING:
             return plain("context", formula, UNSUPPORTED)  # nothing but zeros holds
         if self._is_guess and (is_wrong or result.verdict.verdict in HOLDING):
             return plain("context", formula, UNSTATED)
@@ -152,10 +145,7 @@ class _Evidence:
     def _doubt(self, number: int) -> str:
         """Why a formula that contradicts the system need not be wrong; empty if it is."""
         formula, result = self._results[number]
-        if any(
-            isinstance(one, Quotient) and one.is_ambiguous
-            for one in nodes(formula.occurrence.sides)
-        ):
+        if is_ambiguous(formula):
             return AMBIGUOUS
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
         inhomogeneous = self._contradictions.inhomogeneous
@@ -175,11 +165,16 @@ class _Evidence:
             return other_case
         if any(index in word for index in self._other_indices for word in formula.words):
             return other_case
-        if self._is_weak or self._unsure & {*formula.words} or self._is_of_loads(result):
+        if self._is_known and (
+            self._support.is_weak
+            or self._unsure & {*formula.words}
+            or exchanges_loads(result, self._candidate)
+        ):
             return UNSUPPORTED
-        added = [t for t in result.verdict.corrections if t.correct == "0"]
-        if any(not WORD.search(t.wrong) for t in added) and 2 in map(order, formula.words):
-            return "a number that is added can be a constant force"
+        if not (self._is_stated or self._support.is_explained(result)):
+            return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
+        if line := self._other_energy(number):
+            return opposed(line)
         if line := self._special_motion(number) or self._value_in_time(formula, result):
             return f"it can hold with line {line}"
         if self._is_restated(number) or self._is_number(formula, result):
@@ -191,10 +186,26 @@ class _Evidence:
         ):
             return other_case
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
-            return other_case if _is_driven(self._candidate) else ""
-        if self._is_tie or _adds_letters(formula, result, self._candidate):
+            return other_case if is_driven(self._candidate) else ""
+        if self._is_tie or adds_letters(formula, result, self._candidate):
             return other_case
         return ""
+
+    def _other_energy(self, number: int) -> int | None:
+        """The line of an energy before a formula that can be one of another system."""
+        if self._is_stated:
+            return None
+        before = self._results[:number]
+        return next(
+            (
+                self._lines[k]
+                for k, (_, one) in enumerate(before)
+                if one.kind in OF_ENERGIES
+                and one.verdict.verdict == "wrong"
+                and not self._support.is_explained(one)
+            ),
+            None,
+        )
 
     @cached_property
     def _further_inertia(self) -> int | None:
@@ -207,48 +218,6 @@ class _Evidence:
             if others and not one.is_understood and 1 in map(order, formula.words):
                 return self._lines[number]
         return None
-
-    @cached_property
-    def _is_weak(self) -> bool:
-        """Whether a system that is known from elsewhere fits too little."""
-        lacking = {*_lacking(self._results, self._candidate)}
-        scales = {*_scales(self._candidate, lacking)}
-        has_all = not lacking or (self._misfits == 0 < self._holding and lacking == scales)
-        formulas = [formula for formula, _ in self._results]
-        has_units = bool(self._candidate.numbers) and any(
-            order(one.subject) == 2 for one in formulas
-        )
-        if lacking or has_units:  # other accelerations can have a potential of their own
-            has_all = has_all and not _is_conservative(formulas)
-        # an energy and an equation that contradict the system alike speak against the system
-        terms = {tuple(t.wrong for t in one.verdict.corrections) for one in self._independent}
-        slips = max(self._misfits, len(terms) if self._has_energy else 0)
-        few = max(1, min(self._holding, max(2, self._holding // 2)))
-        is_unsure = self._has_energy or self._are_signs
-        is_several = is_unsure and len(self._wrong) > 1
-        hardly_agrees = any(_agreeing(*one) < AGREEING for one in self._results if _is_wrong(one))
-        has_none = self._holding == 0 and (
-            is_several
-            or hardly_agrees
-            or bool(self._candidate.constraints)
-            or any(_added(*one) for one in self._results)
-        )
-        is_open = self._is_partial or self._candidate.has_unusual_letters
-        return self._is_known and (is_open or not has_all or has_none or slips > few)
-
-    def _loads_in(self, term: Correction) -> set[str]:
-        """The letters of forces and friction in a term or in its correction."""
-        loads = {name for name, _ in (*self._candidate.forces, *self._candidate.friction)}
-        return loads & {*WORD.findall(f"{term.wrong} {term.correct}")}
-
-    def _is_of_loads(self, result: SideVerdict) -> bool:
-        """Whether a known system has other letters of forces and friction, and else agrees."""
-        terms = result.verdict.corrections
-        written = [{*WORD.findall(t.wrong)} & self._loads_in(t) for t in terms]
-        other = [{*WORD.findall(t.correct)} & self._loads_in(t) for t in terms]
-        pairs = [*zip(written, other, strict=True)]
-        is_exchanged = any(a and b and a != b for a, b in pairs)
-        return self._is_known and is_exchanged and all(a or b for a, b in pairs)
 
     def _special_motion(self, number: int) -> int | None:
         """The line of a special motion with which an equation can hold.
@@ -312,29 +281,18 @@ class _Evidence:
         )
 
     @property
-    def _are_signs(self) -> bool:
-        """Whether all corrections are of the sign of gravity, as with angles from upright."""
-        own, words = self._candidate.parameters, Counter[str]()
-        names = (one.symbol.name for one in self._candidate.system.parameters
-                 if kind_of(one) == "gravity")  # fmt: skip
-        gravity = {own[name] for name in names if name in own}
-        for formula, one in self._results:
-            if one.verdict.verdict == "wrong":
-                words.update(w for side in formula.sides for w in WORD.findall(side.text))
-        terms = [t for one in self._wrong for t in one.verdict.corrections]
-        corrected = Counter(word for t in terms for word in WORD.findall(t.wrong))
-        is_whole = gravity and all(words[one] == corrected[one] > 0 for one in gravity)
-        return bool(is_whole) and all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
-
-    @property
     def _is_guess(self) -> bool:
         """Whether a single formula supports an unusual meaning of angles."""
-        return self._is_known and self._holding < 2 and self._candidate.is_turned
+        return self._is_known and self._support.holding < 2 and self._candidate.is_turned
 
     @property
     def _is_tie(self) -> bool:
         """Whether equations that state a system are no more certain than one that differs."""
-        is_alone = len(self._independent) == 1 and self._holding >= 2 and self._misfits == 0
+        is_alone = (
+            len(self._support.independent) == 1
+            and self._support.holding >= 2
+            and self._support.misfits == 0
+        )
         return self._candidate.is_of_equations and not is_alone
 
     @cached_property
@@ -352,7 +310,7 @@ class _Evidence:
     @cached_property
     def _has_cases(self) -> bool:
         """Whether an energy is stated again, with other equations, as for another case."""
-        if len(self._wrong) < 2 or self._is_stated:
+        if len(self._support.wrong) < 2 or self._is_stated:
             return False
         stating = self._candidate.stating
         held = {
@@ -417,27 +375,6 @@ def _is_wrong(one: WithVerdict) -> bool:
     return one[1].verdict.verdict == "wrong"
 
 
-def _is_vacant(formula: DocumentFormula) -> bool:
-    """Whether a formula states nothing but that an acceleration or a rate is zero."""
-    if not order(formula.subject):
-        return False
-    names = {word: sp.Symbol(word) for word in formula.words if word not in FUNCTIONS}
-    try:
-        return bool(parse(formula.sides[-1].text, {**names, **FUNCTIONS}) == 0)
-    except (ExpressionError, TypeError, ValueError):
-        return False
-
-
-def _agreeing(formula: DocumentFormula, result: SideVerdict) -> int:
-    """How many letters of a formula stand outside its wrong terms."""
-    written = sum(len(WORD.findall(side.text)) for side in formula.sides)
-    return written - sum(len(WORD.findall(one.wrong)) for one in result.verdict.corrections)
-
-
-def _unsigned(term: str) -> str:
-    return term.lstrip("+- ").removeprefix("(").removesuffix(")").replace(" ", "")
-
-
 def _operands(text: str) -> Iterator[set[str]]:
     """The names in each operand of a derivative."""
     for node in ast.walk(syntax_tree(text)) if "diff(" in text else ():
@@ -458,119 +395,6 @@ def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> Si
     result = plain("wrong", formula, INHOMOGENEOUS)
     verdict = replace(result.verdict, corrections=contradictions.lost_dots)
     return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
-
-
-def _is_driven(candidate: SystemCandidate) -> bool:
-    """Whether equations of a driven motion state the system, which leave its energies open."""
-    return candidate.is_of_equations and candidate.system.potential_energy.has(TIME)
-
-
-def _of_friction(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[int]:
-    """Yield the numbers of wrong formulas that differ in friction of Rayleigh's function.
-
-    This can be wrong, too: it is right if it leads to other formulas that contain its letters.
-    """
-    if candidate.basis not in ("positions", "energies"):
-        return
-    names = {symbol.name for symbol in sp.Tuple(*candidate.system.forces).free_symbols}
-    letters = {letter for name, letter in candidate.parameters.items() if name in names}
-    supported = {
-        word
-        for formula, one in results
-        if one.verdict.verdict in HOLDING and formula.subject not in letters
-        for word in formula.words
-    }
-    for number, (formula, result) in enumerate(results):
-        if result.verdict.verdict == "wrong":
-            terms = [
-                text for one in result.verdict.corrections for text in (one.wrong, one.correct)
-            ]
-            words = {w for text in terms for w in WORD.findall(text)} or {*formula.words}
-            own = words & letters
-            if own and not own <= supported:
-                yield number
-
-
-def _adds_letters(
-    formula: DocumentFormula, result: SideVerdict, candidate: SystemCandidate
-) -> bool:
-    """Whether a correction has forces or friction that a formula, as of a case without, has not.
-
-    Of a system that equations state, these are all letters; of a known system parameters, too, if
-    the formula is that of a free motion.
-    """
-    added = _added(formula, result)
-    if candidate.is_of_equations:
-        return bool(added)
-    loads = {name for name, _ in (*candidate.forces, *candidate.friction)}
-    loads |= {*_of_drives(candidate)}
-    parameters = {*candidate.parameters.values()}
-    is_zero = any(side.text == "0" for side in formula.sides)
-    is_free = is_zero and all(order(one) == 2 or one in parameters for one in formula.words)
-    if candidate.basis == "catalogue" and is_free:
-        loads |= parameters
-    return bool(added & loads)
-
-
-def _added(formula: DocumentFormula, result: SideVerdict) -> set[str]:
-    """The letters of corrections that a formula has not, but for a lost dot."""
-    terms = [one for one in result.verdict.corrections if one.correct != f"{one.wrong}_dot"]
-    names = {word for one in terms for word in WORD.findall(one.correct)}
-    return names - {*formula.words, *FUNCTIONS}
-
-
-def _of_drives(candidate: SystemCandidate) -> Iterator[str]:
-    """The letters of friction and of given functions of time in a system."""
-    system = candidate.system
-    places = (component for one in system.masses for component in one.position)
-    energies = sp.Add.make_args(sp.expand(system.potential_energy))
-    driving = [one for one in (*places, *energies) if one.has(TIME)]
-    if driving and not derivation(system).lagrangian.has(TIME):
-        driving = []  # in a rotating frame
-    symbols = sp.Tuple(system.dissipation, *system.forces, *driving).free_symbols
-    for parameter in system.parameters:
-        if parameter.symbol in symbols and parameter.symbol.name in candidate.parameters:
-            yield candidate.parameters[parameter.symbol.name]
-
-
-def _lacking(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[str]:
-    """The parameters of a system that have no number, and no letter in a formula that is judged.
-
-    A letter of other formulas alone can be one of another system.
-    """
-    judged = {w for formula, one in results if one.verdict.verdict != "context"
-              for w in formula.words}  # fmt: skip
-    known = {name for name, letter in candidate.parameters.items() if letter in judged}
-    known |= {*candidate.numbers}
-    return (p.symbol.name for p in candidate.system.parameters if p.symbol.name not in known)
-
-
-def _scales(candidate: SystemCandidate, names: Collection[str]) -> Iterator[str]:
-    """Those that drop out of the equations of motion: factors of the Lagrangian."""
-    system = candidate.system
-    if any(system.applied) or candidate.forces or candidate.friction:
-        return
-    for name in names:
-        symbol = next(p.symbol for p in system.parameters if p.symbol.name == name)
-        if not sp.expand(derivation(system).lagrangian / symbol).has(symbol):
-            yield name
-
-
-def _is_conservative(formulas: Sequence[DocumentFormula]) -> bool:
-    """Whether accelerations that formulas state are the gradient of a potential energy."""
-    words = {word for formula in formulas for word in formula.words}
-    symbols = {word: sp.Symbol(word, positive=True) for word in words}
-    rows = {stem(one.subject): one.sides[-1].text for one in formulas if order(one.subject) == 2}
-    try:
-        values = {q: parse(text, {**symbols, **FUNCTIONS}) for q, text in rows.items()}
-    except ExpressionError:
-        return False
-    if any(order(str(symbol)) for value in values.values() for symbol in value.free_symbols):
-        return False
-    point = {symbols[word]: sp.Rational(k + 7, k + 5) for k, word in enumerate(sorted(words))}
-    q = {name: sp.Symbol(name, positive=True) for name in rows}
-    curls = (values[a].diff(q[b]) - values[b].diff(q[a]) for a, b in combinations(rows, 2))
-    return all(abs(one.subs(point).evalf(30)) < 1e-20 for one in curls)
 
 
 def _lines(numbers: Iterable[int]) -> str:

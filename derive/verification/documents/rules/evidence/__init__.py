@@ -1,0 +1,1 @@
+"""Which verdicts stand by the evidence of a document."""

@@ -1,0 +1,189 @@
+"""How well a system that is known from elsewhere fits the formulas of a document."""
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
+from itertools import combinations
+
+import sympy as sp
+
+from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.syntax import ExpressionError
+from derive.reading.latex.tree import Quotient, nodes
+from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
+from derive.verification.documents.letters.document_system import derivation
+from derive.verification.documents.rules.consequences import FOLLOWS, WithVerdict
+from derive.verification.documents.rules.evidence.loads import added
+from derive.verification.documents.rules.evidence.slips import is_slip
+from derive.verification.documents.rules.side_verdict import CORRECT, HOLDING, SideVerdict
+from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.judging.motion_verdicts import NOT_LINEAR
+
+#: Kinds of formulas that no other case of the system gives.
+OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
+#: Formulas that hold for each that no slip explains, so that these are wrong.
+MANY = 4
+#: Letters outside of wrong terms from which on a formula speaks for a system by itself.
+AGREEING = 6
+
+
+class Support:
+    """The formulas that hold with a system and those that do not."""
+
+    def __init__(
+        self, results: Sequence[WithVerdict], candidate: SystemCandidate, is_partial: bool
+    ) -> None:
+        self._results, self._candidate, self._is_partial = results, candidate, is_partial
+        wrong = (one for one in results if one[1].verdict.verdict == "wrong")
+        self.wrong = [one for formula, one in wrong if not is_ambiguous(formula)]
+        self.independent = [one for one in self.wrong if FOLLOWS not in one.verdict.note]
+        self.misfits = sum(not is_slip(one.verdict.corrections) for one in self.independent)
+        held = (formula for formula, one in results if one.verdict.verdict in HOLDING)
+        self.holding = sum(not _is_vacant(formula) for formula in held)
+
+    def is_explained(self, result: SideVerdict) -> bool:
+        """Whether a slip explains that a formula does not hold, its form, or all others hold."""
+        verdict = result.verdict
+        return (
+            self._is_rest_right or verdict.note.endswith(NOT_LINEAR) or is_slip(verdict.corrections)
+        )
+
+    @cached_property
+    def _is_rest_right(self) -> bool:
+        """Whether all formulas of motions hold, but for one, or a few that no slip explains."""
+        own = {*self._candidate.coordinates}
+        undecided = any(
+            one.verdict.verdict not in (*CORRECT, "wrong") and own & {*map(stem, formula.words)}
+            for formula, one in self._results
+        )
+        is_stated = self.holding > 0 or self._candidate.basis == "positions"
+        are_few = len(self.independent) == 1 or self.holding >= MANY * self.misfits
+        return is_stated and are_few and not undecided
+
+    @cached_property
+    def is_weak(self) -> bool:
+        """Whether the system holds for too little, or a slip does not explain all differences."""
+        lacking = {*_lacking(self._results, self._candidate)}
+        scales = {*_scales(self._candidate, lacking)}
+        has_all = not lacking or (self.holding > 0 and lacking == scales)
+        formulas = [formula for formula, _ in self._results]
+        has_units = bool(self._candidate.numbers) and any(
+            order(one.subject) == 2 for one in formulas
+        )
+        if lacking or has_units:  # other accelerations can have a potential of their own
+            has_all = has_all and not _is_conservative(formulas)
+        is_open = self._is_partial or self._candidate.has_unusual_letters
+        return is_open or not has_all or self._has_none or self._has_other_mistakes
+
+    @property
+    def _has_none(self) -> bool:
+        """Whether no formula holds, and those that do not are no evidence of the system."""
+        hardly_agrees = any(_agreeing(*one) < AGREEING for one in self._results if _is_wrong(one))
+        return self.holding == 0 and (
+            ((self._has_energy or self._are_signs) and len(self.wrong) > 1)
+            or hardly_agrees
+            or bool(self._candidate.constraints)
+            or any(added(*one) for one in self._results)
+        )
+
+    @property
+    def _has_other_mistakes(self) -> bool:
+        """Whether there are mistakes that are no slips, or too many slips, one in an energy.
+
+        An energy and an equation that contradict the system alike speak against the system.
+        """
+        slips = {tuple(t.wrong for t in one.verdict.corrections) for one in self.independent}
+        few = max(1, min(self.holding, max(2, self.holding // 2)))
+        is_explained = all(map(self.is_explained, self.independent))
+        return not is_explained or (self._has_energy and len(slips) > few)
+
+    @property
+    def _has_energy(self) -> bool:
+        return any(one.kind in OF_ENERGIES for one in self.wrong)
+
+    @property
+    def _are_signs(self) -> bool:
+        """Whether all corrections are of the sign of gravity, as with angles from upright."""
+        own, words = self._candidate.parameters, Counter[str]()
+        names = (one.symbol.name for one in self._candidate.system.parameters
+                 if kind_of(one) == "gravity")  # fmt: skip
+        gravity = {own[name] for name in names if name in own}
+        for formula, one in self._results:
+            if one.verdict.verdict == "wrong":
+                words.update(w for side in formula.sides for w in WORD.findall(side.text))
+        terms = [t for one in self.wrong for t in one.verdict.corrections]
+        corrected = Counter(word for t in terms for word in WORD.findall(t.wrong))
+        is_whole = gravity and all(words[one] == corrected[one] > 0 for one in gravity)
+        return bool(is_whole) and all(_unsigned(t.wrong) == _unsigned(t.correct) for t in terms)
+
+
+def is_ambiguous(formula: DocumentFormula) -> bool:
+    """Whether it is not certain what stands below a slash of a formula."""
+    parts = nodes(formula.occurrence.sides)
+    return any(isinstance(one, Quotient) and one.is_ambiguous for one in parts)
+
+
+def _is_wrong(one: WithVerdict) -> bool:
+    return one[1].verdict.verdict == "wrong"
+
+
+def _is_vacant(formula: DocumentFormula) -> bool:
+    """Whether a formula states nothing but that an acceleration or a rate is zero."""
+    if not order(formula.subject):
+        return False
+    names = {word: sp.Symbol(word) for word in formula.words if word not in FUNCTIONS}
+    try:
+        return bool(parse(formula.sides[-1].text, {**names, **FUNCTIONS}) == 0)
+    except (ExpressionError, TypeError, ValueError):
+        return False
+
+
+def _agreeing(formula: DocumentFormula, result: SideVerdict) -> int:
+    """How many letters of a formula stand outside its wrong terms."""
+    written = sum(len(WORD.findall(side.text)) for side in formula.sides)
+    return written - sum(len(WORD.findall(one.wrong)) for one in result.verdict.corrections)
+
+
+def _unsigned(term: str) -> str:
+    return term.lstrip("+- ").removeprefix("(").removesuffix(")").replace(" ", "")
+
+
+def _lacking(results: Sequence[WithVerdict], candidate: SystemCandidate) -> Iterator[str]:
+    """The parameters of a system that have no number, and no letter in a formula that is judged.
+
+    A letter of other formulas alone can be one of another system.
+    """
+    judged = {w for formula, one in results if one.verdict.verdict != "context"
+              for w in formula.words}  # fmt: skip
+    known = {name for name, letter in candidate.parameters.items() if letter in judged}
+    known |= {*candidate.numbers}
+    return (p.symbol.name for p in candidate.system.parameters if p.symbol.name not in known)
+
+
+def _scales(candidate: SystemCandidate, names: Collection[str]) -> Iterator[str]:
+    """Those that drop out of the equations of motion: factors of the Lagrangian."""
+    system = candidate.system
+    if any(system.applied) or candidate.forces or candidate.friction:
+        return
+    for name in names:
+        symbol = next(p.symbol for p in system.parameters if p.symbol.name == name)
+        if not sp.expand(derivation(system).lagrangian / symbol).has(symbol):
+            yield name
+
+
+def _is_conservative(formulas: Sequence[DocumentFormula]) -> bool:
+    """Whether accelerations that formulas state are the gradient of a potential energy."""
+    words = {word for formula in formulas for word in formula.words}
+    symbols = {word: sp.Symbol(word, positive=True) for word in words}
+    rows = {stem(one.subject): one.sides[-1].text for one in formulas if order(one.subject) == 2}
+    try:
+        values = {q: parse(text, {**symbols, **FUNCTIONS}) for q, text in rows.items()}
+    except ExpressionError:
+        return False
+    if any(order(str(symbol)) for value in values.values() for symbol in value.free_symbols):
+        return False
+    point = {symbols[word]: sp.Rational(k + 7, k + 5) for k, word in enumerate(sorted(words))}
+    q = {name: sp.Symbol(name, positive=True) for name in rows}
+    curls = (values[a].diff(q[b]) - values[b].diff(q[a]) for a, b in combinations(rows, 2))
+    return all(abs(one.subs(point).evalf(30)) < 1e-20 for one in curls)
