@@ -135,3 +135,18 @@ def test_components_of_vectors_that_are_not_known_are_not_compared(tmp_path: Pat
 $$\vec\omega = \omega\hat z$$ in the directions $\hat x$, $\hat y$:
 $$\dot v_x = -2(\omega_y v_z - \omega_z v_y)$$"""
     assert verdicts(tmp_path, text)[2:] == ["context"] * 2
+
+
+SUM = r"""
+$$\frac{d}{dt}\left(L - \sum_i\frac{\partial L}{\partial\dot q_i}\dot q_i\right)
+ = \frac{\partial L}{\partial t}$$
+$$T = \frac12 m l^2(\dot{A}^2 + \dot{B}^2), \qquad V = - m g l\cos A$$
+$$\ddot{A} = - \frac gl\sin A$$
+"""
+
+
+def test_a_sum_over_coordinates_without_numbers_is_not_judged(tmp_path: Path) -> None:
+    named = SUM.replace("A", r"\theta").replace("B", r"\phi")
+    assert verdicts(tmp_path, named) == ["context", "definition", "definition", "verified"]
+    numbered = SUM.replace("A", r"\theta_1").replace("B", r"\theta_2")
+    assert verdicts(tmp_path, numbered.replace("q_i", r"\theta_i"))[0] == "verified"

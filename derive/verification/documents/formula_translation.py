@@ -315,6 +315,8 @@ class FormulaTranslator:
             return self.text(node.body)  # the sum of the forces of an axis, which has no letter
         if node.index is None or not 0 <= last - first < MAX_TERMS:
             raise UntranslatableError("a sum without an index, or of too many terms")
+        if first == last and not isinstance(node.upper, Number):
+            raise UntranslatableError("a sum of terms that nothing counts")
         terms = [(1, indexed(node.body, node.index.name, k)) for k in range(first, last + 1)]
         return self._sum(terms)
 

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from derive.reading.document import Display, Document, divided
@@ -15,7 +16,12 @@ from derive.reading.latex.tree import (
     nodes,
 )
 from derive.reading.plain_formulas import PLAIN
-from derive.verification.documents.formula_translation import RATES, FormulaTranslator, stem
+from derive.verification.documents.formula_translation import (
+    RATES,
+    FormulaTranslator,
+    UntranslatableError,
+    stem,
+)
 from derive.verification.documents.letter_meanings import (
     Interpretation,
     Work,
@@ -330,7 +336,8 @@ def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
             if isinstance(node, Letter | Derivative):
                 own = occurrence.latex[slice(*node.span)]
                 inside = BRACKETS.fullmatch(own)
-                result.setdefault(translator.text(node).text, inside[1] if inside else own)
+                with suppress(UntranslatableError):  # such as the derivative of a sum
+                    result.setdefault(translator.text(node).text, inside[1] if inside else own)
     return result
 
 
