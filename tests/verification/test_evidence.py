@@ -139,6 +139,18 @@ def test_a_value_of_a_function_of_time_is_no_definition(
     assert judged[-1][1].verdict.verdict == expected
 
 
+@pytest.mark.parametrize(("latex", "term", "expected"), [
+    (r"m\ddot s = - k s - 0.2", "- 0.2", "context"),
+    (r"m\ddot s = - k s - 0.2 c", "- 0.2*c", "wrong"),
+    (r"v = \dot s - 0.2", "- 0.2", "wrong"),  # no equation of motion
+])  # fmt: skip
+def test_a_number_that_is_added_can_be_a_force(latex: str, term: str, expected: str) -> None:
+    (formula,) = formulas(latex)
+    results = [with_correction(formula, term, "0")]
+    judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
+    assert judged[-1][1].verdict.verdict == expected
+
+
 @pytest.mark.parametrize(("note", "expected"), [(f"it {NOT_LINEAR}", "wrong"), ("", "context")])
 def test_whatever_the_inertia_is_accelerations_have_no_squares(note: str, expected: str) -> None:
     energy, equation = formulas(r"L = \frac12 I_1\dot s^2", r"m\ddot s^2 = - k s")
@@ -146,3 +158,50 @@ def test_whatever_the_inertia_is_accelerations_have_no_squares(note: str, expect
     results = [(energy, unknown), (equation, plain("wrong", equation, note))]
     judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
     assert judged[-1][1].verdict.verdict == expected
+
+
+def of_last(*results: WithVerdict) -> str:
+    judged = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
+    return judged[-1][1].verdict.verdict
+
+
+MOTIONS = [r"m\ddot s = - k s", r"\ddot y = - g", r"p = m\dot s", r"q = m\dot y"]
+
+
+def test_a_formula_with_several_changes_is_wrong_if_all_others_hold() -> None:
+    *others, parameter, last = formulas(*MOTIONS, "m = 2 k", r"m\ddot s = - 7 k y^3")
+    held = [with_verdict(one, "verified") for one in others]
+    wrong = with_correction(last, "7*k*y**3", "k*s")
+    assert of_last(*held, wrong) == "wrong"
+    assert of_last(wrong) == "wrong"  # by positions
+    # what is undecided can be of the same system as the formula, unless nothing moves in it
+    assert of_last(*held[1:], with_verdict(others[0], "context"), wrong) == "context"
+    assert of_last(*held, with_verdict(parameter, "context"), wrong) == "wrong"
+
+
+@pytest.mark.parametrize(("count", "expected"), [(7, "context"), (8, "wrong")])
+def test_two_formulas_with_several_changes_are_wrong_beside_many(count: int, expected: str) -> None:
+    *others, last = formulas(*(2 * MOTIONS), r"m\ddot s = - 7 k y^3")
+    wrong = with_correction(last, "7*k*y**3", "k*s")
+    held = [with_verdict(one, "verified") for one in others[:count]]
+    assert of_last(*held, wrong, wrong) == expected
+
+
+def test_an_energy_of_another_system_refutes_no_equation() -> None:
+    first, energy, last = formulas(
+        r"\ddot y = - g", r"L = m\dot s^2 + 7 k y^3", r"m\ddot s = - 2 k s"
+    )
+    undecided = with_verdict(first, "context")
+    slip = with_correction(last, "2*k*s", "k*s")
+    other = with_correction(energy, "7*k*y**3", "g*s", "lagrangian")
+    assert of_last(undecided, slip) == "wrong"
+    assert of_last(undecided, other, slip) == "context"
+    assert of_last(undecided, with_correction(energy, "m", "m/2", "lagrangian"), slip) == "wrong"
+
+
+def test_a_formula_with_several_changes_is_wrong_by_a_system_that_the_user_states() -> None:
+    (formula,) = formulas(r"m\ddot s = - 7 k y^3")
+    results = [with_correction(formula, "7*k*y**3", "k*s"), with_verdict(formula, "context")]
+    for is_stated, expected in ((True, "wrong"), (False, "context")):
+        judged = [*weighed(results, stated(STATED), Contradictions(), is_stated)]
+        assert judged[0][1].verdict.verdict == expected

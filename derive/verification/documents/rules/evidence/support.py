@@ -58,7 +58,7 @@ class Support:
             for formula, one in self._results
         )
         is_stated = self.holding > 0 or self._candidate.basis == "positions"
-        are_few = len(self.independent) == 1 or self.holding >= MANY * self.misfits
+        are_few = len(self.independent) == 1 or self._are_few
         return is_stated and are_few and not undecided
 
     @cached_property
@@ -89,14 +89,19 @@ class Support:
 
     @property
     def _has_other_mistakes(self) -> bool:
-        """Whether there are mistakes that are no slips, or too many slips, one in an energy.
+        """Whether there are many mistakes that are no slips, or many slips, one in an energy.
 
         An energy and an equation that contradict the system alike speak against the system.
         """
         slips = {tuple(t.wrong for t in one.verdict.corrections) for one in self.independent}
         few = max(1, min(self.holding, max(2, self.holding // 2)))
-        is_explained = all(map(self.is_explained, self.independent))
-        return not is_explained or (self._has_energy and len(slips) > few)
+        are_many = not (self._are_few or self._is_rest_right)
+        return are_many or (self._has_energy and len(slips) > few)
+
+    @property
+    def _are_few(self) -> bool:
+        """Whether formulas that no slip explains are few beside those that hold."""
+        return self.holding >= MANY * self.misfits
 
     @property
     def _has_energy(self) -> bool:

@@ -74,14 +74,15 @@ def weighed(
     several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
     it has the index of a further Lagrangian, as of L_small; nor if it is the rate of a position
     that a system of energies or equations does not contain; nor if it gives a name a number, as in
-    an example. A system that is known from elsewhere must have a formula that holds, or corrections
-    in the letters of the formula; a letter for each of its parameters in formulas that are
-    judged, unless that is a factor of the Lagrangian, such as the mass of a single body, and the
-    accelerations as written have no potential of their own; a letter for several of them, such as
-    for both masses, in a formula that holds; and no more formulas with more than one wrong term, or
-    slips if one is in an energy, than half of those that hold, of which there must be one. With a
-    partial search for it, none is wrong. A formula whose dimensions contradict those of all others
-    needs no more evidence if one term is wrong.
+    an example. One slip must explain it, or all others must hold, but for a few. A system that is
+    known from elsewhere must have a formula that holds, or corrections in the letters of the
+    formula; a letter for each of its parameters in formulas that are judged, unless that is a
+    factor of the Lagrangian, such as the mass of a single body, and the accelerations as written
+    have no potential of their own; a letter for several of them, such as for both masses, in a
+    formula that holds; four formulas that hold for each that no slip explains; and no more slips,
+    if one is in an energy, than half of the formulas that hold. With a partial search for it, none
+    is wrong. A formula whose dimensions contradict those of all others needs no more evidence if
+    one term is wrong.
     """
     evidence = _Evidence(results, candidate, contradictions, is_stated, is_partial)
     for number, (formula, _) in enumerate(results):
@@ -173,6 +174,9 @@ class _Evidence:
             return UNSUPPORTED
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
+        surplus = [t for t in result.verdict.corrections if t.correct == "0"]
+        if any(not WORD.search(t.wrong) for t in surplus) and 2 in map(order, formula.words):
+            return "a number that is added can be a constant force"
         if line := self._other_energy(number):
             return opposed(line)
         if line := self._special_motion(number) or self._value_in_time(formula, result):
