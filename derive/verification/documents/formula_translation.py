@@ -110,6 +110,7 @@ class LetterNotation:
     times: frozenset[str] = frozenset()  # those of them that time alone is the argument of
     matrices: frozenset[str] = frozenset()  # identifiers of matrices and columns
     count: int = 1  # values of an index without bounds
+    is_counted: bool = True  # unless several coordinates have no numbers
     primes_are_rates: bool = False
     primed: frozenset[str] = frozenset()  # letters whose primes are rates beside dots of others
     calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
@@ -315,7 +316,7 @@ class FormulaTranslator:
             return self.text(node.body)  # the sum of the forces of an axis, which has no letter
         if node.index is None or not 0 <= last - first < MAX_TERMS:
             raise UntranslatableError("a sum without an index, or of too many terms")
-        if first == last and not isinstance(node.upper, Number):
+        if not (self.notation.is_counted or isinstance(node.upper, Number)):
             raise UntranslatableError("a sum of terms that nothing counts")
         terms = [(1, indexed(node.body, node.index.name, k)) for k in range(first, last + 1)]
         return self._sum(terms)

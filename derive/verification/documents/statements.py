@@ -228,11 +228,13 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
             if isinstance(first, Letter) and any(_is_matrix(side, matrices) for side in others):
                 matrices.add(plain.name(first))
     count = max(indices, default=1)
+    generic = {letter.name for letter in everything if letter.index in INDICES}
     return LetterNotation(
         frozenset(functions),
         frozenset(functions - of_letters),
         frozenset(matrices),
         min(count, 9),
+        bool(indices) or len(dotted - generic) < 2,
         primed and not dotted,
         frozenset(dotted - marked if both else ()),
     )
