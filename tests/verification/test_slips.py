@@ -9,6 +9,7 @@ from derive.verification.judging.verdict import Correction
 @pytest.mark.parametrize(("wrong", "correct"), [
     ("m*g*l", "-m*g*l"),  # a sign
     ("m*g*l", "m*g*l/2"), ("2/3*k", "3/2*k"),  # a number
+    ("(m*l + k*l)*g", "2*l*(m + k)*g"),
     ("m*g*sin(x)", "m*g*l*sin(x)"), ("m*l*v", "m*v"),  # a factor
     ("m*l*v**2", "m*l**2*v**2"), ("m*r**2", "m"),  # a power
     ("k*x", "k*x_dot"), ("m_1*g", "m_2*g"), ("sin(a)", "cos(a)"),  # one for another
@@ -27,6 +28,7 @@ def test_one_change_of_a_term_is_a_slip(wrong: str, correct: str) -> None:
     ("m*r**3", "m"),  # too many powers
     ("m*l", "g*k*l"), ("m*l", "1/(m*l)"),  # several factors
     ("m*(a + b)", "m*(c + d)"), ("k*x", "k*x + m*g + c"),  # several terms
+    ("a + b + c", "a + d"),
     ("", "m*g + k*x"), ("m*x", "m*x*(a + b)"),
     ("m*z_dot**2", "0"), ("a + b", "a"),  # a term too many
     ("transpose(u)*v", "transpose(v)*u"),  # unknown
