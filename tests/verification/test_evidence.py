@@ -205,3 +205,14 @@ def test_a_formula_with_several_changes_is_wrong_by_a_system_that_the_user_state
     for is_stated, expected in ((True, "wrong"), (False, "context")):
         judged = [*weighed(results, stated(STATED), Contradictions(), is_stated)]
         assert judged[0][1].verdict.verdict == expected
+
+
+@pytest.mark.parametrize(("count", "expected"), [(3, "context"), (4, "wrong")])
+def test_a_known_system_of_which_much_differs_refutes_nothing(count: int, expected: str) -> None:
+    right, other, last = formulas(r"m\ddot x + k x = 0", r"\ddot x = 7 x^3 m", r"m\ddot x = k x")
+    results = [with_verdict(right, "verified")] * count
+    results += [with_correction(other, "7*x**3*m", "-k*x/m"), with_correction(last, "k*x", "-k*x")]
+    results += [with_verdict(other, "context")]
+    candidate = known("oscillator", ("x",), m="m", k="k")
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert judged[-2][1].verdict.verdict == expected

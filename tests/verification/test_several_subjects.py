@@ -52,6 +52,7 @@ def test_a_slip_below_a_heading_is_not_verified(
     "A\n===\n@a\n\nProblem 1\n@b\n\nC\n===\n@c\n",
     "\\paragraph{A}\n@a\n\\subparagraph{B}\n@b\n\\paragraph{C}\n@c\n",
     "\\begin{question}\n@a\n1. @b\n\\end{question}\n\\begin{question}\n@c\n\\end{question}\n",
+    "\\section{A}\n@a\n\\paragraph{B}\n@b\n\\section{C}\n@c\n",
     "\\section{A}\n@a\n\\problem\n@b\n\\section{C}\n@c\n",
 ])  # fmt: skip
 def test_the_highest_headings_divide_a_text(text: str) -> None:

@@ -351,6 +351,13 @@ def test_constraints_of_positions_can_be_substituted_into_a_lagrangian(tmp_path:
     (only,) = wrong(tmp_path, SUBSTITUTED.replace(r"\frac34", r"\frac54"))
     assert only.latex.startswith("L =")
     assert r"\frac{3}{4} m (b - a)^2" in only.correction
+    # one with all velocities keeps them
+    whole = (
+        r"$$L = \frac12 m (b - a)^2\dot\theta^2 + \frac12 m a^2\dot\psi^2"
+        r" + m g (b - a)\cos\theta$$"
+    )
+    (only,) = wrong(tmp_path, SUBSTITUTED.partition("Without")[0] + whole)
+    assert r"+ \frac{a^2 m \dot\psi^2}{4} +" in only.correction
 
 
 SCALED = r"""

@@ -154,10 +154,7 @@ class SideComparison:
         system = derivation.system
         if not system.conditions or derivation.integrability.nonholonomic:
             return None
-        pairs = zip(system.q, system.qdot, strict=True)
-        lacking = [
-            v for q, v in pairs if lagrangian.has(v) and not (other.has(v) or lagrangian.has(q))
-        ]
+        lacking = [v for v in system.qdot if lagrangian.has(v) and not other.has(v)]
         if len(lacking) != len(system.conditions):
             return None
         values = sp.solve([*derivation.constraint_rates], lacking, dict=True)
