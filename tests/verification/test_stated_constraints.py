@@ -247,3 +247,16 @@ def test_a_known_system_with_a_stated_constraint_contradicts_no_single_formula(
     judged = [(formula, replace(result, verdict=corrected))]
     ((_, result),) = weighed(judged, candidate, Contradictions(), is_stated=False)
     assert result.verdict.verdict == verdict
+
+
+@pytest.mark.parametrize(("formula", "is_one"), [
+    (r"\dot x\sin\theta - \dot y\cos\theta = 0", True), (r"\dot x^2 + \dot y^2 = b^2", False),
+    (r"(\dot x + \dot y)^2 - \dot x^2 - 2\dot x\dot y - \dot y^2 + \dot x\cos\theta = 0", True),
+])  # fmt: skip
+def test_constraints_are_linear_in_velocities(formula: str, is_one: bool, tmp_path: Path) -> None:
+    text = (
+        rf"With the constraint $${formula}$$ $$T = \frac12 m(\dot x^2 + \dot y^2 + b\dot\theta^2)$$"
+    )
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    statements = translated(_read(read_document(tmp_path / "a.md"))[0])
+    assert bool(letters_of(statements.formulas, statements.derivatives).constraints) == is_one

@@ -155,9 +155,7 @@ class SideComparison:
         if not system.conditions or derivation.integrability.nonholonomic:
             return None
         lacking = [v for v in system.qdot if lagrangian.has(v) and not other.has(v)]
-        if len(lacking) != len(system.conditions):
-            return None
-        values = sp.solve([*derivation.constraint_rates], lacking, dict=True)
+        values = sp.solve([*derivation.constraint_rates], lacking, dict=True) if lacking else []
         return lagrangian.subs(values[0]) if values else None
 
     def _witness(
