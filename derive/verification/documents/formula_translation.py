@@ -316,10 +316,15 @@ class FormulaTranslator:
             return self.text(node.body)  # the sum of the forces of an axis, which has no letter
         if node.index is None or not 0 <= last - first < MAX_TERMS:
             raise UntranslatableError("a sum without an index, or of too many terms")
-        if not (self.notation.is_counted or isinstance(node.upper, Number)):
-            raise UntranslatableError("a sum of terms that nothing counts")
+        is_counted = self.notation.is_counted or isinstance(node.upper, Number)
+        if not is_counted and any(map(_is_rate, nodes(node.body))):
+            raise UntranslatableError("a sum over coordinates that have no numbers")
         terms = [(1, indexed(node.body, node.index.name, k)) for k in range(first, last + 1)]
         return self._sum(terms)
+
+
+def _is_rate(node: Node) -> bool:
+    return isinstance(node, Derivative) or (isinstance(node, Letter) and bool(node.dots))
 
 
 #: Letters of forces and torques, of which a sum without an index is the total.
