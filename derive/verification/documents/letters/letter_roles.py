@@ -98,7 +98,7 @@ def letters_of(
         for one in stems
         if one not in {*known, *columns} and not GENERIC.match(one) and not one.endswith("_column")
     ]
-    abbreviations = _abbreviations(stems, coordinates)
+    abbreviations = _abbreviations(stems, coordinates, formulas)
     used = {*abbreviations, *matrices_by_entries(stems)}
     parameters = [one for one in parameters if one not in used]
     ordered, *others = _orders(formulas, coordinates, stems)
@@ -170,10 +170,19 @@ def _columns(
     return columns
 
 
+#: The sine or cosine of a difference of two angles.
+DIFFERENCE = re.compile(r"(?:sin|cos)\(\w+ - \w+\)")
+
+
 def _abbreviations(
-    names: Iterable[str], coordinates: Sequence[str]
+    names: Iterable[str], coordinates: Sequence[str], formulas: Iterable[DocumentFormula]
 ) -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Names such as s_1 and c_12, if there are sines and cosines."""
+    """Names such as s_1 and c_12, if there are sines and cosines.
+
+    Documents can define those of several angles by differences, as cos(q_1 - q_2).
+    """
+    stated = {one.subject: one.sides[-1].text for one in formulas}
+    names = [one for one in names if not DIFFERENCE.fullmatch(stated.get(one, ""))]
     result: dict[str, tuple[str, tuple[str, ...]]] = {}
     for name in names:
         if match := ABBREVIATION.match(name):
