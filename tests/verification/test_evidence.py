@@ -216,3 +216,28 @@ def test_a_known_system_of_which_much_differs_refutes_nothing(count: int, expect
     candidate = known("oscillator", ("x",), m="m", k="k")
     judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
     assert judged[-2][1].verdict.verdict == expected
+
+
+@pytest.mark.parametrize(("latex", "expected"), [
+    (r"T = m\dot s^2", "context"), (r"m\ddot s = - k s", "wrong"),
+    (r"\frac{\partial L}{\partial s} = - k s", "wrong"),
+])  # fmt: skip
+def test_an_energy_alone_refutes_no_other_energy(latex: str, expected: str) -> None:
+    energy, held, last = formulas(r"L = m\dot s^2 - k s^2", latex, r"V = 2 k s^2")
+    results = [
+        with_verdict(energy, "definition", "lagrangian"), with_verdict(held, "verified"),
+        with_correction(last, "2*k*s**2", "k*s**2", "potential_energy"),
+    ]  # fmt: skip
+    candidate = stated("stated_energies", frozenset({0}))
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert judged[-1][1].verdict.verdict == expected
+
+
+@pytest.mark.parametrize(("place", "kind", "expected"), [
+    ("x_1", "potential_energy", "context"), ("x_1", "", "wrong"),
+    ("k_1", "potential_energy", "wrong"),
+])  # fmt: skip
+def test_a_place_without_a_rate_can_be_another_one(place: str, kind: str, expected: str) -> None:
+    (formula,) = formulas(rf"V = m g s + m g {place}")
+    wrong = with_correction(formula, f"m*g*{place}", "m*g*s", kind)
+    assert of_last(wrong) == expected

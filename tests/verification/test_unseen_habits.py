@@ -804,3 +804,50 @@ $$T = \frac12 m\dot r^2 + \frac12 m (r\dot\theta)^2$$"""
 def test_a_division_by_zero_has_no_value(tmp_path: Path) -> None:
     text = r"$$\ddot x + \omega^2 x = 0$$ $$a = \frac{b}{\omega^2 - \omega^2}$$"
     assert verdicts(tmp_path, text)[1] != "verified"  # and no warning
+
+
+DIFFERENCES = r"""
+$$x_1 = l_1\sin\theta_1, \quad y_1 = -l_1\cos\theta_1$$
+$$x_2 = l_1\sin\theta_1 + l_2\sin\theta_2, \quad y_2 = -l_1\cos\theta_1 - l_2\cos\theta_2$$
+$$(m_1 + m_2) l_1^2\ddot\theta_1 + m_2 l_1 l_2 c_{12}\ddot\theta_2
+ + m_2 l_1 l_2 s_{12}\dot\theta_2^2 + (m_1 + m_2) g l_1 s_1 = 0$$
+$$s_1 = \sin\theta_1, \quad c_{12} = \cos(\theta_1 - \theta_2), \quad s_{12} = \sin(\theta_1 - \theta_2)$$
+"""
+
+
+def test_abbreviations_can_be_of_differences_of_angles(tmp_path: Path) -> None:
+    right = verdicts(tmp_path, DIFFERENCES)
+    assert right == [*["definition"] * 4, "verified", "verified", "definition", "definition"]
+    assert (
+        verdicts(tmp_path, DIFFERENCES.replace("+ m_2 l_1 l_2 s", "- m_2 l_1 l_2 s"))[4] == "wrong"
+    )
+
+
+GRAVITY = r"""
+$$T = \frac12(m_1 + m_2)\dot x_2^2$$
+$$V = - m_1 g x_1 - m_2 g x_2 = - m_1 g(\ell - x_2) - m_2 g(x_2)$$
+$$L = \frac12(m_1 + m_2)\dot x_2^2 + m_1 g(\ell - x_2) + m_2 g x_2$$
+$$(m_1 + m_2)\ddot x_2 = (m_2 - m_1) g$$
+"""
+
+
+def test_a_place_in_brackets_behind_g_is_a_factor(tmp_path: Path) -> None:
+    # x_1 has no meaning without its rope
+    assert verdicts(tmp_path, GRAVITY) == ["verified", "context", "equivalent", "verified"]
+    rope = r"$$x_1 + x_2 = \ell$$" + GRAVITY
+    assert "wrong" not in verdicts(tmp_path, rope)
+    slip = GRAVITY.replace("(m_2 - m_1) g", "(2 m_2 - m_1) g")
+    assert verdicts(tmp_path, slip)[-1] == "wrong"
+
+
+VELOCITY = r"""
+$$K = \frac12 m\dot y^2, \qquad U = \frac12 k y^2$$ $$m\ddot y = - k y$$
+$$\frac{\partial A}{\partial y} = - k y$$ $$\frac{\partial A}{\partial\dot y} = m\dot y$$
+$$\frac{d}{dt}\frac{\partial A}{\partial\dot y} = m\ddot y$$
+"""
+
+
+def test_a_derivative_by_a_velocity_is_no_rate_of_one_by_a_coordinate(tmp_path: Path) -> None:
+    expected = ["verified", "verified", "verified", "definition", "definition", "verified"]
+    assert verdicts(tmp_path, VELOCITY) == expected
+    assert verdicts(tmp_path, VELOCITY.replace(r"= m\ddot y", r"= k\ddot y"))[-1] == "wrong"

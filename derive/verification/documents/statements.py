@@ -205,6 +205,8 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
             names = {one.name for one in node.variables if isinstance(one, Letter)}
             varied.setdefault(plain.name(node.operand), {*dotted}).update(names)
     raised = {id(base) for tree in trees for base in _raised_rates(tree)}
+    if GRAVITY not in varied:
+        raised |= {id(one) for one in _factors_of_gravity(trees)}
     functions = {
         name
         for tree in trees
@@ -240,6 +242,10 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     )
 
 
+#: The letter of gravity.
+GRAVITY = "g"
+
+
 def _is_at_one_time(side: Node) -> bool:
     r"""Whether a side is the value of a function at a time, such as ``\\theta(0)`` of a start."""
     if not isinstance(side, Application) or len(side.arguments) != 1:
@@ -257,6 +263,23 @@ def _raised_rates(tree: Node) -> Iterator[Application]:
             arguments = node.base.arguments
             if len(arguments) == 1 and isinstance(arguments[0], Letter) and arguments[0].dots:
                 yield node.base
+
+
+def _factors_of_gravity(trees: Sequence[Node]) -> Iterator[Application]:
+    """Coordinates in brackets behind g, ``m g(x)``, if it stands without brackets elsewhere."""
+    everything = [node for tree in trees for node in nodes(tree)]
+    own = [
+        one
+        for one in everything
+        if isinstance(one, Application)
+        and isinstance(one.head, Letter)
+        and one.head.identifier == GRAVITY
+        and len(one.arguments) == 1
+        and not _is_time(one.arguments)
+    ]
+    count = sum(isinstance(one, Letter) and one.identifier == GRAVITY for one in everything)
+    if count > len(own):
+        yield from own
 
 
 def _is_time(arguments: Sequence[Node]) -> bool:

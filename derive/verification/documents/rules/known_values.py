@@ -379,7 +379,8 @@ class DocumentNamespace:
             if rate is None:
                 break
             value = rate
-            yield name + ending, value
+            if name + ending not in self.derivatives:  # by a velocity, as dL_dx_dot is
+                yield name + ending, value
 
 
 def _with_constants(system: System, symbols: Collection[sp.Symbol]) -> System:

@@ -40,6 +40,8 @@ from derive.verification.judging.motion_verdicts import NOT_LINEAR
 
 #: A Lagrangian or a Hamiltonian with a word as its index.
 FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
+#: The derivative of an energy by a coordinate or a velocity.
+DERIVATIVE = re.compile(r"d[A-Z]\w*_d")
 #: Moments of inertia.
 INERTIA = re.compile(r"[IJ](_\w+)?")
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
@@ -174,6 +176,10 @@ class _Evidence:
             return UNSUPPORTED
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
+        if line := self._contrary_energy(result):
+            return opposed(line)
+        if place := self._other_place(result):
+            return f"{place} can be another place"
         surplus = [t for t in result.verdict.corrections if t.correct == "0"]
         if any(not WORD.search(t.wrong) for t in surplus) and 2 in map(order, formula.words):
             return "a number that is added can be a constant force"
@@ -210,6 +216,24 @@ class _Evidence:
             ),
             None,
         )
+
+    def _contrary_energy(self, result: SideVerdict) -> int | None:
+        """The line of the one energy that states the system, if no motion supports it."""
+        stating = [*self._candidate.stating]
+        is_energy = result.kind in OF_ENERGIES and self._candidate.basis == "energies"
+        if not is_energy or len(stating) != 1 or self._is_stated:
+            return None
+        held = (formula for formula, one in self._results if one.verdict.verdict in HOLDING)
+        words = {word for formula in held for word in formula.words}
+        is_supported = any(order(word) == 2 or DERIVATIVE.match(word) for word in words)
+        return None if is_supported else self._lines[stating[0]]
+
+    def _other_place(self, result: SideVerdict) -> str:
+        """A place without a rate in the wrong term of an energy, which no other formula shows."""
+        words = [w for t in result.verdict.corrections for w in WORD.findall(t.wrong)]
+        known = {*self._candidate.coordinates, *self._shown}
+        places = (w for w in words if POINT.match(w) and "_" in w and w not in known)
+        return next(places, "") if result.kind in OF_ENERGIES else ""
 
     @cached_property
     def _further_inertia(self) -> int | None:
