@@ -238,6 +238,11 @@ def test_an_energy_alone_refutes_no_other_energy(latex: str, expected: str) -> N
     ("k_1", "potential_energy", "wrong"),
 ])  # fmt: skip
 def test_a_place_without_a_rate_can_be_another_one(place: str, kind: str, expected: str) -> None:
-    (formula,) = formulas(rf"V = m g s + m g {place}")
-    wrong = with_correction(formula, f"m*g*{place}", "m*g*s", kind)
-    assert of_last(wrong) == expected
+    energy, held, last = formulas(r"L = m\dot s^2 - m g s", r"\ddot s = - g", f"V = m g {place}")
+    results = [
+        with_verdict(energy, "definition", "lagrangian"), with_verdict(held, "verified"),
+        with_correction(last, f"m*g*{place}", "m*g*s", kind),
+    ]  # fmt: skip
+    candidate = stated("stated_energies", frozenset({0}))
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert judged[-1][1].verdict.verdict == expected

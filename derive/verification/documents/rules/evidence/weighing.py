@@ -40,6 +40,8 @@ from derive.verification.judging.motion_verdicts import NOT_LINEAR
 
 #: A Lagrangian or a Hamiltonian with a word as its index.
 FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
+#: The place of one of several bodies.
+INDEXED_PLACE = re.compile(r"[xyzXYZ]_\d+")
 #: The derivative of an energy by a coordinate or a velocity.
 DERIVATIVE = re.compile(r"d[A-Z]\w*_d")
 #: Moments of inertia.
@@ -223,17 +225,21 @@ class _Evidence:
         is_energy = result.kind in OF_ENERGIES and self._candidate.basis == "energies"
         if not is_energy or len(stating) != 1 or self._is_stated:
             return None
-        held = (formula for formula, one in self._results if one.verdict.verdict in HOLDING)
+        held = [formula for formula, one in self._results if one.verdict.verdict in HOLDING]
         words = {word for formula in held for word in formula.words}
-        is_supported = any(order(word) == 2 or DERIVATIVE.match(word) for word in words)
+        is_supported = any(order(one.subject) for one in held) or any(
+            order(word) == 2 or DERIVATIVE.match(word) for word in words
+        )
         return None if is_supported else self._lines[stating[0]]
 
     def _other_place(self, result: SideVerdict) -> str:
         """A place without a rate in the wrong term of an energy, which no other formula shows."""
+        if result.kind not in OF_ENERGIES or self._candidate.basis == "positions":
+            return ""
         words = [w for t in result.verdict.corrections for w in WORD.findall(t.wrong)]
         known = {*self._candidate.coordinates, *self._shown}
-        places = (w for w in words if POINT.match(w) and "_" in w and w not in known)
-        return next(places, "") if result.kind in OF_ENERGIES else ""
+        places = (w for w in words if INDEXED_PLACE.fullmatch(w) and w not in known)
+        return next(places, "")
 
     @cached_property
     def _further_inertia(self) -> int | None:
