@@ -246,3 +246,6 @@ def test_a_place_without_a_rate_can_be_another_one(place: str, kind: str, expect
     candidate = stated("stated_energies", frozenset({0}))
     judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
     assert judged[-1][1].verdict.verdict == expected
+    # positions that are stated show what it is
+    by_positions = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
+    assert by_positions[-1][1].verdict.verdict == "wrong"

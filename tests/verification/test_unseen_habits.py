@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 from derive.reading.document_formats import read_document
-from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.judgement import _read, judge_document
 from derive.verification.documents.judges import Judges
 from derive.verification.documents.numbers import resolution
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
+from derive.verification.documents.statements import notation
 
 
 def judged(folder: Path, text: str) -> DocumentVerdicts:
@@ -838,6 +839,20 @@ def test_a_place_in_brackets_behind_g_is_a_factor(tmp_path: Path) -> None:
     assert "wrong" not in verdicts(tmp_path, rope)
     slip = GRAVITY.replace("(m_2 - m_1) g", "(2 m_2 - m_1) g")
     assert verdicts(tmp_path, slip)[-1] == "wrong"
+
+
+@pytest.mark.parametrize(("text", "is_function", "is_counted"), [
+    (r"$$V = m g(x)$$ $$T = \frac12 m\dot x^2$$", True, True),
+    (r"$$V = m g(x) + m g$$ $$T = \frac12 m\dot x^2$$", False, True),
+    (r"$$H = \sum_i p_i\dot q_i - L$$ $$T = \frac12 m\dot x^2$$", False, True),
+    (r"$$H = \sum_i p_i\dot q_i - L$$ $$T = \frac12 m(\dot x^2 + \dot y^2)$$", False, False),
+])  # fmt: skip
+def test_other_formulas_show_what_brackets_and_sums_mean(
+    text: str, is_function: bool, is_counted: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    result = notation(_read(read_document(tmp_path / "a.md"))[0])
+    assert ("g" in result.functions, result.is_counted) == (is_function, is_counted)
 
 
 VELOCITY = r"""
