@@ -35,6 +35,8 @@ from derive.verification.documents.formula_translation import (
 )
 
 WORD = re.compile(r"(?<![\d.])[A-Za-z_]\w*")
+#: The letter of gravity.
+GRAVITY = "g"
 #: Names of Cartesian components.
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 #: The square of a name.
@@ -240,10 +242,6 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         primed and not dotted,
         frozenset(dotted - marked if both else ()),
     )
-
-
-#: The letter of gravity.
-GRAVITY = "g"
 
 
 def _is_at_one_time(side: Node) -> bool:

@@ -35,6 +35,8 @@ from derive.verification.documents.statements import SQUARE, WORD, DocumentFormu
 
 #: A letter with a number.
 INDEXED = re.compile(r"[A-Za-z]+_\d+")
+#: The sine or cosine of a difference of two angles.
+DIFFERENCE = re.compile(r"(?:sin|cos)\(\w+ - \w+\)")
 #: A number, perhaps with a unit.
 NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d+\*[msN]\b.*")
 #: A function of an angle and its argument.
@@ -168,10 +170,6 @@ def _columns(
         if matrices.keys().isdisjoint(formula.words) and "[[" not in formula.text:
             columns -= {stem(word) for word in formula.words}
     return columns
-
-
-#: The sine or cosine of a difference of two angles.
-DIFFERENCE = re.compile(r"(?:sin|cos)\(\w+ - \w+\)")
 
 
 def _abbreviations(

@@ -17,7 +17,7 @@ from derive.verification.documents.letters.letters import (
     TOTAL,
     energy_of_part,
 )
-from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.statements import GRAVITY, WORD, DocumentFormula
 
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
@@ -27,8 +27,6 @@ PARTNERS = {"K": ("P", "Pi")}
 MULTIPLE = re.compile(r"\d+\*(\w+)")
 #: A sum or difference of two names, such as T - V.
 SUM_OF_ENERGIES = re.compile(r"(\w+) ([+-]) (\w+)\Z")
-#: The letter of gravity.
-GRAVITY = "g"
 
 
 def quantities_of(

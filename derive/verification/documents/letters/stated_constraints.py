@@ -119,7 +119,7 @@ def _is_linear(one: StatedConstraint) -> bool:
     expression, rates = expression_of(one), [symbol(f"{q}_dot") for q in one.coordinates]
     if expression is None:
         return False
-    return all(entry == 0 or is_small(entry) for entry in sp.hessian(expression, rates))
+    return all(map(is_small, sp.hessian(expression, rates)))
 
 
 def symbol(name: str) -> sp.Symbol:

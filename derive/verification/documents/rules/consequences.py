@@ -66,7 +66,7 @@ class Consequences:
         result: list[WithVerdict] = []
         for formula, verdict in verdicts:
             if verdict.verdict.note == SUBSTITUTED:
-                value = self._correct(formula, verdict)
+                value = self._value(verdict.verdict.correction or formula.sides[-1].text)
                 reduced = None if value is None else _Source(formula.occurrence.line, value)
             if verdict.verdict.verdict == "wrong" and reduced and self._follows(formula, reduced):
                 verdict = plain("verified", formula, f"{FOLLOWS} {reduced.line}")
@@ -82,10 +82,6 @@ class Consequences:
                     source = _Source(formula.occurrence.line, own)
             result.append((formula, verdict))
         return result
-
-    def _correct(self, formula: DocumentFormula, verdict: SideVerdict) -> sp.Expr | None:
-        """The value of the last side of a formula, or the one that it must have."""
-        return self._value(verdict.verdict.correction or formula.sides[-1].text)
 
     def _written(self, formula: DocumentFormula) -> sp.Expr | None:
         """The value of the last side of a formula."""

@@ -35,19 +35,20 @@ class Support:
         self, results: Sequence[WithVerdict], candidate: SystemCandidate, is_partial: bool
     ) -> None:
         self._results, self._candidate, self._is_partial = results, candidate, is_partial
-        wrong = (one for one in results if one[1].verdict.verdict == "wrong")
+        wrong = [one for one in results if _is_wrong(one)]
+        corrections = {one.verdict.corrections for _, one in wrong}
+        self._slips = {one for one in corrections if is_slip(one)}
         self.wrong = [one for formula, one in wrong if not is_ambiguous(formula)]
         self.independent = [one for one in self.wrong if FOLLOWS not in one.verdict.note]
-        self.misfits = sum(not is_slip(one.verdict.corrections) for one in self.independent)
+        self.misfits = sum(one.verdict.corrections not in self._slips for one in self.independent)
         held = (formula for formula, one in results if one.verdict.verdict in HOLDING)
         self.holding = sum(not _is_vacant(formula) for formula in held)
 
     def is_explained(self, result: SideVerdict) -> bool:
         """Whether a slip explains that a formula does not hold, its form, or all others hold."""
         verdict = result.verdict
-        return (
-            self._is_rest_right or verdict.note.endswith(NOT_LINEAR) or is_slip(verdict.corrections)
-        )
+        is_slip_or_form = verdict.corrections in self._slips or verdict.note.endswith(NOT_LINEAR)
+        return is_slip_or_form or self._is_rest_right
 
     @cached_property
     def _is_rest_right(self) -> bool:

@@ -405,10 +405,6 @@ class _Evidence:
         }
 
 
-def _is_wrong(one: WithVerdict) -> bool:
-    return one[1].verdict.verdict == "wrong"
-
-
 def _operands(text: str) -> Iterator[set[str]]:
     """The names in each operand of a derivative."""
     for node in ast.walk(syntax_tree(text)) if "diff(" in text else ():
