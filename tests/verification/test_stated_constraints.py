@@ -251,7 +251,8 @@ def test_a_known_system_with_a_stated_constraint_contradicts_no_single_formula(
 
 def test_a_constraint_of_no_coordinate_emits_no_warning(tmp_path: Path) -> None:
     (tmp_path / "a.md").write_text(
-        r"""By the constraint $$\dot f = \omega\dot f$$ $$T = \frac12 m(\dot r^2 + r^2\dot\theta^2)$$
+        r"""By the constraint $$\dot f = \omega\dot f$$
+$$T = \frac12 m(\dot r^2 + r^2\dot\theta^2)$$
 $$m\ddot r - m r\dot\theta^2 = - k f$$""",
         encoding="utf-8",
     )
