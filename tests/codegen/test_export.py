@@ -134,7 +134,7 @@ def output(target: str, system: System, simulation: Simulation, folder: Path) ->
 
 
 @pytest.mark.parametrize("name", SIMULATIONS)
-@pytest.mark.long("each further language takes seconds", keep=6)
+@pytest.mark.long("each further language takes seconds", keep=4)
 @pytest.mark.parametrize("target", COMMANDS)
 def test_simulations_have_equal_bits_in_every_language(
     target: str, name: str, folder: Path
@@ -182,6 +182,7 @@ def test_step_control_is_that_of_the_package_without_its_memory() -> None:
     assert module.combined(0.0, 0.0) == 0.0
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("name", "values"), [("double_pendulum", {"l1": 0.7}), ("driven_pendulum", {"Omega": 3.0})]
 )
@@ -272,6 +273,7 @@ def test_a_motion_that_breaks_has_no_further_rows() -> None:
     assert [row[0] for row in result] == [0.0]
 
 
+@pytest.mark.long("more cases of the same kind", keep=8)
 @pytest.mark.parametrize("name", generated.__all__)
 def test_libraries_of_python_have_the_values_of_generated_modules(name: str) -> None:
     library, own = program(load(name), None), load_module(name)

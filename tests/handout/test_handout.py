@@ -426,6 +426,7 @@ def test_a_multiple_of_zero_and_another_zero_of_energy_are_no_mistakes(derivatio
         assert (mistake.equation.value - potential.value).has(symbols["theta"])
 
 
+@pytest.mark.long("three documents, each in another process")
 def test_equal_seeds_give_equal_bytes_and_others_give_others(tmp_path: Path) -> None:
     def written(seed: str, hash_seed: str) -> list[str]:
         command = [sys.executable, "-m", "derive", "single_pendulum", "--document", "sheet.tex"]

@@ -20,25 +20,30 @@ Arrows = dict[str, set[str]]
 
 
 @cache
-def imported_files(path: Path) -> frozenset[Path]:
-    """Files of the project that a file imports, in functions and for type checkers, too."""
-    root = next(folder for folder in path.parents if (folder / "solvers").is_dir())
-    found = set()
+def imported_names(path: Path) -> tuple[str, ...]:
+    """Dotted names that a file imports, in functions and for type checkers, too."""
+    names: list[str] = []
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
+            names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        for name in names:
-            parts = name.split(".")
-            for length in (len(parts), len(parts) - 1):
-                places = [place.joinpath(*parts[:length]) for place in (root, root / "notebooks")]
-                files = [file for one in places if (file := one.with_suffix(".py")).is_file()]
-                if length and files:
-                    found |= {*files} - {path}
-                    break
+            names += [f"{node.module}.{alias.name}" for alias in node.names]
+    return tuple(names)
+
+
+@cache
+def imported_files(path: Path) -> frozenset[Path]:
+    """Files of the project that a file imports."""
+    root = next(folder for folder in path.parents if (folder / "solvers").is_dir())
+    found = set()
+    for name in imported_names(path):
+        parts = name.split(".")
+        for length in (len(parts), len(parts) - 1):
+            places = [place.joinpath(*parts[:length]) for place in (root, root / "notebooks")]
+            files = [file for one in places if (file := one.with_suffix(".py")).is_file()]
+            if length and files:
+                found |= {*files} - {path}
+                break
     return frozenset(found)
 
 

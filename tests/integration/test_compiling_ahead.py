@@ -54,6 +54,7 @@ def run(folder: Path, script: str, code: str = MOTION) -> subprocess.CompletedPr
     )
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("code", [MOTION, MOTION.replace("{})", "{}, accuracy=1e-6)"), SCENE])
 def test_loops_are_compiled_at_the_same_time(code: str, tmp_path: Path) -> None:
     process = run(tmp_path, WAITING, code)

@@ -56,6 +56,7 @@ def test_equations_that_are_both_wrong_hold_with_another_convention(tmp_path: Pa
     assert r"+ g \sin" in usual.differences[1].correction
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_two_equations_that_contradict_each_other_either_can_be_wrong(tmp_path: Path) -> None:
     document = judged(tmp_path, f"{FIRST}\n\n{WRONG_SECOND}")
     assert verdicts(document) == ["verified", "context"]
@@ -88,6 +89,7 @@ def test_a_term_that_each_meaning_refutes_is_wrong_with_two_corrections(tmp_path
     assert changed.correction not in ("", document.formulas[1].correction)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_names_of_an_alternative_settle_it(tmp_path: Path) -> None:
     document = judged(tmp_path, f"{WRONG_FIRST}\n\n{WRONG_SECOND}")
     (usual,) = document.alternatives
@@ -113,6 +115,7 @@ def test_systems_that_do_not_ship_have_names(tmp_path: Path) -> None:
     assert (document.system, verdicts(document)) == ("Mass on a spring", ["verified"])
 
 
+@pytest.mark.long("other tests reach its code")
 def test_alternatives_stand_in_text_json_and_pages(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -133,6 +136,7 @@ def test_alternatives_stand_in_text_json_and_pages(
     assert other["differences"][0]["verdict"] == "wrong"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_readings_of_programs_that_contradict_each_other_accuse_none(tmp_path: Path) -> None:
     path = tmp_path / "a.m"
     path.write_text("""function dx = f(t, x, m1, m2, l1, l2, g)
@@ -147,6 +151,7 @@ end
     assert document.alternatives
 
 
+@pytest.mark.long("other tests reach its code")
 def test_angles_from_the_horizontal_oppose_no_usual_ones(tmp_path: Path) -> None:
     text = r"""$$\ddot\theta_1 = \frac{-g(2m_1+m_2)\sin\theta_1 - m_2 g\sin(\theta_1-2\theta_2)
  - 2\sin(\theta_1-\theta_2) m_2(\dot\theta_2^2 l_2 + \dot\theta_1^2 l_1\cos(\theta_1-\theta_2))}
@@ -179,6 +184,7 @@ def test_a_position_that_all_others_contradict_is_wrong_by_a_known_system(tmp_pa
     assert document.formulas[0].wrong_term == r"- l\sin\theta"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_rate_and_an_energy_that_a_position_contradicts_are_not_accused(tmp_path: Path) -> None:
     document = judged(tmp_path, ELLIPSE)
     assert verdicts(document) == [
@@ -191,6 +197,7 @@ def test_a_rate_and_an_energy_that_a_position_contradicts_are_not_accused(tmp_pa
     assert verdicts(wrong)[2:] == ["verified", "verified", "wrong", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_rate_in_another_form_than_its_position_is_one(tmp_path: Path) -> None:
     text = r"""$$x = a\sin\alpha - b\sin(\alpha+\beta)$$
 $$y = -a\cos\alpha - b\cos(\alpha+\beta)$$
@@ -210,6 +217,7 @@ $$m\ddot x (1 + a x) + \frac12 m a\dot x^2 = - 5 k x^4$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_two_formulas_that_contradict_each_other_name_each_other(tmp_path: Path) -> None:
     assert verdicts(judged(tmp_path, PAIR)) == ["definition", "verified"]
     slip = judged(tmp_path, PAIR.replace("- 5 k", "- 4 k")).formulas
@@ -219,6 +227,7 @@ def test_two_formulas_that_contradict_each_other_name_each_other(tmp_path: Path)
     ]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_formula_that_several_contradict_is_not_said_to_contradict_one(tmp_path: Path) -> None:
     slip = PAIR.replace("- 5 k", "- 4 k") + r"$$m\ddot x = - k x^4 - \frac12 m a\dot x^2$$"
     assert {one.note for one in judged(tmp_path, slip).formulas}.isdisjoint(map(opposed, (2, 3, 4)))

@@ -83,6 +83,7 @@ $$J_3\ddot\phi = k(\theta_1 - \phi) + Q$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_loads_of_a_free_body_verify_no_other_inertia(tmp_path: Path) -> None:
     found = judged(tmp_path, FREE_WHEEL)
     assert [(one.verdict, one.note) for one in found[1:]] == [

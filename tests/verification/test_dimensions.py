@@ -52,6 +52,7 @@ def rates(t, y):
 """
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("rates", "notes"), [
     (("k*(k*(x2 - x1) - x1)/m", "-k*(x2 - x1) - k*x2"), (INHOMOGENEOUS, NO_SYSTEM)),
     (("k*(2*(x2 - x1) - x1)/m", "-k*(3*(x2 - x1) + x2)/m"), (NO_SYSTEM, NO_SYSTEM)),
@@ -66,6 +67,7 @@ def test_of_no_known_system_an_inhomogeneous_equation_is_noted_and_not_wrong(
         assert [(one.verdict, one.note) for one in results] == [("context", one) for one in notes]
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("energy", "equation", "term", "number"), [
     (ENERGY.replace(r"\dot\theta^2", r"\dot\theta^3"), EQUATION,
      r"\frac{1}{2} m l^2 \dot\theta^3", 0),
@@ -107,6 +109,7 @@ def test_a_potential_with_a_square_of_a_sine_is_corrected_in_one_term(tmp_path: 
     assert results[1].wrong_term == r"- m R \cos\theta"
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("equation", [
     EQUATION.replace("m g l", "2 m g l"),
     EQUATION.replace("sin", "cos"),
@@ -187,6 +190,7 @@ WEDGE = (
 )
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("old", "new"), [("c s^2", "c s^3"), ("- c s", "- 3 c s")])
 def test_an_energy_and_an_equation_that_another_one_does_not_decide_are_not_accused(
     old: str, new: str, tmp_path: Path
@@ -204,6 +208,7 @@ def test_a_known_system_by_which_no_formula_holds_accuses_none(tmp_path: Path) -
     assert "wrong" not in {one.verdict for one in results}
 
 
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize("other", [
     *(sign.join(["x"] * count) + " = x" for sign, count in (("*", 1500), ("+", 1500), ("*", 199))),
     r"\theta^{1/0} = a", r"a^{\theta} = b", r"M \ddot q = f(q, t)",

@@ -138,6 +138,7 @@ def test_energies_and_equations_that_agree_refute_the_one_that_does_not(
     assert "given line" in one.note
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_two_statements_that_contradict_each_other_none_is_accused(tmp_path: Path) -> None:
     """A curve that no known system has: either the energy or the equation can be wrong."""
     text = r"$$E = \frac12 m\dot x^2 + \frac15 c x^5$$ $$m\ddot x + 2 c x^4 = 0$$"
@@ -158,6 +159,7 @@ def test_a_single_equation_of_an_angle_from_the_horizontal_is_not_verified() -> 
     assert [one.verdict for one in right] == ["verified"]
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize(
     ("old", "new", "lines"),
     [
@@ -254,6 +256,7 @@ RIGHT = {
 }
 
 
+@pytest.mark.long("more cases of the same kind", keep=6)
 @pytest.mark.parametrize("name", RIGHT)
 def test_right_statements_of_usual_kinds_are_not_accused(tmp_path: Path, name: str) -> None:
     text, least = RIGHT[name]
@@ -282,6 +285,7 @@ SLIPS = {
 }
 
 
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize("name", SLIPS)
 def test_slips_beside_them_are_found_or_left_open(tmp_path: Path, name: str) -> None:
     right, slip = SLIPS[name]
@@ -356,6 +360,7 @@ def test_a_potential_is_not_accused_by_an_equation_that_lacks_a_term(tmp_path: P
     assert "agrees with line 1: nothing else" in formulas[1].note
 
 
+@pytest.mark.long("other tests reach its code")
 def test_two_known_systems_that_refute_different_formulas_decide_nothing(tmp_path: Path) -> None:
     text = r"""$$ x_1 = x_1, \qquad x_2 = x_2 $$
     $$ T = \frac{m_1\dot x_1^2}{2} + \frac{m_2\dot x_2^2}{2} $$
@@ -365,6 +370,7 @@ def test_two_known_systems_that_refute_different_formulas_decide_nothing(tmp_pat
     assert wrong(judged(tmp_path, text)) == []
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_mass_in_place_of_a_sum_is_larger_than_the_others(tmp_path: Path) -> None:
     text = r"""With $M = m_1 + m$, $$ T = \frac12 M\dot x^2 + m l\dot\theta\dot x\cos\theta
     + \frac12 m l^2\dot\theta^2 $$ $$ V = -m g l\cos\theta $$
@@ -376,6 +382,7 @@ def test_a_mass_in_place_of_a_sum_is_larger_than_the_others(tmp_path: Path) -> N
     assert one.wrong_term == r"2 g\sin\theta"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_mass_that_moves_along_one_axis_is_part_of_the_system(tmp_path: Path) -> None:
     text = r"""$$ y_1 = -y, \qquad x_2 = l\sin\alpha, \qquad y_2 = l\cos\alpha - y $$
     $$ T = \frac{l^2 m_2\dot\alpha^2}{2} + l m_2\dot\alpha\dot y\sin\alpha
@@ -386,6 +393,7 @@ def test_a_mass_that_moves_along_one_axis_is_part_of_the_system(tmp_path: Path) 
     assert one.wrong_term == r"l^2\ddot\alpha"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_known_system_that_fits_one_of_three_formulas_accuses_none(tmp_path: Path) -> None:
     text = r"""$$ E = \frac12 c r^2 + \frac12 M\dot\phi^2 r^2 $$
     $$ M\ddot r = -c r + M\dot\phi^2 r $$ $$ M\ddot\phi r^2 = -2 M\dot\phi r\dot r $$"""

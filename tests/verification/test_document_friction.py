@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from derive import Derivation, load
 from derive.handout.derivation_document import write_document
 from derive.reading.document_formats import read_document
@@ -23,6 +25,7 @@ position = ["l*sin(theta)*cos(phi)", "l*sin(theta)*sin(phi)", "-l*cos(theta)"]
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_friction_of_the_system_is_counted_once(tmp_path: Path) -> None:
     path = tmp_path / "system.toml"
     path.write_text(SPHERICAL)

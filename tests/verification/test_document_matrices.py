@@ -59,7 +59,7 @@ def test_matrices_of_the_system_are_verified(text: str, tmp_path: Path) -> None:
     assert judged(tmp_path, text)[-1].verdict == "verified"
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     ("text", "old", "new", "term"),
     [
@@ -82,6 +82,7 @@ def test_a_letter_of_a_state_is_defined(tmp_path: Path) -> None:
     assert judged(tmp_path, text)[-1].note == "x denotes a state here"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_other_matrices_are_definitions(tmp_path: Path) -> None:
     text = CART + r"$$Q = \begin{pmatrix} 1 & 0 \\ 0 & m \end{pmatrix}$$"
     assert judged(tmp_path, text)[-1].verdict == "definition"

@@ -56,7 +56,7 @@ def test_a_square_before_the_time_is_that_of_a_function(tmp_path: Path) -> None:
     assert last(tmp_path, PENDULUM + r"$$T = \frac{m l^2}3 \dot\theta^2(t)$$") == "wrong"
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("rates", [
     (r"\frac bm\dot r", r"\frac bm\dot\theta"),  # drag on the mass
     (r"\frac bm\dot r", r"\frac b{m r^2}\dot\theta"),  # on both coordinates
@@ -106,6 +106,7 @@ def test_steps_in_time_are_no_equations_of_motion(tmp_path: Path) -> None:
     assert verdicts(tmp_path, pendulum + steps) == ["verified", "verified", "context", "context"]
 
 
+@pytest.mark.long("more cases of the same kind", keep=5)
 @pytest.mark.parametrize("numbers", ["", ", (1.2)", ". (7)"])
 @pytest.mark.parametrize("parts", [
     r"$$T = \frac m2 l^2\dot\theta^2, V = -m g l\cos\theta = {}$$",
@@ -127,6 +128,7 @@ def test_one_open_bracket_spoils_one_row_of_an_environment(tmp_path: Path) -> No
     assert verdicts(tmp_path, text, ".tex") == ["verified", "verified", "unreadable"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_uniform_rods_are_recognised_by_their_numbers(tmp_path: Path) -> None:
     text = (
         r"$$\frac 43 m l^2\ddot\theta = m g l\sin\theta - m l\ddot x\cos\theta$$"
@@ -146,6 +148,7 @@ def test_statements_about_all_coordinates_name_no_further_one(tmp_path: Path) ->
     assert {*letters.coordinates} == {"x_1", "y_1"}
 
 
+@pytest.mark.long("other tests reach its code")
 def test_coordinates_and_rates_may_be_given_as_functions_of_time(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m R^2(\dot\theta^2 + \dot\phi^2\sin^2\theta), \quad
     V = -m g R\cos\theta$$
@@ -275,6 +278,7 @@ $$T = \frac12(m_1 + m_2) l_1^2\dot\theta_1^2 + \frac12 m_2 l_2^2\dot\theta_2^2
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_cases_have_positions_of_their_own(tmp_path: Path) -> None:
     stated = ["definition", "definition", "equivalent"]
     assert verdicts(tmp_path, PIVOTS) == 3 * stated
@@ -282,6 +286,7 @@ def test_cases_have_positions_of_their_own(tmp_path: Path) -> None:
     assert verdicts(tmp_path, slip) == [*(2 * stated), "definition", "definition", "wrong"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_lengths_that_rest_are_no_coordinates(tmp_path: Path) -> None:
     assert last(tmp_path, LENGTHS) == "verified"
     assert last(tmp_path, LENGTHS.replace(r"+ m_2 l_1", r"- m_2 l_1")) == "wrong"

@@ -38,7 +38,7 @@ def verdicts(folder: Path, text: str, name: str = "a.md") -> list[str]:
     return [one.verdict for one in judged(folder, text, name).formulas]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("name", DERIVATIONS)
 def test_right_derivations_in_any_letters_are_verified(name: str, tmp_path: Path) -> None:
     document = judged(tmp_path, DERIVATIONS[name])
@@ -169,6 +169,7 @@ def rates(t, state, m1, m2, a, b, g):
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_programs_are_judged_at_the_lines_of_their_mistakes(tmp_path: Path) -> None:
     assert verdicts(tmp_path, PROGRAM, "a.py") == ["verified"] * 2
     wrong = PROGRAM.replace("- g*np.sin(q)", "+ g*np.sin(q)")
@@ -195,6 +196,7 @@ def test_public_documents_have_the_verdicts_of_an_independent_reader(name: str) 
 HINTED = r"$$\ddot A = -\frac{G}{w}\cos A$$"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_hints_settle_the_letters(tmp_path: Path) -> None:
     assert verdicts(tmp_path, HINTED) == ["context"]
     names = tmp_path / "names.toml"

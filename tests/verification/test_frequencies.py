@@ -43,12 +43,14 @@ def test_an_angular_velocity_need_not_be_a_frequency(tmp_path: Path) -> None:
     assert judged(tmp_path, text % r"\omega = 2\sqrt{\frac{g}{l}}")[-1].verdict == "definition"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_omega_beside_a_frequency_can_be_the_rate_of_an_angle(tmp_path: Path) -> None:
     text = PENDULUM % r"\omega = \sqrt{\frac{g}{l}}" + "\nThe bob has the speed $$ v = %s $$"
     assert judged(tmp_path, text % r"l\dot\theta = l\omega")[-1].verdict == "context"
     assert judged(tmp_path, text % r"l\dot\theta = l^2\omega")[-1].verdict == "wrong"
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("old", "new"), [
     ("k + 2c", "k + 2c"), ("k + 2c", "k + c"), ("k + 2c", "2k + 2c"),
 ])  # fmt: skip

@@ -27,7 +27,7 @@ from solvers.app.cli import main
 from solvers.io.toml_input import InputError
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("name", [*names(), *large_names()])
 def test_published_equations_hold(name: str) -> None:
     derivation = judge(name)

@@ -126,7 +126,7 @@ def test_correct_equations_hold(
     assert not any("incomplete" in one.note for one in verdicts)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("system", "equations", "wrong"),
     [
@@ -169,6 +169,7 @@ SUBSTITUTED = {
 }  # fmt: skip
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("system", SUBSTITUTED)
 def test_substitution_into_the_lagrangian_is_recognised(system: str, tmp_path: Path) -> None:
     lagrangian, equations = SUBSTITUTED[system]

@@ -247,6 +247,7 @@ SCALED = (
 )
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("system", "text", "changes"),
     [
@@ -509,6 +510,7 @@ def springs(n: int) -> str:
     )
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("n", [7, 9])
 def test_quantities_of_many_coordinates_are_verified(
     n: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -527,6 +529,7 @@ def test_quantities_of_many_coordinates_are_verified(
     check(tmp_path, "springs", text.replace("x0 - x2", "x0 + x2"), "v v w w")
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("sum_", ["(m + l + theta + theta_dot + g + 1)", "(sin(theta) + m - g)"])
 def test_high_powers_of_sums_are_judged(sum_: str) -> None:
     model, power = ReferenceSystem(Derivation(load("single_pendulum")), {}), f"{sum_}**60"

@@ -49,6 +49,7 @@ $$ \ddot{\mathbf r} = (\ddot r - r\dot\theta^2)\,\hat{\mathbf r}
 $$ \dot{\hat{\mathbf r}} = \dot\theta\,\hat{\boldsymbol\theta} $$"""
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("old", "new", "number"), [
     ("", "", 0),
     (r"2\dot r\dot\theta", r"\dot r\dot\theta", 2),
@@ -95,6 +96,7 @@ def test_general_equations_hold_for_any_motion(formula: str, expected: str, tmp_
     assert verdicts(tmp_path, GENERAL % formula)[0] == expected
 
 
+@pytest.mark.long("other tests reach its code")
 def test_components_of_a_position_have_its_index(tmp_path: Path) -> None:
     text = r"""$$ \vec x_p = \begin{pmatrix} x + l\sin\theta \\ -l\cos\theta \end{pmatrix} $$
 $$ T = \frac12 M\dot x^2 + \frac12 m(\dot x^2 + 2 l\dot x\dot\theta\cos\theta + l^2\dot\theta^2) $$
@@ -115,6 +117,7 @@ $$\vec a = \ddot r\,\hat r - r\dot\phi^2\,\hat r
  + r\ddot\phi\,\hat\phi + 2\dot r\dot\phi\,\hat\phi$$"""
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("old", "new", "number"), [
     ("", "", 0),
     (r"= \dot\phi\,\hat\phi", r"= -\dot\phi\,\hat\phi", 2),

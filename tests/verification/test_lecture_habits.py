@@ -30,6 +30,7 @@ $$m_2\ddot x_2 - b_2\dot x_1 + b_2\dot x_2 - k_2 x_1 + k_2 x_2 = 0$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_forces_follow_from_rayleighs_function(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, DAMPED)} == {"verified", "definition"}
     found = judged(tmp_path, DAMPED.replace(r"- b_2\dot x_1 +", r"+ b_2\dot x_1 +"))
@@ -40,6 +41,7 @@ def test_a_slip_in_rayleighs_function_accuses_no_equation(tmp_path: Path) -> Non
     assert not wrong(judged(tmp_path, DAMPED.replace(r"= \frac12 b_1", r"= b_1")))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_column_beside_a_matrix_is_no_further_coordinate(tmp_path: Path) -> None:
     matrix = r"""With $$M = \begin{pmatrix} m_1 & 0 \\ 0 & m_2 \end{pmatrix}$$ this is
 $$M\ddot x + B\dot x + K x = 0$$"""
@@ -56,6 +58,7 @@ $$(M + m)\ddot x + m a\ddot\phi\cos\phi - m a\dot\phi^2\sin\phi = (p_1 + p_2)\co
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_forces_can_have_other_letters_in_an_equation(tmp_path: Path) -> None:
     assert judged(tmp_path, CRANE)[4].note.endswith("p_1, p_2, beta as applied forces")
     slip = CRANE.replace(r"- m a\dot\phi^2", r"+ m a\dot\phi^2")
@@ -103,6 +106,7 @@ $$\frac{dx_2}{dt} = x_1\Omega^2 - \frac{k}{m}(x_1 - a) + g\cos(\Omega t)$$
 """
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("formula", [r"\theta = 0", "x_1 = r"])
 def test_a_place_and_a_state_are_not_wrong(formula: str, tmp_path: Path) -> None:
     found = {one.latex: one.verdict for one in judged(tmp_path, DRIVEN)}
@@ -110,11 +114,13 @@ def test_a_place_and_a_state_are_not_wrong(formula: str, tmp_path: Path) -> None
     assert "wrong" not in found.values()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_of_a_driven_motion_leave_its_energies_open(tmp_path: Path) -> None:
     text = DRIVEN.replace(r"$$x = r\sin\theta$$ $$y = -r\cos\theta$$", "")
     assert not wrong(judged(tmp_path, text))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_length_called_d_is_no_friction_as_well(tmp_path: Path) -> None:
     text = r"""$$E = d M\cos(\alpha x) + \frac12 c x^2
  + \frac12 M\dot x^2 (d^2\alpha^2\sin^2(\alpha x) + 1)$$

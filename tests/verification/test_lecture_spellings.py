@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from derive.reading.document_formats import read_document
 from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
@@ -85,6 +87,7 @@ $$\frac{d}{dt}\frac{\partial L}{\partial\dot\theta}
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_length_called_l_can_stand_before_brackets_beside_the_lagrangian(tmp_path: Path) -> None:
     assert kinds(tmp_path, ROD) == ["verified", "definition", "definition", "verified"]
     assert kinds(tmp_path, ROD.replace(r"\cos\theta -", r"\cos\theta +"))[-1] == "wrong"

@@ -107,6 +107,7 @@ def test_one_of_two_constants_is_an_input_and_repeated_formulas_are_one() -> Non
         assert "total_mass" not in equation.text
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_parameter_is_not_the_variable_of_its_name_in_another_function() -> None:
     text = """
 def reduced(length):
@@ -124,6 +125,7 @@ def rhs(t, y, l):
     assert shown["y"] == ["theta_ddot = -g/(2*length)*sin(theta)"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_vector_of_zeros_and_ones_gives_a_force_its_direction() -> None:
     # of the letters B_1 and B_2, the second would be a force that the system does not have
     assert equations(judged(DIRECTED, "MATLAB")) == ["verified", "verified"]
@@ -190,6 +192,7 @@ def dynamics(model, x, u):
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_accelerations_can_be_known_by_their_names_alone() -> None:
     assert equations(judged(NAMED)) == ["verified", "verified"]
     wrong = judged(NAMED.replace("l*s*thdot**2", "l*s*thdot"))
@@ -208,6 +211,7 @@ def rates(t, y, g, mu):
     assert equations(judged(text.replace("(1 + mu)", "(1 - mu)"))) == ["wrong", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_friction_can_have_the_name_of_a_gain() -> None:
     text = """
 def rates(t, y, u, M, m, l, g, Kd):
@@ -256,6 +260,7 @@ def test_constants_can_be_negative() -> None:
     assert positive == ["context", "context"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_masses_can_have_any_letters_where_no_other_is_usual() -> None:
     text = """
 def rates(t, y, r1, r2, l1, l2, g):
@@ -271,6 +276,7 @@ def rates(t, y, r1, r2, l1, l2, g):
     assert "wrong" not in slip
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_length_with_an_index_is_not_that_of_another_rod() -> None:
     text = """
 def rates(t, y, m1, m2, r1, r2, g):
@@ -285,6 +291,7 @@ def rates(t, y, m1, m2, r1, r2, g):
     assert "verified" not in equations(slip)[:1]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_friction_can_have_any_letter() -> None:
     text = """
 def rates(t, y, g, length, res):
@@ -304,6 +311,7 @@ def rates(t, y, M, m, l, g, u):
 """
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("masses", "force"), [
     (("M", "m"), "u"), (("mc", "mp"), "U"), (("mCart", "mPend"), "F"),
 ])  # fmt: skip
@@ -314,6 +322,7 @@ def test_letters_can_have_indices_in_one_word(masses: tuple[str, str], force: st
     assert equations(judged(text.replace("@", ""))) == ["verified", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_two_equations_the_one_with_a_slip_is_wrong() -> None:
     slip = UPRIGHT.replace("*w**2*sin(a) -", "*w**2*sin(a)*2 -")
     assert equations(judged(slip)) == ["wrong", "verified"]
@@ -339,6 +348,7 @@ def rates(t, y, k, g, L):
     assert equations(judged(text.replace("+ g*cos", "+ 2*g*cos")))[0] != "verified"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_frequency_can_be_1_beside_that_of_a_force() -> None:
     text = "def rates(t, y, b, w):\n    a, v = y\n    return v, -sin(a) + b*cos(w*t)\n"
     assert equations(judged(text)) == ["verified"]
@@ -390,6 +400,7 @@ def rates(t, y, m, r, J, g, f1, f2, w):
     assert equations(judged(text.replace("G/mass", "G"))) == ["verified", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_name_that_only_angles_have_is_an_angle() -> None:
     text = """
 def rates(t, x, m, l, I, g, u1, u2):

@@ -169,11 +169,13 @@ def verdicts(name: str, old: str = "", new: str = "") -> list[tuple[int, str]]:
     return [(one.line, one.verdict) for one in formulas]
 
 
+@pytest.mark.long("more cases of the same kind", keep=11)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_right_programs_are_verified(name: str) -> None:
     assert [verdict for _, verdict in verdicts(name)] == ["verified"] * PROGRAMS[name][2]
 
 
+@pytest.mark.long("more cases of the same kind", keep=5)
 @pytest.mark.parametrize("slip", SLIPS)
 def test_slips_are_found_at_their_lines(slip: str) -> None:
     name, old, new, place = SLIPS[slip]
@@ -183,6 +185,7 @@ def test_slips_are_found_at_their_lines(slip: str) -> None:
     assert {one for one, verdict in verdicts(name, old, new) if verdict == "wrong"} == {line}
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("name", "old", "new"), [
     ("methods", "- (self.m1", "+ (self.m1"), ("spring", "+ gravity", "- gravity"),
 ])  # fmt: skip

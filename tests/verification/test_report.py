@@ -133,7 +133,7 @@ class Site:
             getattr(self.parent, self.field)[self.index] = self.node
 
 
-@pytest.mark.long("more cases of the same kind", keep=5)
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize(
     "equation", [e for e in JUDGED if e.id not in MISPRINTS], ids=lambda equation: equation.id
 )
@@ -184,7 +184,7 @@ def changed(text: str, changes: list[tuple[str, str]]) -> str:
     return text
 
 
-@pytest.mark.long("more cases of the same kind", keep=6)
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize("name", sorted(MISPRINTS))
 def test_a_misprint_differs_from_its_correction_by_the_stated_changes_alone(name: str) -> None:
     equation = EQUATIONS[name]

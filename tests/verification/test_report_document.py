@@ -122,7 +122,7 @@ def test_verdicts_on_the_text_are_those_of_the_table(report: str, tmp_path: Path
     assert terms["eq64"] == r"\dot{\phi}_1"
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("number", "old", "new", "term"),
     [
@@ -161,6 +161,7 @@ def test_corrected_misprints_are_verified(report: str, tmp_path: Path) -> None:
     assert found[[*EQUATIONS].index("eq64")].verdict == "verified"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_spelling_does_not_matter(report: str, tmp_path: Path) -> None:
     text = report.replace(r"\ell_1", "l_{1}").replace(r"\dot{\theta}_1", r"\dot{\theta_1}")
     before, after = judged(tmp_path, report), judged(tmp_path, text)

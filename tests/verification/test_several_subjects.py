@@ -28,11 +28,13 @@ $$ -\frac{m g D}{I}\theta = \ddot\theta $$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_each_heading_can_have_its_system(tmp_path: Path) -> None:
     verdicts = [one.verdict for one in judged(tmp_path, TWO)]
     assert verdicts == ["definition", "verified", "verified", "definition", "verified"]
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("old", "new", "number"), [
     (r"-\frac{g}{L}\theta", r"-\frac{2 g}{L}\theta", 1),
     (r"2\pi\sqrt", r"\pi\sqrt", 2),
@@ -71,6 +73,7 @@ For a point mass, $I = 0$:
 $$ \ddot\theta = - \frac{g}{l} \sin\theta $$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_formula_can_hold_where_a_parameter_vanishes(tmp_path: Path) -> None:
     assert judged(tmp_path, CASE)[-1].note == "it holds for I = 0"
     again = judged(tmp_path, f"{CASE}\nAgain, for $I = 0$ there is nothing else.")
@@ -99,6 +102,7 @@ def test_a_difference_is_a_letter(tmp_path: Path) -> None:
     assert slip[-2].wrong_term == r"- k_2 \Delta x_2"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_difference_that_stands_alone_is_no_sign(tmp_path: Path) -> None:
     text = r"""$$\Delta = \theta_1 - \theta_2$$
 $$T = \frac12 m l^2 (2\dot\theta_1^2 + \dot\theta_2^2 + 2\dot\theta_1\dot\theta_2\cos\Delta)$$
@@ -113,6 +117,7 @@ $$ r'' = r\alpha'^2 + g\cos\alpha - \frac{k}{m}(r - l) $$
 $$ \alpha'' = -\frac{1}{r}(2 r'\alpha' + g\sin\alpha) $$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_primes_are_rates_beside_dots_if_there_are_second_ones(tmp_path: Path) -> None:
     verdicts = [one.verdict for one in judged(tmp_path, PRIMES)]
     assert verdicts[0] == "definition"
@@ -125,6 +130,7 @@ $$ (T_2 - T_1) R = I \frac{a}{R} $$
 $$ a = g \frac{m_B \sin\beta - m_A \sin\alpha}{m_A + m_B + I/R^2} $$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_radius_beside_tensions_is_no_reaction(tmp_path: Path) -> None:
     assert judged(tmp_path, INCLINES)[-1].verdict == "verified"
     assert judged(tmp_path, INCLINES.replace("+ I/R^2", "+ 2 I/R^2"))[-1].verdict != "verified"
@@ -197,6 +203,7 @@ $$2 a\ddot\phi_1 + a\ddot\phi_2\cos(\phi_1 - \phi_2) + a\dot\phi_2^2\sin(\phi_1 
     assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_example_can_use_a_coordinate_before_as_a_component(tmp_path: Path) -> None:
     text = r"""
 ### Ball
@@ -228,6 +235,7 @@ HEADINGS = [
 ]
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("headings", HEADINGS)
 def test_systems_can_have_the_same_coordinate(headings: dict[str, str], tmp_path: Path) -> None:
     text = SAME_COORDINATE
@@ -265,6 +273,7 @@ $$ l \ddot\theta + g \sin\theta = 0 $$
     assert [one.verdict for one in verdicts].count("verified") == 5
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_letter_of_an_energy_is_no_applied_force(tmp_path: Path) -> None:
     verdicts = judged(tmp_path, r"""
 $$ L = \frac{1}{2} m \dot x^2 - m g x $$

@@ -47,6 +47,7 @@ $$m\ddot q_+ = -k q_+$$ $$m\ddot q_- = -(k + 2c) q_-$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_forces_of_rods_are_eliminated(tmp_path: Path) -> None:
     assert verdicts(tmp_path, RODS) == ["definition"] * 3 + ["verified"] * 3
 
@@ -55,10 +56,12 @@ def test_a_state_space_follows_from_equations_with_friction(tmp_path: Path) -> N
     assert verdicts(tmp_path, CAR) == ["definition"] * 3 + ["verified"] * 3
 
 
+@pytest.mark.long("other tests reach its code")
 def test_other_coordinates_follow(tmp_path: Path) -> None:
     assert verdicts(tmp_path, MODES) == ["definition"] * 4 + ["verified"] * 2
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("text", "old", "new", "term"), [
     (RODS, r"l\ddot\theta + \ddot x\cos", r"l\ddot\theta - \ddot x\cos", r"\ddot x\cos\theta"),
     (CAR, "& -(d+h)/n", "& -(d-h)/n", ""),
@@ -78,6 +81,7 @@ and with friction $$m\ddot x + c\dot x + k x = 0$$ $$m\ddot x + c\dot x + k x = 
     assert "wrong" not in verdicts(tmp_path, text)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_slip_in_the_first_of_two_equations_is_not_decided(tmp_path: Path) -> None:
     text = r"""$$m\ddot x_1 = -k x_1 + c (x_2 + x_1)$$ $$m\ddot x_2 = -k x_2 - c (x_2 - x_1)$$
 $$\ddot x_1 = -\frac km x_1 + \frac cm (x_2 - x_1)$$"""
@@ -91,12 +95,14 @@ $$C\dot\omega_3 = 0$$ With $$\Omega = \frac{C - A}{A}\omega_3$$ $$\dot\omega_1 =
 $$\dot\omega_2 = \Omega\omega_1$$ $$\frac{d}{dt}(\omega_1^2 + \omega_2^2) = 0$$"""
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("text", "first"), [(ATWOOD, 2), (TOP, 4)])
 def test_letters_can_be_accelerations_or_velocities(text: str, first: int, tmp_path: Path) -> None:
     found = verdicts(tmp_path, text)
     assert found == ["definition"] * first + ["verified"] * (len(found) - first)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_wrong_sign_in_a_body_frame_is_found(tmp_path: Path) -> None:
     formulas = judged(tmp_path, TOP.replace(r"\dot\omega_1 = -\Omega", r"\dot\omega_1 = \Omega"))
     assert [one.latex for one in formulas if one.verdict == "wrong"] == [

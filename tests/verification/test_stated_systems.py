@@ -82,7 +82,7 @@ $$(M+m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
 """
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("system", "right", "wrong", "following"),
     [
@@ -130,6 +130,7 @@ ROBOT = DERIVATIONS["robot"]
 CORIOLIS = ROBOT[ROBOT.index("$$C") : ROBOT.index("$$G")]
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -200,6 +201,7 @@ def test_a_wrong_term_that_is_also_a_factor_is_corrected_as_a_term(
     assert formulas[-1].verdict == "verified"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_stated_letter_is_no_other_parameter(tmp_path: Path) -> None:
     text = r"$$\ddot\theta = -\frac gl\sin\theta$$ $$b\ddot\theta = -b\sin\theta$$"
     assert judged(tmp_path, text, "single_pendulum", l="l")[0].verdict == "verified"
@@ -319,6 +321,7 @@ def test_all_sides_can_differ_by_a_constant(tmp_path: Path) -> None:
     assert judged(tmp_path, text, "single_pendulum")[-1].verdict == "equivalent"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_another_system_is_sought_for_formulas_that_are_left(tmp_path: Path) -> None:
     text = PENDULUM + r"$$m\ddot s + k s = 0, \quad E = \frac12 m\dot s^2 + \frac12 k s^2$$"
     (tmp_path / "a.md").write_text(text, encoding="utf-8")

@@ -41,6 +41,7 @@ $$m\ddot x = e B\dot y$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_lagrangians_can_have_terms_linear_in_velocities(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, CHARGE)} <= CORRECT
     found = verdicts(tmp_path, CHARGE.replace(r"\dot y + e B", r"\dot y - e B"))
@@ -80,6 +81,7 @@ def test_a_stated_force_can_contain_the_friction_of_a_function(tmp_path: Path, t
     assert verdicts(tmp_path, text) == [*["definition"] * 3, "verified", "definition", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_function_of_friction_can_be_known_by_its_letter(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m_1\dot x_1^2 + \frac12 m_2\dot x_2^2$$
     $$V = \frac12 k_1 x_1^2 + \frac12 k_2 (x_2 - x_1)^2$$
@@ -166,6 +168,7 @@ $$(m_1 + m_2)\ddot x = (m_1 - m_2) g$$
 """
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("text", [
     ATWOOD, "$$s = l - x$$" + ATWOOD.replace("(l - x)$$ ", "s$$ "),
 ])  # fmt: skip
@@ -287,6 +290,7 @@ $$m\ddot y = -2 m\omega\dot x + m\omega^2 y$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_coordinates_of_another_frame_are_no_positions(tmp_path: Path) -> None:
     assert wrong(tmp_path, TURNING_FRAME) == []
 
@@ -302,6 +306,7 @@ $$\ddot x = \frac{m_1 - m_2}{m_1 + m_2} g$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_two_letters_of_one_relation_are_no_names_of_one_coordinate(tmp_path: Path) -> None:
     assert wrong(tmp_path, THREAD) == []
 
@@ -370,6 +375,7 @@ $$U(\beta) = \frac{p_\varphi^2}{2\sin^2\beta} - \frac gl\cos\beta$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_momentum_can_be_that_of_a_scaled_lagrangian(tmp_path: Path) -> None:
     assert wrong(tmp_path, SCALED) == []
 
@@ -464,6 +470,7 @@ def test_forces_have_a_potential_whatever_factors_their_quotients_have_in_common
     assert potential_of([slope], [x]) == x**2 / 2 + x**3 / 3
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_function_of_coordinates_alone_is_no_momentum(tmp_path: Path) -> None:
     results = verdicts(tmp_path, r"""
 $$ x = R \sin q, \qquad y = -R \cos q $$
@@ -476,6 +483,7 @@ $$ \ddot q = \Omega^2 \sin q \cos q - \frac{g}{R} \sin q $$
     assert results[4:] == ["verified", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_constant_in_an_abbreviation_of_the_potential_stands_for_itself(tmp_path: Path) -> None:
     text = r"""
 $$ \sigma = - g m_1 x - g m_2 (l - x), \qquad V = \sigma $$

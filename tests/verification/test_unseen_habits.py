@@ -28,6 +28,7 @@ ORBIT = r"""$$\dot x = v_x$$ $$\dot y = v_y$$ $$\dot v_x = -\frac{G M x}{(x^2+y^
 $$E = \frac12 (v_x^2 + v_y^2) - \frac{G M}{\sqrt{x^2+y^2}}$$ """
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("formula", [
     "L = x v_y - y v_x", "L = x v_y",
 ])  # fmt: skip
@@ -35,6 +36,7 @@ def test_an_angular_momentum_called_l_is_no_lagrangian(formula: str, tmp_path: P
     assert verdicts(tmp_path, f"{ORBIT}$${formula}$$")[-1] != "wrong"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_lagrangian_with_velocities_by_name_is_one(tmp_path: Path) -> None:
     formula = r"$$L = \frac12 (v_x^2 + v_y^2) + \frac{2 G M}{\sqrt{x^2+y^2}}$$"
     assert verdicts(tmp_path, ORBIT + formula)[-1] == "wrong"
@@ -46,6 +48,7 @@ $$V = m g l\cos\theta$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_columns_can_be_parts_of_the_forces(tmp_path: Path) -> None:
     column = r"$$c = \begin{bmatrix} m l\sin\theta\,\dot\theta^2 \\ 0 \end{bmatrix}$$"
     weight = r"$$d = \begin{bmatrix} 0 \\ m g l\sin\theta \end{bmatrix}$$"
@@ -53,6 +56,7 @@ def test_columns_can_be_parts_of_the_forces(tmp_path: Path) -> None:
     assert verdicts(tmp_path, text)[-2:] == ["verified", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_functions_do_not_make_an_abbreviation_foreign(tmp_path: Path) -> None:
     text = r"""$$\phi = \theta_2 - \theta_1$$ $$\Delta = m_1 + m_2 - m_2\cos^2\phi$$
 $$\ddot\theta_1 = \frac{m_2 ((g\sin\theta_2 + l_1\dot\theta_1^2\sin\phi)\cos\phi
@@ -94,6 +98,7 @@ $$\frac{d}{dt}(m l^2\dot\theta) = -m g l\sin\theta$$ $$T = m g\cos\theta + m l\d
     assert "wrong" not in verdicts(tmp_path, text)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_right_tension_beside_another_system_is_not_accused(tmp_path: Path) -> None:
     text = r"""$$m\ddot y = m g - k y$$ With $$z = y - m g/k$$ $$m\ddot z = -k z$$
 $$T = m g\cos\theta + m l\dot\theta^2$$ $$m l\ddot\theta = -m g\sin\theta$$"""
@@ -115,6 +120,7 @@ $$\dot p_\alpha = \frac{p_\beta^2\cos\alpha}{A\sin^3\alpha} - m g h\sin\alpha$$
 $$\dot p_\beta = 0$$"""
 
 
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize(("old", "new", "first"), [
     (r"+ \frac{p_\beta^2}{2", r"- \frac{p_\beta^2}{2", "wrong"), (r"h\cos", r"\cos", "wrong"),
     ("{2 A}", "{A}", "definition"), (r"h\cos", r"h\sin", "definition"),  # opposed by one equation
@@ -183,6 +189,7 @@ def test_a_coordinate_q_of_derivatives_alone_is_any(tmp_path: Path) -> None:
     assert verdicts(tmp_path, text)[-1] == "verified"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_known_system_that_fits_all_but_an_energy_leaves_it_open(tmp_path: Path) -> None:
     text = r"""$$T = \frac15 (M + m)\dot x^2 + m l\dot x\dot\theta\cos\theta
  + \frac12 (m l^2 + I)\dot\theta^2$$ $$V = -m g l\cos\theta$$
@@ -225,6 +232,7 @@ $$L = \frac12 (M + m)\dot x^2 + m L\dot x\dot\theta\cos\theta + \frac12 m L^2\do
  - m g L\cos\theta$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("old", "new", "number"), [
     (r"L\dot\theta\cos\theta$$", r"L\cos\theta$$", 3), (r"-L\dot\theta\sin", r"-L\sin", 5),
     (r"+ m L\dot x", r"- m L\dot x", 8), (r"L^2\dot\theta^2", r"L\dot\theta^2", 8),
@@ -265,6 +273,7 @@ $$m\ddot x + \frac23 k x = 0$$ $$\ddot\theta + \frac{2 k}{3 m}\theta = 0$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_disc_that_rolls_has_one_coordinate(tmp_path: Path) -> None:
     # 3/4 m v**2 + k x**2/2 is its energy
     assert verdicts(tmp_path, ROLLING) == [*["definition"] * 4, *["verified"] * 2]
@@ -316,6 +325,7 @@ Its tip is at $$x = \sin\theta\cos\phi,\quad y = \sin\theta\sin\phi,\quad z = \c
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_letters_of_multipliers_can_be_moments_of_inertia(tmp_path: Path) -> None:
     assert verdicts(tmp_path, TOP)[1:3] == ["definition", "verified"]
     momentum = (
@@ -419,6 +429,7 @@ def test_any_axis_of_positions_can_be_the_vertical_one(tmp_path: Path) -> None:
     assert [k for k, one in enumerate(found) if one == "wrong"] == [7]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_coordinate_of_the_same_name_is_a_component_of_a_position(tmp_path: Path) -> None:
     text = r"""$$y = a x^4, \quad z = 0$$ $$V = m g y = m g a x^4$$
 $$p = m(1 + 16 a^2 x^6)\dot x$$
@@ -449,6 +460,7 @@ With $g/l = 1$ and $1/(m l^2) = 1$ this is $$\ddot\theta = \sin\theta + u$$"""
     )
 
 
+@pytest.mark.long("other tests reach its code")
 def test_stated_positions_do_not_leave_out_a_stated_spring(tmp_path: Path) -> None:
     text = r"""
 $$X = x$$ $$Y = -a\cos(b x)$$ $$U = a g m\cos(b x) + \frac12 k x^2$$
@@ -486,6 +498,7 @@ $$\ddot\theta = \cdots + \dot\phi^2\sin\theta\cos\theta$$"""
     assert verdicts(tmp_path, text)[-2:] == ["verified", "context"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_function_of_forces_is_no_potential_energy(tmp_path: Path) -> None:
     text = r"""
 $$L = K + U$$ Others write $L = K - V$ with the potential energy $V$.
@@ -560,6 +573,7 @@ $$\frac{d}{dt}(m\dot{x}) = 0\, ; \qquad \frac{d}{dt}(m\dot{y}) = 0\, ; \qquad
 \frac{d}{dt}(m\dot{z}) = -mg$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_search_for_meanings_of_letters_ends(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -597,6 +611,7 @@ $$u = (M + m)\ddot x + \frac12 m l(-\ddot\theta\cos\theta + \dot\theta^2\sin\the
 """
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("formula", "expected"), [
     (r"u = (M + m)\ddot x - \frac12 m l\ddot\theta", "verified"),
     (r"u = (M + \frac14 m)\ddot x - \frac34 m g\theta", "verified"),  # without theta_ddot
@@ -694,6 +709,7 @@ $$-(m g l\sin\theta + m l^2\ddot\theta) = 0$$ $$-\frac gl\sin\theta = \ddot\thet
     assert "wrong" in slip
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("equations", [
     (r"\ddot\theta = -\omega_0^2\sin\theta",
      r"\ddot\theta = -\omega_0^2\sin\theta + A\cos(\Omega t)"),
@@ -780,6 +796,7 @@ $$m l^2\ddot\theta + m l\cos\theta\,\ddot s + m g l\sin\theta = 0$$ $$\ddot y = 
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_separate_coordinate_leaves_the_energies_of_others_to_state_the_system(
     tmp_path: Path,
 ) -> None:
@@ -817,6 +834,7 @@ $$s_{12} = \sin(\theta_1 - \theta_2)$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_abbreviations_can_be_of_differences_of_angles(tmp_path: Path) -> None:
     expected = [*["definition"] * 4, "verified", *["definition"] * 3]
     assert verdicts(tmp_path, DIFFERENCES) == expected

@@ -187,6 +187,7 @@ def test_a_run_without_a_verdict_names_what_was_missing(
     assert "in single_pendulum" in output
 
 
+@pytest.mark.long("other tests reach its code")
 def test_witnesses_do_not_depend_on_the_hash_seed(tmp_path: Path) -> None:
     text = r"$$T = \frac12 m\dot x^2, \qquad V = \frac12\alpha k x^2 + b g x^4$$"
     text += r"$$L = \frac12 m\dot x^2 - \frac12\alpha k x^2 - b g x^4$$"

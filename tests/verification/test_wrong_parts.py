@@ -85,7 +85,7 @@ def wrong(folder: Path, text: str) -> list[tuple[str, str]]:
     return [(one.wrong_term, one.correction) for one in formulas if one.verdict == "wrong"]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("text", [CART, FIELD, POSITIONS, POLAR, SPRINGS, TRACK, SPHERE, STRETCHED])
 def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
