@@ -28,7 +28,7 @@ class UnknownNameError(LookupError):
     """A name without a value, or a part of a formula that has none here."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False, slots=True)  # not frozen: setting fields would take most of the time
 class Jet:
     """A quantity at many states; `coefficients` has the shape (orders, candidates, states)."""
 
@@ -40,8 +40,11 @@ class Jet:
     @classmethod
     def of(cls, value: Array, rate: Array | float = 0.0, second: Array | float = 0.0) -> "Jet":
         """A quantity from its value and its first two derivatives."""
-        half = np.asarray(second) / 2
-        return cls(np.array(np.broadcast_arrays(np.atleast_2d(value), rate, half), float))
+        value = np.atleast_2d(value)
+        coefficients = np.empty((ORDERS, *np.broadcast(value, rate, second).shape))
+        coefficients[0], coefficients[1], coefficients[2] = value, rate, second
+        coefficients[2] /= 2
+        return cls(coefficients)
 
     @property
     def value(self) -> Array:

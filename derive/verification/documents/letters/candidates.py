@@ -197,7 +197,7 @@ def candidates(
                 system, order, signs, offsets, mapping, forces, friction, stated,
                 has_unusual_letters=is_unusual,
             )  # fmt: skip
-            yield from constrained(one, letters)
+            yield from constrained(one, letters) if is_constrained else (one,)
 
 
 def _mixed(names: Sequence[str], letters: Sequence[str]) -> int:

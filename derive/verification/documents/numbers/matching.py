@@ -6,6 +6,7 @@ between them.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from math import inf
 
 import numpy as np
@@ -138,9 +139,11 @@ def best_matches(
     if len(votes) - failing * (1 - NEARLY) * (1 + FAILING) < least_support:
         return []  # even if all others hold but for one term
     near = np.zeros_like(agreeing)
+    uses_letters = cache(partial(_uses_letters, tried))
     if len(votes) <= FEW:
         for row, (index, side, vote) in enumerate(votes):
-            possible = ~vote & _uses_letters(tried, letters, formulas[index])
+            written = frozenset(formulas[index].words) & {*letters.parameters}
+            possible = ~vote & uses_letters(written)
             sides = formulas[index].sides[0].text, side
             rest, lacking = free[index]
             if lacking.all():
@@ -153,10 +156,10 @@ def best_matches(
     best = int(np.argmax(score))  # the first of several: the likeliest
     is_nearly = np.all(agreeing | near, axis=0)
     is_rival = (holding >= holding[best]) | (usual & is_nearly)
-    signatures = numbers.signatures()
-    chosen: dict[bytes, int] = {signatures[best]: best}
-    for k in sorted(map(int, np.flatnonzero(is_rival)), key=lambda k: -score[k]):
-        chosen.setdefault(signatures[k], k)
+    ranked = [best, *sorted(map(int, np.flatnonzero(is_rival)), key=lambda k: -score[k])]
+    chosen: dict[bytes, int] = {}
+    for k, signature in zip(ranked, numbers.signatures(ranked), strict=True):
+        chosen.setdefault(signature, k)
     rows = np.array([index for index, *_ in votes])
     is_full = {*map(int, rows), *(index for index, _ in trivial)} == {*range(len(formulas))}
     return [
@@ -196,11 +199,8 @@ def _without_loads(
     return formula, np.zeros(len(tried), bool)
 
 
-def _uses_letters(
-    tried: Sequence[SystemCandidate], letters: Letters, formula: DocumentFormula
-) -> NDArray[np.bool_]:
-    """For each candidate, whether the parameters of a formula have a meaning with it."""
-    written = {*formula.words} & {*letters.parameters}
+def _uses_letters(tried: Sequence[SystemCandidate], written: frozenset[str]) -> NDArray[np.bool_]:
+    """For each candidate, whether the parameters in a formula have a meaning with it."""
     # many candidates share their parameters
     shared = {id(one.parameters): one.parameters for one in tried}
     others = {key: written - {*own.values()} for key, own in shared.items()}

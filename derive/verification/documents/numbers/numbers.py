@@ -143,8 +143,8 @@ class Numbers:
         near = is_near(sides, value, [*self._motions.speeds.values()])
         return None if near is None else np.broadcast_to(near, self._motions.shape[:1]) > 0
 
-    def signatures(self) -> list[bytes]:
-        """For each candidate, numbers that are the same for those of the same motions."""
+    def signatures(self, rows: Sequence[int]) -> list[bytes]:
+        """For each of these candidates, numbers that are the same for those of equal motions."""
         motions = self._motions
         potential = motions.energies["potential_energy"]
         with np.errstate(invalid="ignore"):  # infinities
@@ -152,7 +152,8 @@ class Numbers:
         tables = [
             *motions.accelerations.values(), motions.energies["kinetic_energy"], differences
         ]  # fmt: skip
-        table = np.concatenate([np.broadcast_to(one, motions.shape) for one in tables], axis=1)
+        parts = [np.broadcast_to(one, motions.shape)[rows] for one in tables]
+        table = np.concatenate(parts, axis=1)
         return [row.tobytes() for row in np.round(table, DIGITS) + 0.0]  # no negative zeros
 
     def _value(self, text: str, constants: Constants | None = None) -> Value | None:

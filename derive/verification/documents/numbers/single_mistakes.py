@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -55,13 +56,14 @@ def _are_constant(values: Array, others: Array) -> Array:
     return (spread <= CONSTANT * middle) & np.isfinite(spread)
 
 
-def _terms(side: str) -> list[tuple[str, int]]:
+@cache  # many systems are tried for each formula
+def _terms(side: str) -> tuple[tuple[str, int], ...]:
     """The terms of a sum and their signs; those in brackets are multiplied out."""
     try:
-        terms = [*_distributed(syntax_tree(side))]
+        terms = (*_distributed(syntax_tree(side)),)
     except ExpressionError:
-        return []
-    return terms if len(terms) <= MAX_TERMS else [(side, 1)]
+        return ()
+    return terms if len(terms) <= MAX_TERMS else ((side, 1),)
 
 
 def _distributed(node: ast.expr) -> Iterator[tuple[str, int]]:
@@ -87,12 +89,18 @@ def _variants(
 ) -> Iterator[Array]:
     """The term, and terms that a slip of the pen makes of it."""
     yield own
-    for node in ast.walk(syntax_tree(text)):
-        match node:
-            case ast.Call(func=ast.Name(id=name) as function) if name in SWAPPED:
-                start, end = place(text, function)
-                if isinstance(other := value(text[:start] + SWAPPED[name] + text[end:]), Jet):
-                    yield other.value
+    for swapped in _swapped(text):
+        if isinstance(other := value(swapped), Jet):
+            yield other.value
     for speed in velocities:
         yield own * speed
         yield own / speed
+
+
+@cache
+def _swapped(text: str) -> tuple[str, ...]:
+    """The term with one sine for a cosine, or the other way round."""
+    nodes = [node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.Call)]
+    functions = [one.func for one in nodes if isinstance(one.func, ast.Name)]
+    places = [(place(text, one), SWAPPED[one.id]) for one in functions if one.id in SWAPPED]
+    return tuple(text[:start] + other + text[end:] for (start, end), other in places)
