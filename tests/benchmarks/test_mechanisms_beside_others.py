@@ -79,7 +79,7 @@ def closed_form_error(name: str, module: ModuleType, p: dict[str, float]) -> flo
     return max(abs(time - END) / pace(end[0]), abs(1 / pace(end[0]) - end[len(end) // 2]))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 def test_references_are_closed_forms_and_a_wrong_mass_is_seen(name: str) -> None:
     module = load(name)
     params = dict(zip(module.PARAMETERS, module.DEFAULTS, strict=True))
@@ -88,7 +88,7 @@ def test_references_are_closed_forms_and_a_wrong_mass_is_seen(name: str) -> None
     assert closed_form_error(name, module, params | {mass: params[mass] * 1.001}) > 1e-6
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 def test_our_programs_reach_the_reference(name: str) -> None:
     module, mechanism = load(name), MECHANISMS[name]
     start, exact = mechanism.whole_start(module).tolist(), mechanism.reference(module)

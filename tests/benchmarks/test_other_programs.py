@@ -30,6 +30,7 @@ def truth(shared: Shared) -> Reference:
     return shared("reference_report", lambda: Reference.of(REPORT))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_installed_programs_have_curves(truth: Reference) -> None:
     # the state of the fastest form, which holds sine and cosine of each angle
     end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)

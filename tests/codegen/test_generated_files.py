@@ -81,6 +81,7 @@ def test_a_shipped_module_has_the_functions_that_exist_for_its_system(name: str)
     assert {*Functions(Derivation(reduced(load(name)))).usual} == known & {*dir(module)}
 
 
+@pytest.mark.long("other tests reach its code")
 def test_long_derivatives_exist_for_few_coordinates_only() -> None:
     def functions(links: int) -> set[str]:
         return {*Functions(Derivation(load(f"chain_{links}"))).names}
@@ -130,6 +131,7 @@ def products_with_reciprocals(source: str) -> list[str]:
     return found
 
 
+@pytest.mark.long("other tests reach its code")
 def test_no_product_contains_a_factor_and_its_reciprocal() -> None:
     assert [path.name for path in MODULES if products_with_reciprocals(path.read_text())] == []
     planted = "def f(a):\n    c0 = a + 1.0\n    c1 = 1.0/c0\n    c2 = a*c0*c1\n    return c2\n"
@@ -154,6 +156,7 @@ def opposite_terms(source: str) -> list[str]:
     return [ast.unparse(node) for node, pairs in signs if len({x for x, _ in pairs}) < len(pairs)]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_no_sum_contains_a_term_and_its_opposite() -> None:
     assert [path.name for path in MODULES if opposite_terms(path.read_text())] == []
     assert opposite_terms("x = 2.0*a + (b - 2.0*a)") == ["2.0 * a + (b - 2.0 * a)"]

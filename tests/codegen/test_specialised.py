@@ -164,7 +164,7 @@ def test_only_functions_that_a_scene_needs_exist() -> None:
     assert not any("jacobian" in f or "energy" in f or "positions" in f for f in functions)
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     ("method", "form", "h"),
     [

@@ -146,6 +146,7 @@ def test_a_notebook_is_valid(documents, name: str) -> None:
     nbformat.validate(nbformat.reads(notebook(documents(name)), as_version=4))
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.slow
 def test_the_cells_of_a_notebook_run(documents, derivation) -> None:
     from nbclient import NotebookClient

@@ -76,7 +76,7 @@ def test_an_unstable_step_states_the_last_good_time_and_the_longest_step(
     assert good < broken.end[0]
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-6])
 @pytest.mark.parametrize(("module", "start"), REGULAR)
 def test_correct_runs_at_loose_tolerances_do_not_warn(
@@ -168,6 +168,7 @@ def test_ignored_warnings_are_not_computed(monkeypatch: pytest.MonkeyPatch) -> N
         integrate(dp, (0, 60), REPORT, dp.DEFAULTS, rtol=1e-6)
 
 
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize(
     ("module", "start", "method", "h", "steps", "named"),
     [

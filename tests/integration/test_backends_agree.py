@@ -14,6 +14,7 @@ from solvers.integration.integrate import integrate
 FAST = duffing.params(F=3.0, Omega=20.0)
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("span", [(0.3, 1.5), (0.3, -0.9)])
 @pytest.mark.parametrize("method", ["dp54", "dop853"])
 @ignore_predictability()
@@ -37,6 +38,7 @@ def test_controlled_steps_of_a_driven_system_are_the_same(
         assert (lanes.steps[k], lanes.nfev[k]) == (compiled.steps, compiled.nfev)
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("method", ["leapfrog", "leapfrog4"])
 @ignore_predictability()
 def test_stages_of_splittings_are_at_the_same_times(method: str) -> None:

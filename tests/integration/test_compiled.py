@@ -38,7 +38,7 @@ def scatter(n: int, seed: int = 1) -> np.ndarray:
     return np.random.default_rng(seed).uniform(-3, 3, (n, 4))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     ("method", "form"),
     [
@@ -124,7 +124,7 @@ def test_a_motion_depends_on_no_other_motion_and_no_thread() -> None:
                 assert np.array_equal(ordered, result, equal_nan=True), name
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("form", FORMS)
 def test_lanes_give_the_events_and_samples_of_the_reference(form: str) -> None:
     starts, times = scatter(20, 3), np.linspace(0, 3, 31)
@@ -255,6 +255,7 @@ double angle(double s, double c)
         assert library.angle(np.sin(x), np.cos(x)) == pytest.approx(x, abs=0.08)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_compensated_sums_reduce_rounding_errors() -> None:
     # over 40 000 steps rounding outgrows the method's error, unless it is carried along
     _, length, g = map(mpf, sp.DEFAULTS)
@@ -318,7 +319,7 @@ def bits(form: str, method: str, *, lanes: bool) -> bytes:
     return b"".join(part.tobytes() for part in (batch.motions, batch.rows, batch.event_rows))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("method", ["tsit54", "verner853"])
 def test_a_reproducible_build_gives_the_same_bits_from_every_compiler_and_in_lanes(

@@ -20,7 +20,7 @@ MOTIONS: list[tuple[Callable[[], System], dict, dict, float]] = [
 ]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.usefixtures("fused")  # the motion takes longer than the compiler
 @pytest.mark.parametrize(("make", "start", "guess", "change"), MOTIONS)
 def test_a_million_steps_leave_no_residual(

@@ -113,7 +113,7 @@ def test_perturbations_are_projected_by_the_derivative(
     assert np.allclose(tangent, (ends[0] - ends[1]) / (2 * h), rtol=1e-6, atol=2e-8)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("method", ["verner853", "gauss4"])
 def test_perturbations_stay_tangent(method: str, backend: str, rods: GeneratedModule) -> None:

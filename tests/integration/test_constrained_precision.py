@@ -103,7 +103,7 @@ def in_numbers(module: GeneratedModule, name: str) -> str:
     return precision.program(source, form) + more + tail
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize(("make", "start", "params"), STARTS)
 def test_constraints_are_kept_to_rounding_at_any_tolerance(
@@ -150,7 +150,7 @@ def rods() -> GeneratedModule:
     return build(two_rods())
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("precision", [*PRECISIONS, "decimal"])
 def test_digits_are_those_of_fewest_coordinates(
     precision: str, rods: GeneratedModule, expected: np.ndarray

@@ -168,7 +168,7 @@ def height(t: float, y: np.ndarray) -> float:
     return float(-np.cos(y[0]) - np.cos(y[1]))
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("motions", [3, pytest.param(300, marks=pytest.mark.campaign)])
 @pytest.mark.parametrize(
     ("method", "backend"),

@@ -86,6 +86,7 @@ def true_crossings(coefficients: np.ndarray) -> tuple[list[float], bool]:
     return roots, min(values, default=np.inf) < 1e-12 * np.abs(coefficients).max()
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     "motions", [200, pytest.param(10_000, marks=[pytest.mark.campaign, pytest.mark.timeout(1800)])]
 )

@@ -53,7 +53,7 @@ def test_results_with_own_times_do_not_depend_on_other_motions() -> None:
     assert all_of_them.t_events[some].tobytes() == fewer.t_events.tobytes()
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("backend", ["compiled", "python"])
 def test_skipped_occurrences_are_not_stored(backend: str) -> None:
     y0 = {"theta1": [0.5, 1.0, 1.5], "theta2": 0.2}

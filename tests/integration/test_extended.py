@@ -91,6 +91,7 @@ def test_states_are_those_of_taylor_series(
     assert np.abs(back - taylor(module, module.DEFAULTS, start, -times[::11], 26)).max() < 1e-14
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("precision", ["double-double", "quadruple"])
 def test_times_have_all_digits_too(precision: str) -> None:
     # 3e-6 rad from the pole the azimuth turns at 1.9e3 rad/s, whose rate is 8e6 rad/s²
@@ -103,6 +104,7 @@ def test_times_have_all_digits_too(precision: str) -> None:
     assert (np.abs(computed - exact) <= 2 * np.spacing(np.abs(exact)) + 1e-18).all()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_every_precision_has_its_digits_in_chaos() -> None:
     # doubles reach 3e-8 with compensated sums
     assert 1e-14 < after(20, "long double", 1e-19) < 2e-10
@@ -153,6 +155,7 @@ def test_functions_have_all_digits(tmp_path: Path) -> None:
         assert least <= np.abs(end / exact - 1).max() < most
 
 
+@pytest.mark.long("other tests reach its code")
 def test_parameters_and_start_are_taken_as_exact() -> None:
     # as by Taylor series: 9.81 is the nearest double, and sines are those of double angles
     start, times = (3.0, 3.1, 0.0, 0.0), [0.0, 6.0]

@@ -139,7 +139,7 @@ def test_errors_are_proportional_to_the_tolerance(name: str) -> None:
         assert 1e-5 < np.abs(end - exact).max() / tolerance < 5
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("name", CONTROLLED)
 @pytest.mark.parametrize(("scene", "calls"), [(SPRING, 20_000), (SHORT_ROD, 700_000)])
 def test_stiff_scenes_have_errors_about_the_tolerance(

@@ -45,6 +45,7 @@ def duffing_period(y: np.ndarray) -> mp.mpf:
         return 4 * mp.ellipk(cubic * top / (2 * scale)) / mp.sqrt(scale)
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("symmetry", [(), ("theta_dot",)])
 def test_the_backbone_of_the_pendulum_is_an_elliptic_integral(symmetry: tuple[str, ...]) -> None:
     start = periodic_orbit(single, {"theta": 0.4}, 2.0, {"l": 1.0}, symmetry=symmetry)
@@ -174,6 +175,7 @@ def dop853_monodromy(y: np.ndarray, period: float, module: ModuleType) -> np.nda
     return np.array(columns).T
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_branch_point_is_where_a_third_multiplier_is_1() -> None:
     rest = equilibria(dp, {})[0]
     start = normal_mode_orbit(dp, rest, rest.modes[0], 1.4)

@@ -27,6 +27,7 @@ from solvers.integration.orbits.symmetry import Nature, Reversal
 DAMPED = {"a": 0.01, "Omega": 6.0, "c": 0.3}
 
 
+@pytest.mark.long("other tests reach its code")
 def test_resonances_of_the_driven_pendulum_are_mathieus() -> None:
     rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 5, {"a": 0.01, "Omega": 5.0})
     family = orbit_family(driven, rest, "a", (0.001, 3.0))

@@ -251,7 +251,7 @@ def kepler() -> ModuleType:
     return build(System("planet", "", coordinates, parameters, [PointMass(1, (x, y))], potential))
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.6, 0.9])
 def test_keplers_orbits_are_all_periodic(kepler: ModuleType, eccentricity: float) -> None:
     start = [1 - eccentricity, 0.0, 0.0, np.sqrt((1 + eccentricity) / (1 - eccentricity))]

@@ -277,7 +277,7 @@ def test_a_motion_at_rest_stays_there(backend: str) -> None:
     assert np.array_equal(found.y[:, -1], np.zeros(4))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.usefixtures("fused")  # the motions take longer than the compiler
 @pytest.mark.parametrize("compensated", [False, True])
 @pytest.mark.parametrize("form", ["hamiltonian", "rational"])

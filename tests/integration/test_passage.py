@@ -63,7 +63,7 @@ def pendulum(end: float, rate: float = -1.0, **options: Any) -> Any:
     return solve_ivp(rhs, (0, end), [np.pi / 2, rate], **tight, **options)
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("method", "backend"), [
     *((method, None) for method in ("verner853", "verner98", "gauss8", "radau3")),
     *((method, "python") for method in ("dop853", "gauss4", "DOP853")),

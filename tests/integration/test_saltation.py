@@ -63,6 +63,7 @@ def test_two_functions_that_stay_0(backend: str) -> None:
     assert result == pytest.approx(np.array(exact, float), abs=1e-11)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_slips_make_a_motion_forget_its_start() -> None:
     # after a phase in which the block moves with the belt, motions differ in time only
     module, times = block(), np.linspace(0, 30, 301)

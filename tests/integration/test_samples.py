@@ -41,7 +41,7 @@ def sampled(module: ModuleType, times: np.ndarray, method: str, **options: objec
     )
 
 
-@pytest.mark.long("more cases of the same kind", keep=12)
+@pytest.mark.long("more cases of the same kind", keep=9)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("module", STARTS, ids=lambda module: module.SYSTEM)

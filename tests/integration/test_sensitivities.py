@@ -32,7 +32,7 @@ def by_series(
     return np.asarray(np.tensordot(WEIGHTS, motions, 1) / step)
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     ("module", "y0", "changed", "quantities"),
     [

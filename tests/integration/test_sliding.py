@@ -81,6 +81,7 @@ def test_a_driven_block_sticks_and_slips(method: str, backend: str | None) -> No
     assert abs(motion.y - expected).max() < 1e-9
 
 
+@pytest.mark.long("other tests reach its code")
 def test_prepared_functions_and_ensembles_do_the_same() -> None:
     module = block()
     run = prepare(module, DRIVEN, rtol=1e-11)

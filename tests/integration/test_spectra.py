@@ -112,7 +112,7 @@ def test_friction_contracts_volumes_in_sweeps(tmp_path: Path) -> None:
     assert sums == pytest.approx([-0.1, -0.4], abs=1e-7)  # -c/(m l²)
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("compensated", [False, True])
 @pytest.mark.parametrize("method", ["dp54", "verner98", "gauss8"])
 def test_perturbations_of_any_size_have_the_same_digits(method: str, compensated: bool) -> None:

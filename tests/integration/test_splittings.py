@@ -36,7 +36,7 @@ def exact() -> np.ndarray:
     return integrate(hh, (0, DURATION), START, {}, method="gauss8", rtol=1e-14, atol=1e-15).y[:, -1]
 
 
-@pytest.mark.long("more cases of the same kind", keep=6)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("name", SPLITTINGS)
 @pytest.mark.parametrize("backend", ["python", "compiled", "lanes"])
 def test_every_loop_has_the_order(name: str, backend: str, exact: np.ndarray) -> None:
@@ -52,6 +52,7 @@ def test_every_loop_has_the_order(name: str, backend: str, exact: np.ndarray) ->
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.4)
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("name", SPLITTINGS)
 def test_loops_agree_with_samples_and_events(name: str) -> None:
     events = [Event(hh, "x", 0.0), Event(hh, "y_dot", 0.1, direction=1)]

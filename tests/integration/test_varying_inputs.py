@@ -329,6 +329,7 @@ def test_a_run_that_resumes_has_the_shortest_step_of_its_times() -> None:
     assert batch.motions["min_h"][0] == shortest_step(1.0, 1e6)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_errors_of_computed_torque_decay_as_those_of_a_damped_spring() -> None:
     example = Path(__file__).parents[2] / "notebooks" / "gallery" / "computed_torque.py"
     values = runpy.run_path(str(example))

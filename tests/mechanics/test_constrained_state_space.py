@@ -26,7 +26,7 @@ def rods() -> System:
         constraints=[x1**2 + y1**2 - l1**2, (x2 - x1)**2 + (y2 - y1)**2 - l2**2])  # fmt: skip
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     ("make", "point"),
     [

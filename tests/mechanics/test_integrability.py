@@ -51,7 +51,7 @@ position = ["x", "R"]
 DISC = [dx - R * dphi * c, dy - R * dphi * s]
 
 
-@pytest.mark.long("more cases of the same kind", keep=6)
+@pytest.mark.long("more cases of the same kind", keep=4)
 @pytest.mark.parametrize(
     ("constraints", "integrable", "nonholonomic"),
     [

@@ -68,6 +68,7 @@ def test_equations_of_a_moved_pivot() -> None:
     assert Derivation(with_inputs(system(), {"s": 1})).power == 0
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_function_of_time_is_the_formula() -> None:
     expected = integrate(swung(), (0, 5), {"theta": 1.0}, {}, **TIGHT).y[:, -1]
     motion = integrate(pendulum(), (0, 5), {"theta": 1.0}, {}, inputs=shaken, **TIGHT)

@@ -318,6 +318,7 @@ def test_the_command_states_degrees_of_freedom(
     assert ('COORDINATES = ("theta",)' in code) == (not keep)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_mechanism_of_one_degree_of_freedom_is_a_quadrature(tmp_path: Path) -> None:
     (tmp_path / "crank.toml").write_text(FILE.replace("KEEP", "false"))
     (tmp_path / "scene.toml").write_text("""

@@ -101,6 +101,7 @@ def test_invalid_starts_of_scenes_are_refused(initial: str, message: str, tmp_pa
         scene(tmp_path, initial)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_sweeps_complete_every_start(tmp_path: Path) -> None:
     module = scene(tmp_path, "phi = 1\n").module
     angles = np.linspace(0, np.pi, 41)

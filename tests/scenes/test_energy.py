@@ -26,7 +26,7 @@ ATWOOD = Scene(atwood, {}, {"r": 1.0, "theta": 1.0}, 1.0, accuracy=1e-6, title="
 PENDULUM = Scene(sp, {}, {"theta": 1.0}, 1.0, title="Pendulum")
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("samples", [2, 201, 5001])
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-7, 1e-10])
 def test_the_energy_balance_is_as_accurate_as_the_state(accuracy: float, samples: int) -> None:
@@ -75,6 +75,7 @@ def test_energy_errors_are_in_joules_where_no_energy_above_rest_exists() -> None
     assert energy_unit(atwood, atwood.DEFAULTS, 3.0).name == "J"  # no equilibrium is known
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("scenes", "unit"), [
     ([PENDULUM], "energy above rest"),
     ([ATWOOD], "J"),

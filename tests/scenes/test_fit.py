@@ -51,6 +51,7 @@ def measured(module: GeneratedModule, y0: Any, params: Any, t: Any, noise: float
 T = np.arange(0, 6, 1 / 20)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_damped_oscillator_is_fitted_as_by_its_closed_form() -> None:
     data = measured(oscillator(), {"x": 1.0}, {}, T, 0.05)
 
@@ -86,6 +87,7 @@ def test_gaps_are_left_out() -> None:
     assert np.isnan(result.residuals[0][0, ~keep]).all()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_double_pendulum_is_fitted_as_by_single_shooting_with_scipy() -> None:
     params = dp.params(m2=0.7, l1=1.3, l2=0.9)
     t = T[:60]
@@ -107,6 +109,7 @@ def test_a_double_pendulum_is_fitted_as_by_single_shooting_with_scipy() -> None:
     assert np.allclose(result.errors, errors, rtol=1e-3)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_poor_guesses_of_a_chaotic_motion_converge_where_single_shooting_does_not(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -71,6 +71,7 @@ def reference(x: Any, kind: Interpolation) -> tuple[Any, Any]:
 TRUTH, START = (1.3, 5.0, 0.2), (0.4, 0.0)
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("kind", "share"), [("held", 1e-3), ("linear", 0.3)])
 def test_values_are_those_of_the_exact_solution(kind: Interpolation, share: float) -> None:
     # the mean of linear inputs acts from each time to the next one: an error of second order
@@ -163,6 +164,7 @@ def arm_run(seed: int, name: str) -> Measurement:
     return Measurement(t, values | dict(zip(arm.INPUTS, motion.inputs, strict=True)), name)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_run_that_was_kept_back_is_predicted() -> None:
     runs = [arm_run(0, "first"), arm_run(1, "second")]
     result = fit(arm, runs, [*PARAMETERS], inputs="held")

@@ -223,6 +223,7 @@ def test_small_motion_is_its_normal_modes_up_to_the_nonlinear_terms() -> None:
         NormalModes.of(motion_from(sp, (0.1, 0), 1.0, params=(1, 2, 0.0)))
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("angle", "duration"), [(1e-3, 300.0), (1e-2, 30.0), (0.05, 3.0)])
 def test_the_error_of_normal_modes_is_estimated_closely(angle: float, duration: float) -> None:
     for module, params, y0 in (
@@ -355,7 +356,7 @@ def test_accelerations_by_a_light_bob_add_up_although_their_signs_change() -> No
     assert error < model.error_estimate < 10 * error
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("module", "params", "y0"), [
     (dp, (1, 1, 2, 2, 0), (0, 1.5, 2, -3)),  # the shape rotates
     (dp, (1, 0.3, 2, 1, 0), (0, 0.5, 2, 2.5)),  # it swings
@@ -437,6 +438,7 @@ def test_quadrature_refuses_motions_outside_its_domain() -> None:
         Quadrature.of(motion_from(ep, (1.0, 0, 3.0, 0), 1, (1, 1e-9, 1, 0)))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_shorter_series_is_less_accurate_and_its_estimate_shows_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -602,6 +604,7 @@ def test_a_run_is_compared_at_the_ends_and_in_the_middle_of_its_steps() -> None:
     assert set(run.motion.sample_times) <= set(times)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_estimates_include_fast_and_rare_events() -> None:
     # through the pivot within a millionth of the time
     narrow = Scene(ep, (1, 10, 1, 0), (2.5, 0.3, 0, 1e-4), 3.0, model="full")

@@ -27,7 +27,7 @@ def declined(scene: Scene) -> dict[str, str]:
     return select_model(scene, lambda motion, _: motion, lambda _: None).declined
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("module", "y0"), [
     (spherical, (1.0, 0.3, 0.2, 1.5)),
     (spherical, (-0.8, 2.0, 0.5, -3.0)),

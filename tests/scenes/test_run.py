@@ -193,6 +193,7 @@ def test_rods_and_springs_are_distinguished_by_their_lengths() -> None:
     assert len(rods.points) == len(spring.points) == 0  # links end at masses and the origin
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("system", "initial", "rods"), [
     ("spherical_pendulum", "theta = 1\nphi = 0\nphi_dot = 2", [(-1, 0)]),
     ("chain_3", "theta1 = 1\ntheta2 = 0\ntheta3 = 0", [(-1, 0), (0, 1), (1, 2)]),
@@ -347,6 +348,7 @@ def test_plots_show_all_existing_quantities_with_units_and_equal_axes_in_space()
     assert np.array_equal(angles[1].get_ydata(), run_scene(scene).y[1])
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_report_s_figures_are_plotted_with_a_note_on_what_is_known() -> None:
     for name, curves in (
         ("figure_3_1", 4),

@@ -63,12 +63,13 @@ def check_light_masses(seed: int) -> float:
 
 # in scene 113 dop853's error is 200 tolerances, and happened to equal that of the checked run;
 # scene 16, of the same system as 62, needs series of so many digits that they take minutes
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("seed", [*({*range(len(SYSTEMS)), 62, 113} - {16})])
 def test_errors_stay_below_their_estimates(seed: int) -> None:
     check_scene(seed)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_estimate_with_light_masses_is_a_bound_and_a_close_one() -> None:
     ratios = [check_light_masses(seed) for seed in range(8)]
     assert np.median(ratios) < 300

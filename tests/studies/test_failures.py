@@ -307,6 +307,7 @@ def test_the_reference_for_accelerations_is_exact() -> None:
     assert exact == pytest.approx(np.array(dp.rhs(0.0, y, params))[2:], rel=1e-14)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_lyapunov_exponent_of_a_linear_saddle_is_its_rate() -> None:
     # about upright at rest the single pendulum grows by e^(omega t), exactly
     found = lyapunov(sp, (1.0, 9.81, -9.81), (0.0, 0.0), 50)

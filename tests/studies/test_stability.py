@@ -208,6 +208,7 @@ def test_the_critical_step_is_what_the_interval_predicts(
     assert found.growth_measured == pytest.approx(found.growth_predicted, rel=1e-6, abs=1e-13)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_another_system_has_other_critical_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     stiff = (1.0, 1e4, 1.0, 9.81)  # the spring's own frequency is 100 rad/s
     found = critical_step("rk4", ep, stiff)

@@ -53,6 +53,7 @@ def test_motions_with_less_energy_than_the_barrier_stay_in_their_well(tmp_path: 
         assert ends[i, k] == pytest.approx(end, abs=1e-3)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_rotations_and_swings_of_a_driven_pendulum_are_those_of_scipy(tmp_path: Path) -> None:
     values = {"Omega": 2.0, "c": 0.3, "g": 1.0, "a": 0.45}
     axes = Grid({"theta": np.linspace(-3, 3, 8), "theta_dot": np.linspace(-3, 3, 6)})
@@ -94,6 +95,7 @@ def basins() -> Sweep:
     return Sweep(duffing, axes, {"b": Basins("2*pi/Omega", 30)}, values=values)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_basins_resume_to_the_same_bits(
     basins: Sweep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -67,6 +67,7 @@ def period(points: np.ndarray) -> int:
     return 0
 
 
+@pytest.mark.long("other tests reach its code")
 def test_periods_of_the_driven_pendulum_are_those_that_scipy_gives(tmp_path: Path) -> None:
     # the cascade of period doublings of the rotating pendulum, chaos, and a window of it
     amplitudes = np.array([0.12, 0.3, 0.55, 0.612, 0.72, 0.95])

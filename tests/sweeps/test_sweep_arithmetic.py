@@ -142,6 +142,7 @@ def test_a_worker_with_other_arithmetic_is_refused(
     assert results.maps["end"].tobytes() == undisturbed.maps["end"].tobytes()
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="needs an x86 processor")
 def test_the_width_of_vectors_changes_no_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     sample = DEFINITION.axes.columns(0, DEFINITION.motions)
@@ -154,6 +155,7 @@ def test_the_width_of_vectors_changes_no_bit(monkeypatch: pytest.MonkeyPatch) ->
     assert process_arithmetic.arithmetic(DEFINITION, sample)["digest"] != own["digest"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_library_that_rounds_a_sine_differently_has_other_arithmetic() -> None:
     code = """if True:
         import hashlib, numpy as np

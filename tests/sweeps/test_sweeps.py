@@ -69,6 +69,7 @@ def flip_time(start: np.ndarray, duration: float) -> float:
     return min([t for times in solution.t_events for t in times], default=np.nan)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_flip_times_equal_those_of_single_motions(tmp_path: Path) -> None:
     # over 4 s errors of 1e-9 grow to 1e-6 at most, much less than the time between flips
     results = run(tmp_path, dp, STARTS, 4.0, {"flip": First(FLIP, TOPS)}, rtol=1e-11)
@@ -94,6 +95,7 @@ def test_the_barrier_excludes_no_flip(tmp_path: Path) -> None:
     assert with_barrier.maps["flip"].tobytes() == without.maps["flip"].tobytes()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_uniform_rods_do_not_flip_below_heyl_s_energy(tmp_path: Path) -> None:
     # J. S. Heyl (2008): below 3 cos θ1 + cos θ2 = 2, for uniform rods alike
     definition = find("bar_flips", load_module)

@@ -247,7 +247,7 @@ def test_a_free_body_moves_by_elliptic_functions(
     assert np.abs(wrong - expected).max() > 1e-9
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("kind", ["angles", "quaternion"])
 @pytest.mark.parametrize("released", [(0.6, 0.1, 12.0), (1.0, 0.5, 8.0), (1.2, 4.0, 3.0)])
 def test_a_heavy_top_nods_by_elliptic_functions(

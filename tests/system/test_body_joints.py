@@ -161,7 +161,7 @@ def end_acceleration(motion: tuple[Array, Array, Array], arm: Array) -> Array:
     return np.cross(alpha, arm) + np.cross(omega, np.cross(omega, arm))
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("seed", range(5))
 def test_multipliers_of_hinges_are_forces_and_torques(seed: int) -> None:
     # oracle: Newton's and Euler's laws of each body, with rotations by their Taylor series
@@ -275,6 +275,7 @@ def four_bars() -> System:
             *hinge("D", bars[2].at((-c / 2, 0, 0)), (d, 0, 0), bars[2].axes)])  # fmt: skip
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_closed_loop_of_parallel_hinges_has_three_redundant_constraints() -> None:
     with pytest.warns(RedundancyWarning, match="left out: D_z, D_torque_x, D_torque_y; they"):
         derivation = Derivation(reduced(four_bars()))

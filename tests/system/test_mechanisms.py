@@ -261,6 +261,7 @@ phi_dot = "ROTATION rad/s"
 """
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("rotation", [1, 12])  # it swings, and turns round
 def test_the_slider_crank_reaches_the_quadrature_model(rotation: int, tmp_path: Path) -> None:
     path = tmp_path / "scene.toml"

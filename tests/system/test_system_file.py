@@ -251,6 +251,7 @@ def test_with_friction_only_equilibrium_and_full_equations_apply(tmp_path: Path)
     assert unit == "energy above rest"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_deeply_nested_definitions_are_not_expanded(tmp_path: Path) -> None:
     nested = "d0 = 'theta'\n" + "".join(f"d{k} = 'd{k - 1} + sin(d{k - 1})'\n" for k in range(1, 9))
     text = PENDULUM.replace("[[masses]]", f"[definitions]\n{nested}[[masses]]")
