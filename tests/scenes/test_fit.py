@@ -87,7 +87,6 @@ def test_gaps_are_left_out() -> None:
     assert np.isnan(result.residuals[0][0, ~keep]).all()
 
 
-@pytest.mark.long("other tests reach its code")
 def test_a_double_pendulum_is_fitted_as_by_single_shooting_with_scipy() -> None:
     params = dp.params(m2=0.7, l1=1.3, l2=0.9)
     t = T[:60]
