@@ -32,3 +32,21 @@ def test_friction_of_the_system_is_counted_once(tmp_path: Path) -> None:
     (written,) = write_document(Derivation(load(path)), path.with_suffix(".tex"))
     formulas = judge_document(read_document(written), hints(str(path), None)).formulas
     assert {one.verdict for one in formulas} == {"verified", "definition"}
+
+
+MOMENTUM = r"""
+$$T = \frac12 m l^2\dot\theta^2, \qquad V = - m g l\cos\theta$$
+$$m l^2\ddot\theta = - m g l\sin\theta - b\dot\theta$$
+$$p_\theta = m l^2\dot\theta$$
+$$\dot p_\theta = - m g l\sin\theta - b\dot\theta$$
+"""
+
+
+def test_the_rate_of_a_momentum_contains_friction(tmp_path: Path) -> None:
+    def verdicts(text: str) -> list[str]:
+        (tmp_path / "a.md").write_text(text)
+        return [one.verdict for one in judge_document(read_document(tmp_path / "a.md")).formulas]
+
+    assert verdicts(MOMENTUM) == ["verified"] * 5
+    start, _, _ = MOMENTUM.rpartition("- b")
+    assert verdicts(rf"{start}+ b\dot\theta$$") == ["verified"] * 4 + ["wrong"]

@@ -10,6 +10,17 @@ from derive.verification.documents.letters.known_systems.templates import named
 
 #: For each system, its accelerations in the order of its coordinates.
 ACCELERATIONS = {
+    "oscillator": ["-k*x/m"],
+    "two_oscillators": ["(k2*(x2 - x1) - k1*x1)/m1", "(k2*(x1 - x2) - k3*x2)/m2"],
+    "central_force": ["r*theta_dot**2 - G*M/r**2", "-2*r_dot*theta_dot/r"],
+    "field_of_a_centre": ["r*theta_dot**2 - k/(m*r**2)", "-2*r_dot*theta_dot/r"],
+    "atwood": ["(m1 - m2)*g/(m1 + m2)"],
+    "physical_pendulum": ["-m*g*l*sin(theta)/I"],
+    "uniform_rod": ["-3*g/(2*l)*sin(theta)"],
+    "half_rod": ["-3*g/(4*l)*sin(theta)"],
+    "charged_mass_2": ["q*B/m*y_dot", "-q*B/m*x_dot"],
+    "bead_on_parabola": ["-(4*k**2*x*x_dot**2 + 2*g*k*x)/(1 + 4*k**2*x**2)"],
+    "falling_unit_mass": ["-k/r**2"],
     "scaled_pendulum": ["-omega0**2*sin(theta)"],
     "forced_pendulum_sine": ["-g/l*sin(theta) + A*sin(Omega*t)/(m*l**2)"],
     "accelerated_pendulum_sine": ["-g/l*sin(theta) + A*sin(Omega*t)"],
@@ -151,6 +162,44 @@ EQUATIONS = {
     "pendulum_on_spring_cart": [
         "(m1 + m2)*x_ddot + m2*l*cos(theta)*theta_ddot - m2*l*theta_dot**2*sin(theta) + k*x",
         "cos(theta)*x_ddot + l*theta_ddot + g*sin(theta)",
+    ],
+    "cart_and_bar": [
+        "(M + m)*x_ddot + m*l*cos(theta)*theta_ddot - m*l*theta_dot**2*sin(theta)",
+        "m*l*cos(theta)*x_ddot + (I + m*l**2)*theta_ddot + m*g*l*sin(theta)",
+    ],
+    "cart_and_half_rod": [
+        "(M + m)*x_ddot + m*l*cos(theta)*theta_ddot - m*l*theta_dot**2*sin(theta)",
+        "cos(theta)*x_ddot + 4*l/3*theta_ddot + g*sin(theta)",
+    ],
+    "cart_and_uniform_rod": [
+        "(M + m)*x_ddot + m*l/2*cos(theta)*theta_ddot - m*l/2*theta_dot**2*sin(theta)",
+        "cos(theta)*x_ddot + 2*l/3*theta_ddot + g*sin(theta)",
+    ],
+    "sideways_coupled_pendulums": [
+        "m*l*theta1_ddot + m*g*sin(theta1) + k*l*(sin(theta1) - sin(theta2))*cos(theta1)",
+        "m*l*theta2_ddot + m*g*sin(theta2) + k*l*(sin(theta2) - sin(theta1))*cos(theta2)",
+    ],
+    "twist_coupled_pendulums": [
+        "m*l**2*theta1_ddot + m*g*l*sin(theta1) + k*(theta1 - theta2)",
+        "m*l**2*theta2_ddot + m*g*l*sin(theta2) + k*(theta2 - theta1)",
+    ],
+    "two_links": [
+        "(I1 + m1*r1**2 + m2*l1**2)*theta1_ddot + m2*l1*r2*cos(theta1 - theta2)*theta2_ddot"
+        " + m2*l1*r2*sin(theta1 - theta2)*theta2_dot**2 + (m1*r1 + m2*l1)*g*sin(theta1)",
+        "m2*l1*r2*cos(theta1 - theta2)*theta1_ddot + (I2 + m2*r2**2)*theta2_ddot"
+        " - m2*l1*r2*sin(theta1 - theta2)*theta1_dot**2 + m2*g*r2*sin(theta2)",
+    ],
+    "two_links_about_joints": [
+        "(I1 + m2*l1**2)*theta1_ddot + m2*l1*r2*cos(theta1 - theta2)*theta2_ddot"
+        " + m2*l1*r2*sin(theta1 - theta2)*theta2_dot**2 + (m1*r1 + m2*l1)*g*sin(theta1)",
+        "m2*l1*r2*cos(theta1 - theta2)*theta1_ddot + I2*theta2_ddot"
+        " - m2*l1*r2*sin(theta1 - theta2)*theta1_dot**2 + m2*g*r2*sin(theta2)",
+    ],
+    "two_half_rods": [
+        "(4*m1/3 + 4*m2)*l1*theta1_ddot + 2*m2*l2*cos(theta1 - theta2)*theta2_ddot"
+        " + 2*m2*l2*sin(theta1 - theta2)*theta2_dot**2 + (m1 + 2*m2)*g*sin(theta1)",
+        "2*l1*cos(theta1 - theta2)*theta1_ddot + 4*l2/3*theta2_ddot"
+        " - 2*l1*sin(theta1 - theta2)*theta1_dot**2 + g*sin(theta2)",
     ],
     "two_rods_by_centres": [
         "(m1*l1**2/3 + m2*l1**2)*theta1_ddot + m2*l1*r2*cos(theta1 - theta2)*theta2_ddot"
