@@ -184,6 +184,7 @@ T = m v^2. (1.24)  ⟶  T = m v^2
 A = \pmatrix{a & b \cr c & d}  ⟶  A = [a, b; c, d]
 q = \left[\array{x \\ \theta}\right]  ⟶  q = [x; theta]
 K.E. = \frac{m v^2}{2}  ⟶  KE = [m v^2 / 2]
+K.E.+P.E.=E  ⟶  (KE + PE) = E
 T = \sum_{kl} M_{kl} u_k u_l  ⟶  T = sum(sum(M_kl u_k u_l; l = ..); k = ..)
 (x, y)  ⟶  <x, y>
 [x, \dot x]^T  ⟶  <x, x.>^T

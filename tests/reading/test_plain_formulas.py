@@ -126,7 +126,10 @@ def test_what_is_no_formula_is_skipped(block: str, tmp_path: Path) -> None:
 
 
 def test_spans_of_code_are_inline_formulas(tmp_path: Path) -> None:
-    text = "- `θ'' = -(g/l) cos θ` (slip)\n- `θ = l` `x = 3` `L = ½ m l² θ̇² + m g l cos θ`, `a'b`\n"
+    text = (
+        "- `θ'' = -(g/l) cos θ` (slip)\n- `θ = l` `x = 3` `x = y`"
+        " `L = ½ m l² θ̇² + m g l cos θ`, `a'b`\n"
+    )
     path = tmp_path / "page.md"
     path.write_text(text, encoding="utf-8")
     document = read_document(path)

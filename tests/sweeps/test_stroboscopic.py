@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 import generated.double_pendulum as dp
@@ -17,6 +17,7 @@ import generated.single_pendulum as sp
 from solvers import Extremes, Final, Grid, Lyapunov, Samples, Section, Sweep, sweep
 from solvers.app.modules import load as load_module
 from solvers.io.quantity import QuantityError, formula
+from solvers.sweeps import sweep_figure
 from solvers.sweeps.definition.sampling import Sampling
 from solvers.sweeps.definition.sweep_reading import find
 from solvers.sweeps.execution import worker
@@ -152,6 +153,15 @@ def test_a_section_over_many_values_of_a_parameter_is_drawn_as_a_diagram(diagram
         (a, v) for a, values in zip(diagram.axes["a"], diagram.maps["section"], strict=True)
         for v in values[0]
     )  # fmt: skip
+
+
+def test_of_too_many_points_a_diagram_shows_every_kth(
+    diagram: Results, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sweep_figure, "POINTS", 150)
+    (points,) = figure(diagram).axes[0].get_lines()
+    shown = points.get_ydata()
+    assert_array_equal(shown, np.ravel(diagram.maps["section"][:, 0, ::3]))  # of 40 times 10
 
 
 def test_a_sweep_of_periods_resumes_to_the_same_bits(
