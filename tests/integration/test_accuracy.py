@@ -199,6 +199,7 @@ def check_ensemble(motions: Ensemble, starts: np.ndarray, accuracy: float) -> No
         assert error <= motions.error_estimate[k] <= accuracy
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-8])
 def test_errors_of_all_motions_of_an_ensemble_are_below_the_estimates(accuracy: float) -> None:
     starts = np.random.default_rng(1).uniform(-2, 2, (4, 9))

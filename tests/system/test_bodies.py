@@ -185,7 +185,7 @@ MISTAKES: dict[str, tuple[object, ...]] = {
 }
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_mistakes_are_found_beside_the_points(
     mistake: str, monkeypatch: pytest.MonkeyPatch

@@ -199,6 +199,7 @@ def test_components_in_which_points_agree_are_no_constraints() -> None:
     assert [one.name for one in planar.conditions] == ["pin_1_x", "pin_1_y"]
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.filterwarnings("ignore:constraints of system 'parallelogram'")
 def test_a_bar_on_three_cranks_moves_as_a_pendulum() -> None:
     module = build(parallelogram())

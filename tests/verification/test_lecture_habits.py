@@ -186,6 +186,7 @@ $$A\ddot\alpha = c\sin\alpha - N + d\dot\gamma - e\dot\alpha$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_generalized_forces_can_be_defined(tmp_path: Path) -> None:
     found = judged(tmp_path, ROTOR)
     assert [(one.verdict, one.note.startswith("with")) for one in found[4:]] == [

@@ -1,5 +1,7 @@
 """Loops over pairs of different bodies."""
 
+import pytest
+
 from derive.reading.programs.program_reader import read_program
 from derive.verification.documents.program_judgement import judge_program
 
@@ -48,6 +50,7 @@ def verdicts(text: str, language: str) -> list[str]:
 SKIP = C.replace("CONDITION", "if (i == j) continue;").replace("END", "")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_bodies_attract_others_alone() -> None:
     assert verdicts(SKIP, "C") == ["verified"] * 4
     slip = SKIP.replace("b[j].m * dy / (r*r*r)", "b[j].m * dy / (r*r)")

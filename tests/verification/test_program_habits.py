@@ -150,6 +150,7 @@ void orbit(int n) {
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_momenta_of_a_leapfrog_step_give_accelerations() -> None:
     document = judged(MOMENTA, "C")
     assert equations(document) == ["verified", "verified"]
@@ -200,6 +201,7 @@ def test_accelerations_can_be_known_by_their_names_alone() -> None:
     assert not judged(NAMED.replace("thdot", "rate")).formulas
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_ratio_can_stand_for_two_masses() -> None:
     text = """
 def rates(t, y, g, mu):
@@ -338,6 +340,7 @@ def test_gravity_with_another_sign_in_all_equations_is_another_angle(
     )
 
 
+@pytest.mark.long("other tests reach its code")
 def test_constants_can_be_those_of_a_unit_mass() -> None:
     text = """
 def rates(t, y, k, g, L):

@@ -183,6 +183,7 @@ $$m\ddot y_2 = -c (y_2 - y_1)^3$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_slip_of_an_index_is_found_before_a_case_of_equal_parameters(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, EQUAL)} == {"definition", "verified"}
     found = judged(tmp_path, EQUAL.replace(r"-c_2 (y_2", r"-c_1 (y_2"))

@@ -153,6 +153,7 @@ $$m b^2\ddot\beta + m b\ddot s\sin\beta - m g b\cos\beta + d\beta = 0$$
 $$p_s = (M + m)\dot s + m b\dot\beta\sin\beta$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_energies_of_parts_alone_state_a_system(tmp_path: Path) -> None:
     assert verdicts(tmp_path, BLOCKS) == ["definition"] * 4 + ["verified"] * 3
     assert verdicts(tmp_path, BLOCKS.replace("p_s = (M +", "p_s = (M -"))[-1] == "wrong"
@@ -355,6 +356,7 @@ $$l\ddot\varphi + \ddot x\cos\varphi - g\sin\varphi = 0$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_positions_of_one_part_do_not_state_the_system(tmp_path: Path) -> None:
     found = judged(tmp_path, BALANCED).formulas
     assert [one.verdict for one in found[-2:]] == ["verified"] * 2
@@ -531,6 +533,7 @@ def test_a_tension_for_which_equations_are_solved_decides_nothing(tmp_path: Path
     assert ";" not in document.system  # no system of the tension and the angle
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_load_that_an_equation_states_is_no_reaction(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 m l^2\dot\theta^2 + \frac12 I(\dot\theta + \dot\phi)^2$$ $$V = m g l\cos\theta$$
@@ -780,6 +783,7 @@ $$m_2 b^2\ddot\beta + m_2 a b\ddot\alpha\cos(\alpha - \beta)
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_positions_do_not_refute_a_further_moment_of_inertia(tmp_path: Path) -> None:
     assert "wrong" not in verdicts(tmp_path, BUILDING)
     # of point masses alone the equation is wrong

@@ -34,7 +34,7 @@ def failures(results: list[Outcome]) -> list[str]:
     return crashes + [f"{one.name}: {accused}" for one in results for accused in one.accused]
 
 
-@pytest.mark.long("more styles", keep=1)
+@pytest.mark.long("styles; the last test here has some")
 @pytest.mark.parametrize("style", DEVELOPED)
 def test_the_slip_is_found_and_no_right_formula_is_accused(style: str, tmp_path: Path) -> None:
     results = [*outcomes([style], [3, 10, 15], tmp_path)]
