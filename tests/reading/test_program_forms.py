@@ -212,7 +212,7 @@ def test_stages_without_functions_have_the_coefficients_of_a_method() -> None:
         assert any(one.is_fault for one in methods(STAGES.replace(old, new), "Fortran"))
 
 
-def test_weights_without_brackets_lack_the_step_size() -> None:
+def test_wrong_weights_of_a_method_are_stated() -> None:
     text = """
 f = @(s) [s(2); -g/L*sin(s(1))]';
 k = zeros(4, 2);
@@ -228,6 +228,8 @@ end
     (wrong,) = methods(text.replace("h/6*(", "h/6*").replace("k(4, :));", "k(4, :);"), "MATLAB")
     assert wrong.is_fault
     assert "weights 0.1667, 2, 2, 1," in wrong.text
+    (halved,) = methods(text.replace("h/6", "h/12"), "MATLAB")
+    assert "weights 0.08333, 0.1667, 0.1667, 0.08333," in halved.text
 
 
 def test_stages_change_the_state_and_not_the_rate() -> None:
