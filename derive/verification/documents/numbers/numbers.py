@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from derive.verification.corrections.goals import UP_TO_A_CONSTANT
 from derive.verification.documents.formula_translation import RATES, order, stem
 from derive.verification.documents.jets import (
     Array,
@@ -31,8 +32,6 @@ from derive.verification.documents.statements import (
 #: The largest difference of values of order 1 that counts as none, and digits that show one.
 CLOSE, DIGITS = 1e-7, 6
 
-#: Quantities with an arbitrary constant.
-UP_TO_A_CONSTANT = ("potential_energy", "energy", "hamiltonian", "lagrangian")
 #: Rounds in which definitions are sought: a name can be defined after its use.
 ROUNDS = 3
 
