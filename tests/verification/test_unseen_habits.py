@@ -888,3 +888,59 @@ def test_a_derivative_by_a_velocity_is_no_rate_of_one_by_a_coordinate(tmp_path: 
     expected = ["verified", "verified", "verified", "definition", "definition", "verified"]
     assert verdicts(tmp_path, VELOCITY) == expected
     assert verdicts(tmp_path, VELOCITY.replace(r"= m\ddot y", r"= k\ddot y"))[-1] == "wrong"
+
+
+PARABOLOID = r"""
+$$L = \frac12 m(1 + 4 a^2 r^2)\dot r^2 + \frac12 m r^2\dot\phi^2 + m g a r^2$$
+$$p_\phi = m r^2\dot\phi = l$$
+$$m(1 + 4 a^2 r^2)\ddot r + 4 m a^2 r\dot r^2 = m r\dot\phi^2 - 2 m g a r$$
+$$(1 + 4 a^2 r^2)\ddot r + 4 a^2 r\dot r^2 = \frac{l^2}{m^2 r^3} - 2 g a r$$
+"""
+
+
+def test_equations_that_contradict_a_lagrangian_together_are_not_wrong(tmp_path: Path) -> None:
+    # the sign of the potential energy can be wrong instead
+    assert "wrong" not in verdicts(tmp_path, PARABOLOID)
+    rate = r"\frac{d}{dt}[m(1 + 4 a^2 r^2)\dot r] = 4 m a^2 r\dot r^2 + m r\dot\phi^2"
+    first = PARABOLOID.index(r"$$m(1") + len("$$")
+    text = f"{PARABOLOID[:first]}{rate} - 2 m g a r$$ $${PARABOLOID[first:]}"
+    assert "wrong" not in verdicts(tmp_path, text)
+    right = PARABOLOID.replace("+ m g a r^2", "- m g a r^2")
+    assert verdicts(tmp_path, right.replace("= m r\\dot", "= 2 m r\\dot"))[2] == "wrong"
+
+
+ANGULAR = r"""
+$$\mathscr{L} = \frac12 m(\dot r^2 + r^2\dot\theta^2) + \frac{G M m}{r}$$
+$$\ddot r = r\dot\theta^2 - \frac{G M}{r^2}$$
+$$L = m r^2\dot\theta$$
+"""
+
+
+def test_an_l_beside_another_that_is_the_lagrangian_can_be_an_angular_momentum(
+    tmp_path: Path,
+) -> None:
+    assert "wrong" not in verdicts(tmp_path, ANGULAR)
+    slip = r"$$L = \frac12 m(\dot r^2 - r^2\dot\theta^2) + \frac{G M m}{r}$$"
+    assert verdicts(tmp_path, ANGULAR.rpartition("$$L")[0] + slip)[-1] == "wrong"
+
+
+def test_motions_without_a_velocity_lack_its_terms(tmp_path: Path) -> None:
+    text = r"""$$L = m\dot r^2 + \frac12 m r^2\dot\phi^2 - m g r$$
+$$2\ddot r - r\dot\phi^2 + g = 0$$
+If it starts with zero angular velocity it falls, with $$\ddot r = - \frac g2$$"""
+    assert "wrong" not in verdicts(tmp_path, text)
+    assert verdicts(tmp_path, text.replace("with zero angular velocity", "anywhere"))[-1] == "wrong"
+
+
+COUPLED = r"""
+$$T = \frac12 m(\dot x_1^2 + \dot x_2^2)$$
+$$V = \frac12 k(x_1^2 + x_2^2) + \frac12 k(x_1 - x_2)^2$$
+$$L = \frac12 m(\dot x_1^2 + \dot x_2^2) - \frac12 k(x_1^2 - x_2^2) - \frac12 k(x_1 - x_2)^2$$
+$$m\ddot x_1 = -2 k x_1 + k x_2$$ $$m\ddot x_2 = k x_1 - 2 k x_2$$
+$$\begin{pmatrix}\ddot x_1\\ \ddot x_2\end{pmatrix} + \frac km\begin{pmatrix}2 & -1\\1 & 2
+\end{pmatrix}\begin{pmatrix}x_1\\x_2\end{pmatrix} = 0$$
+"""
+
+
+def test_a_matrix_equation_can_be_wrong_after_a_wrong_lagrangian(tmp_path: Path) -> None:
+    assert [k for k, one in enumerate(verdicts(tmp_path, COUPLED)) if one == "wrong"] == [2, 5]

@@ -129,6 +129,8 @@ class Consequences:
         left, right = (
             self._namespace.value(one.text) for one in (formula.sides[0], formula.sides[-1])
         )
+        if isinstance(left, sp.MatrixBase) or isinstance(right, sp.MatrixBase):
+            return False
         difference = left - right
         for q, v, force in zip(system.q, system.qdot, system.applied, strict=True):
             rate = time_derivative(system, lagrangian.diff(v))

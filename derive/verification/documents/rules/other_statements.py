@@ -16,9 +16,10 @@ from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdic
 from derive.verification.documents.statements import SQUARE, DocumentFormula
 from derive.verification.judging.reference_system import depends_on
 
-#: Words of sentences about formulas that leave out terms.
+#: Words of sentences about formulas that leave out terms, and about motions that have none.
 SIMPLIFIED = re.compile(
-    "simplif|neglect|ignor|vereinfach|vernachl|despreci|négli|忽略|無視",
+    r"simplif|neglect|ignor|vereinfach|vernachl|despreci|négli|忽略|無視"
+    r"|without|at rest|zero (?:\w+ )?(?:velocity|momentum|speed)",
     re.IGNORECASE,
 )
 #: Names of generalized forces, which nothing else in a document may state.

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.formulas.expression import FUNCTIONS, parse
+from derive.formulas.expression import FUNCTIONS, number, parse
 from derive.formulas.syntax import ExpressionError
 from derive.reading.latex.tree import Quotient, nodes
 from derive.verification.documents.formula_translation import order, stem
@@ -130,19 +130,32 @@ def is_ambiguous(formula: DocumentFormula) -> bool:
     return any(isinstance(one, Quotient) and one.is_ambiguous for one in parts)
 
 
+def is_linear_in_rates(formula: DocumentFormula) -> bool:
+    """Whether a value is a sum of rates with factors, as an angular momentum is."""
+    value = _own_value(formula)
+    if value is None:
+        return False
+    rates = [one for one in value.free_symbols if order(str(one)) == 1]
+    scale = sp.Symbol("scale of rates")
+    return bool(rates) and sp.expand(value.subs({v: scale * v for v in rates}) - scale * value) == 0
+
+
 def _is_wrong(one: WithVerdict) -> bool:
     return one[1].verdict.verdict == "wrong"
 
 
 def _is_vacant(formula: DocumentFormula) -> bool:
     """Whether a formula states nothing but that an acceleration or a rate is zero."""
-    if not order(formula.subject):
-        return False
+    return bool(order(formula.subject)) and _own_value(formula) == 0
+
+
+def _own_value(formula: DocumentFormula) -> sp.Expr | None:
+    """The last side of a formula in its own names; None if it is no number."""
     names = {word: sp.Symbol(word) for word in formula.words if word not in FUNCTIONS}
     try:
-        return bool(parse(formula.sides[-1].text, {**names, **FUNCTIONS}) == 0)
+        return number(formula.sides[-1].text, {**names, **FUNCTIONS})
     except (ExpressionError, TypeError, ValueError):
-        return False
+        return None
 
 
 def _agreeing(formula: DocumentFormula, result: SideVerdict) -> int:

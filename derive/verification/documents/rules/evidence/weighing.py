@@ -31,6 +31,7 @@ from derive.verification.documents.rules.evidence.support import (
     OF_ENERGIES,
     Support,
     is_ambiguous,
+    is_linear_in_rates,
 )
 from derive.verification.documents.rules.mass_positions import is_no_rate
 from derive.verification.documents.rules.side_verdict import HOLDING, SideVerdict, plain
@@ -178,8 +179,10 @@ class _Evidence:
             return UNSUPPORTED
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
-        if line := self._contrary_energy(result):
+        if line := self._contrary_energy(result) or self._contrary_lagrangian(number):
             return opposed(line)
+        if result.kind == "lagrangian" and is_linear_in_rates(formula):
+            return "it can be an angular momentum"
         if place := self._other_place(result):
             return f"{place} can be another place"
         surplus = [t for t in result.verdict.corrections if t.correct == "0"]
@@ -231,6 +234,24 @@ class _Evidence:
             order(word) == 2 or DERIVATIVE.match(word) for word in words
         )
         return None if is_supported else self._lines[stating[0]]
+
+    def _contrary_lagrangian(self, number: int) -> int | None:
+        """The line of the one energy that states the system, if no equation of motion holds.
+
+        These are several: it can be the one that is wrong.
+        """
+        stating = [*self._candidate.stating]
+        if self._candidate.basis != "energies" or len(stating) != 1 or self._is_stated:
+            return None
+        equations = {
+            k: one.verdict.verdict
+            for k, (formula, one) in enumerate(self._results)
+            if len(formula.sides) > 1
+            and (2 in map(order, formula.words) or any("ddt(" in s.text for s in formula.sides))
+        }
+        are_several = number in equations and len(equations) > 1
+        has_support = any(verdict in HOLDING for verdict in equations.values())
+        return self._lines[stating[0]] if are_several and not has_support else None
 
     def _other_place(self, result: SideVerdict) -> str:
         """A place without a rate in the wrong term of an energy, which no other formula shows."""
