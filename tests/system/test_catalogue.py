@@ -337,7 +337,7 @@ def test_the_hamiltonian_is_the_maximum_of_p_v_minus_the_lagrangian_over_velocit
         assert_allclose(found.x, velocities, atol=1e-4 * np.abs(velocities).max())
 
 
-@pytest.mark.long("more cases of the same kind", keep=8)
+@pytest.mark.long("more cases of the same kind", keep=18)
 @pytest.mark.parametrize("form", ["", "_hamiltonian"])
 def test_jacobians_are_derivatives(module: ModuleType, form: str) -> None:
     if form.removeprefix("_") not in ("", *module.FORMS):

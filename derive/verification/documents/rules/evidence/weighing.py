@@ -179,7 +179,7 @@ class _Evidence:
             return UNSUPPORTED
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
-        if line := self._contrary_energy(result) or self._contrary_lagrangian(number):
+        if line := self._contrary_energy(number):
             return opposed(line)
         if result.kind == "lagrangian" and is_linear_in_rates(formula):
             return "it can be an angular momentum"
@@ -222,36 +222,30 @@ class _Evidence:
             None,
         )
 
-    def _contrary_energy(self, result: SideVerdict) -> int | None:
-        """The line of the one energy that states the system, if no motion supports it."""
-        stating = [*self._candidate.stating]
-        is_energy = result.kind in OF_ENERGIES and self._candidate.basis == "energies"
-        if not is_energy or len(stating) != 1 or self._is_stated:
-            return None
-        held = [formula for formula, one in self._results if one.verdict.verdict in HOLDING]
-        words = {word for formula in held for word in formula.words}
-        is_supported = any(order(one.subject) for one in held) or any(
-            order(word) == 2 or DERIVATIVE.match(word) for word in words
-        )
-        return None if is_supported else self._lines[stating[0]]
+    def _contrary_energy(self, number: int) -> int | None:
+        """The line of the one energy that states the system, if no motion supports it.
 
-    def _contrary_lagrangian(self, number: int) -> int | None:
-        """The line of the one energy that states the system, if no equation of motion holds.
-
-        These are several: it can be the one that is wrong.
+        Against another energy, a formula of motions supports it; against several equations of
+        motion, one of these that holds.
         """
         stating = [*self._candidate.stating]
         if self._candidate.basis != "energies" or len(stating) != 1 or self._is_stated:
             return None
         equations = {
-            k: one.verdict.verdict
+            k: one.verdict.verdict in HOLDING
             for k, (formula, one) in enumerate(self._results)
             if len(formula.sides) > 1
             and (2 in map(order, formula.words) or any("ddt(" in s.text for s in formula.sides))
         }
-        are_several = number in equations and len(equations) > 1
-        has_support = any(verdict in HOLDING for verdict in equations.values())
-        return self._lines[stating[0]] if are_several and not has_support else None
+        held = [formula for formula, one in self._results if one.verdict.verdict in HOLDING]
+        words = {word for formula in held for word in formula.words}
+        if self._results[number][1].kind in OF_ENERGIES:
+            is_supported = any(order(one.subject) for one in held) or any(
+                order(word) == 2 or DERIVATIVE.match(word) for word in words
+            )
+        else:
+            is_supported = number not in equations or len(equations) == 1 or any(equations.values())
+        return None if is_supported else self._lines[stating[0]]
 
     def _other_place(self, result: SideVerdict) -> str:
         """A place without a rate in the wrong term of an energy, which no other formula shows."""
