@@ -109,7 +109,8 @@ def judge_document(document: Document, hints: Hints | None = None) -> DocumentVe
         wrong = _wrong(result)
         if wrong and (same := with_one_letter(occurrences, variant, name)):
             other = _by_subjects(document, hints, same, unreadable)
-            if _wrong(other) < wrong:
+            is_worse = len(_wrong(other)) > len(wrong)
+            if _wrong(other) < wrong or (not is_worse and _holding(other) > _holding(result)):
                 note = f"{variant} and {name} are taken for one letter, with which more holds"
                 result = replace(other, notes=(*other.notes, note))
     return result

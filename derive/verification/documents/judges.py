@@ -18,9 +18,9 @@ from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.rules.other_statements import GENERALIZED_FORCE
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import (
+    GENERALIZED_FORCE,
     POINT,
     DocumentFormula,
     Translated,
@@ -38,6 +38,8 @@ SEVERAL = 2
 DECISIVE = 3
 #: The largest difference of scores that decides nothing.
 TIE = 0.25
+#: Formulas more that hold, so that it decides.
+CLEARLY = 2
 #: Most potential energies of stated positions that are compared by their verdicts.
 MAX_DIRECTIONS = 4
 
@@ -161,6 +163,18 @@ class Judges:
         """The number of formulas that are wrong."""
         return len(self.wrong(candidate))
 
+    def count_holding(self, candidate: SystemCandidate) -> int:
+        """The number of formulas that hold."""
+        return sum(one.verdict.verdict in HOLDING for _, one in self.verdicts(candidate))
+
+    def has_more(self, one: Match, other: Match) -> bool:
+        """Whether clearly more formulas hold with a match than with another one.
+
+        Such as frequencies, which numbers at states do not show.
+        """
+        counts = (self.count_holding(m.candidate) + len(m.candidate.stating) for m in (one, other))
+        return next(counts) >= next(counts) + CLEARLY
+
     def wrong(self, candidate: SystemCandidate) -> list[int]:
         """The numbers of the formulas that are wrong."""
         verdicts = self.verdicts(candidate)
@@ -213,16 +227,22 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
         return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
 
     stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
-    if stated and _is_decisive(best, matches) and judges.count_wrong(best.candidate) == 1:
+    is_best = all(one.score <= best.score + TIE for one in stated)
+    is_decided = stated and is_best and _is_decisive(best, matches)
+    if is_decided and judges.count_wrong(best.candidate) == 1:
         return Contradictions()
     doubts, disputed = _rates_and_energies(best, judges), dict[int, frozenset[int]]()
+    verdicts = enumerate(judges.verdicts(best.candidate)) if stated else ()
+    understood = {k for k, (_, one) in verdicts if one.is_understood}
     for match in stated:
         has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
-        if (match.score >= best.score - TIE and not has_more) or has_as_few_slips(match):
-            for number in best.failed - match.failed:
+        is_tie = match.score >= best.score - TIE and not has_more
+        if (is_tie or has_as_few_slips(match)) and not judges.has_more(best, match):
+            more = frozenset(filter(understood.__contains__, best.failed - match.failed))
+            for number in more:
                 doubts.setdefault(number, match.candidate.stating)
-            for number in match.failed - best.failed:
-                disputed.setdefault(number, best.failed - match.failed)
+            for number in match.failed - best.failed if more else ():
+                disputed.setdefault(number, more)
     return Contradictions(doubts, disputed)
 
 
@@ -278,7 +298,8 @@ def with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> 
     fewest = {basis: slips(match) for basis, match in matched.items()}
     order = [basis for basis in ("positions", "energies", "catalogue") if basis in fewest]
     first = min(order, key=lambda basis: (fewest[basis], -matched[basis].support))
-    return matched[first], fewest[first] < fewest["energies"]
+    has_fewer = fewest[first] < fewest["energies"]
+    return matched[first], has_fewer and matched[first].score >= best.score - TIE
 
 
 def _with_one_wrong_position(
@@ -309,7 +330,9 @@ def _rates_and_energies(best: Match, judges: Judges) -> dict[int, frozenset[int]
     if best.candidate.basis != "positions":
         return {}
     formulas, wrong = judges.statements.formulas, judges.wrong(best.candidate)
-    rates = [k for k in wrong if POINT.match(stem(formulas[k].subject))]
+    places = {k: stem(formulas[k].subject) for k in wrong}
+    rates = [k for k, one in places.items()
+             if POINT.match(one) and one not in judges.letters.coordinates]  # fmt: skip
     energies = [k for k in wrong if formulas[k].subject in judges.letters.quantities]
     both = frozenset((*rates, *energies))
     return dict.fromkeys(both, both) if rates and energies else {}

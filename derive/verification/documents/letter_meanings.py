@@ -17,7 +17,11 @@ from derive.verification.documents.judges import (
     with_fewest_slips,
 )
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
-from derive.verification.documents.letters.dimensions import inhomogeneous_formula, lost_dots
+from derive.verification.documents.letters.dimensions import (
+    inhomogeneous_formula,
+    lost_dots,
+    with_other_powers,
+)
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
 from derive.verification.documents.letters.hints import Hints, difference, is_crossed, names_of
 from derive.verification.documents.letters.known_systems.templates import templates
@@ -134,17 +138,43 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
         known = replace(known, disputed=disputed)
         if judges.count_wrong(own) == 1:
             return replace(result, contradictions=known)
+    if own and number in own.stating and (restored := _restored(judges, own, number)):
+        return _with_inhomogeneous(judges, restored, number)
     nothing = replace(statements.formulas[number], sides=(FormulaText("0"),), relations=())
     others = (*statements.formulas[:number], nothing, *statements.formulas[number + 1 :])
     tried = chain.from_iterable(_stated(letters, replace(statements, formulas=others)))
     for candidate in islice(tried, MAX_VERIFIED):
         if _refutes(judges, candidate, number) and judges.count_wrong(candidate) == 1:
-            trivial = frozenset[tuple[int, str]]()
-            formulas, derivatives = statements.formulas, statements.derivatives
-            match = best_matches([candidate], letters, formulas, derivatives, trivial)
-            alone = Contradictions(inhomogeneous=number)
-            return Interpretation(judges, next(iter(match), None), contradictions=alone)
+            return _with_inhomogeneous(judges, candidate, number)
     return replace(result, contradictions=known)
+
+
+def _with_inhomogeneous(judges: Judges, one: SystemCandidate, number: int) -> Interpretation:
+    """The interpretation by a candidate that one inhomogeneous formula contradicts."""
+    formulas, derivatives = judges.statements.formulas, judges.statements.derivatives
+    matches = best_matches([one], judges.letters, formulas, derivatives, frozenset())
+    contradictions = Contradictions(inhomogeneous=number)
+    return Interpretation(judges, next(iter(matches), None), contradictions=contradictions)
+
+
+def _restored(judges: Judges, own: SystemCandidate, number: int) -> SystemCandidate | None:
+    """The candidate that an inhomogeneous formula states with another power of a letter.
+
+    None if no more formulas hold with it than with the stated one.
+    """
+    letters, statements = judges.letters, judges.statements
+    formulas, derivatives = statements.formulas, statements.derivatives
+    tried = [
+        replace(candidate, stating=candidate.stating - {number})
+        for changed in with_other_powers(letters, formulas, derivatives, number)
+        for candidate in chain.from_iterable(
+            _stated(letters, replace(statements, formulas=changed))
+        )
+        if number in candidate.stating
+    ]
+    first = max(tried[:MAX_VERIFIED], key=judges.count_holding, default=own)
+    is_better = judges.count_holding(first) > judges.count_holding(own)
+    return first if is_better and _refutes(judges, first, number) else None
 
 
 def _refutes(judges: Judges, candidate: SystemCandidate, number: int) -> bool:

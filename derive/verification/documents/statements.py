@@ -39,6 +39,8 @@ WORD = re.compile(r"(?<![\d.])[A-Za-z_]\w*")
 GRAVITY = "g"
 #: Names of Cartesian components.
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
+#: Names of generalized forces, which nothing else in a document may state.
+GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
@@ -118,6 +120,12 @@ class DocumentFormula:
     def is_value(self) -> bool:
         """Whether its last side is a number, as in phi = pi."""
         return {*WORD.findall(self.sides[-1].text)} <= {"pi"}
+
+    @property
+    def is_displacement(self) -> bool:
+        """Whether a name is a value of its own and another letter, as theta = theta_0 + eta."""
+        name, last = self.subject, self.sides[-1].text
+        return bool(name and re.fullmatch(rf"{name}_\w+ [+-] \w+|\w+ [+-] {name}_\w+", last))
 
     @property
     def is_update(self) -> bool:
@@ -312,7 +320,10 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
     first, *others = formula.sides
     is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
-    is_letter = not order(formula.subject) and not POINT.match(formula.subject)
+    is_letter = not any(
+        (order(formula.subject), POINT.match(formula.subject),
+         GENERALIZED_FORCE.fullmatch(formula.subject))
+    )  # fmt: skip
     if formula.is_special_case or (is_zero and is_letter):
         return
     if formula.subject:
@@ -326,6 +337,8 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     last = formula.sides[-1].text
     if {*formula.relations} == {"="} and last.isidentifier():
         yield last, formula.sides[0].text
+        # k_3 of k_1 = k_2 = k_3 = k
+        yield from ((side.text, first.text) for side in others[1:-1] if side.text.isidentifier())
 
 
 def without_unknown_terms(

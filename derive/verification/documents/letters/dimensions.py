@@ -8,7 +8,7 @@ letters; others follow from the document.
 
 import ast
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -36,6 +36,8 @@ FUNCTIONS = ("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh", "asin", "acos",
 COORDINATES, PARAMETERS = ("x", "y", "z", "r", "s"), ("l", "ell")
 #: Names of the numbers of a state in programs, whatever they are.
 STATE = re.compile(r"[a-zA-Z]+_\d+")
+#: A name, perhaps with a square; not that of a function, or with another power.
+POWER = re.compile(r"(?<![\w.])(?P<name>[A-Za-z_]\w*)(?![\w(])(?:(?P<square>\*\*2)(?!\d)|(?!\*\*))")
 #: The fewest formulas with dimensions.
 FEWEST = 2
 
@@ -99,6 +101,28 @@ def lost_dots(
         if _pivots(_Equations(letters, changed, derivatives).rows().values()) is not None:
             found[text] = tuple(pieces[::-1])
     return next(iter(found.values())) if len(found) == 1 and not formula.index else ()
+
+
+def with_other_powers(
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+    number: int,
+) -> Iterator[tuple[DocumentFormula, ...]]:
+    """Yield the formulas with a square for a letter, or a letter for a square, in one of them.
+
+    With these, the dimensions of the last side of this formula contradict no others.
+    """
+    formula = formulas[number]
+    *first, last = formula.sides
+    for place in POWER.finditer(last.text):
+        name = place["name"]
+        power = name if place["square"] else f"{name}**2"
+        text = f"{last.text[: place.start()]}({power}){last.text[place.end() :]}"
+        other = replace(formula, sides=(*first, FormulaText(text)))
+        changed = (*formulas[:number], other, *formulas[number + 1 :])
+        if _pivots(_Equations(letters, changed, derivatives).rows().values()) is not None:
+            yield changed
 
 
 class _Equations:

@@ -31,7 +31,12 @@ from derive.verification.documents.letters.stated_constraints import (
     multipliers_of,
     stated_constraints,
 )
-from derive.verification.documents.statements import SQUARE, WORD, DocumentFormula
+from derive.verification.documents.statements import (
+    GENERALIZED_FORCE,
+    SQUARE,
+    WORD,
+    DocumentFormula,
+)
 
 #: A letter with a number.
 INDEXED = re.compile(r"[A-Za-z]+_\d+")
@@ -76,13 +81,20 @@ def letters_of(
     generic = _generic(formulas, derivatives) | columns
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
+    displacements = {w for one in formulas if one.is_displacement for w in one.words}
+    displacements -= {one.subject for one in formulas}
+    main = [one for one in moving if one not in displacements] or moving
     for one in stems:
-        coordinate = _coordinate(one, moving) if orders[one] < 2 else None
+        coordinate = _coordinate(one, main) if orders[one] < 2 else None
         if one not in {*quantities, *functions} and coordinate is not None:
             momenta[one] = coordinate
+    # beside p, P can be a power
+    momenta = {p: q for p, q in momenta.items() if p == p.lower() or p.lower() not in momenta}
     quantities |= routhians(formulas, momenta)
-    # c of c_1 = c_2 = c is no further parameter
-    defined |= {name for one in formulas for name in equal_letters(one) if "_" not in name}
+    # c of c_1 = c_2 = c is no further parameter, nor is c_3 of c_1 = c_2 = c_3 = c
+    equal = [one for one in formulas if equal_letters(one)]
+    defined |= {side.text for one in equal for side in one.sides if "_" not in side.text}
+    defined |= {side.text for one in equal for side in one.sides[2:]}
     defined -= {*quantities}
     coordinates = [one for one in moving if one not in momenta]
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))
@@ -164,11 +176,18 @@ def _generic(
 def _columns(
     formulas: Iterable[DocumentFormula], moving: Sequence[str], matrices: Mapping[str, str]
 ) -> set[str]:
-    """Names such as x that stand for a column of x_1, x_2 ... beside a matrix alone: M*x_ddot."""
+    """Names such as x that stand for a column of x_1, x_2 ... beside a matrix alone: M*x_ddot.
+
+    And those that are defined as a column of coordinates.
+    """
     columns = {name for name in moving if f"{name}_1" in moving}
     for formula in formulas:
         if matrices.keys().isdisjoint(formula.words) and "[[" not in formula.text:
             columns -= {stem(word) for word in formula.words}
+    for formula in formulas:
+        entries = {one.text for one in formula.sides[-1].entries}
+        if entries and formula.subject in moving and entries <= {*moving} - {formula.subject}:
+            columns.add(formula.subject)
     return columns
 
 
@@ -235,7 +254,9 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         # so has phi = w beside phi_dot = w
         lost_dot = lost_dot or any({f"{name}_dot", one} in equal for one in others)
         last = formula.sides[-1]
-        if NUMBER.fullmatch(last.text):  # a value, such as m = l = 1
+        is_displaced = orders.get(name) == 2 and formula.is_displacement
+        is_force = GENERALIZED_FORCE.fullmatch(name)  # 0 where none acts
+        if NUMBER.fullmatch(last.text) and not is_force:  # a value, such as m = l = 1
             continue
         if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue
@@ -246,7 +267,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
             name
             and not order(name)
             and name not in others
-            and not (is_solution or lost_dot or is_foreign)
+            and not (is_solution or lost_dot or is_foreign or is_displaced)
         ):
             defined.add(name)
         # theta_dot = omega defines omega

@@ -74,6 +74,10 @@ class StatedEquations:
             if name in letters.multipliers
             or (REACTION.match(name) and name not in known and not name.endswith("_column"))
         }
+        in_energies = {w for one in formulas if one.subject in letters.quantities
+                       for w in one.words}  # fmt: skip
+        loads = {*letters.of_kind("force")} - in_energies - {*self._reactions}
+        self._loads = [self._symbols[name] for name in sorted(loads & {*self._symbols})]
         left_out = {*letters.coordinates} - {*self._coordinates}
         symbols = {name: one for name, one in self._symbols.items() if name not in left_out}
         _, self._names = stated_values(letters, formulas, {**symbols, **self._reactions})
@@ -168,6 +172,7 @@ class StatedEquations:
             return None
         n, name = len(self._q), BY_EQUATIONS
         inertia, forces, V = sp.ImmutableDenseMatrix(sp.eye(n)), list(solved[:n]), None
+        applied = list[sp.Expr]()
         rates = [*map(velocity, self._q)]
         symmetric = None if reactions else _symmetric(matrix, rest)
         if symmetric and not symmetric[0].has(*rates):  # as that of a rate of an energy has
@@ -175,9 +180,12 @@ class StatedEquations:
             v = sp.Matrix(rates)
             T = sp.expand((v.T * inertia * v)[0, 0] / 2)
             forces = [f + inertial(T, self._q, i).xreplace(still) for i, f in enumerate(forces)]
-            V = potential_of([sp.expand(-force) for force in forces], self._q)
+            forces = [*map(sp.expand, forces)]
+            applied = [sp.Add(*(one * force.diff(one) for one in self._loads)) for force in forces]
+            rests = [sp.expand(a - force) for a, force in zip(applied, forces, strict=True)]
+            V = potential_of(rests, self._q)
         if V is not None:
-            name, forces = BY_POTENTIAL, []
+            name, forces = BY_POTENTIAL, applied
         elif self._has_energies:  # which are not those of these equations
             return None
         used = sp.Tuple(inertia, *solved, V or 0).free_symbols

@@ -182,9 +182,12 @@ class Numbers:
     def _is_value(self, formula: DocumentFormula) -> bool:
         """Whether it states a number for coordinates, velocities or parameters, as theta = 0.
 
-        So does a relation of parameters, as b = d/2, and the value of an energy at a place.
+        So does a relation of parameters, as b = d/2, the value of an energy at a place, and a
+        displacement from a place.
         """
         letters = self._letters
+        if formula.is_displacement and formula.subject in letters.coordinates:
+            return True
         names = {side.text for side in formula.sides[:-1]}
         moving = {q + ending for q in letters.coordinates for ending in RATES[:2]}
         known = {*moving, *letters.parameters, *letters.quantities}

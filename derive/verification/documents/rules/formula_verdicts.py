@@ -13,7 +13,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
-from derive.verification.documents.formula_translation import FormulaText, stem
+from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
@@ -34,7 +34,6 @@ from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,
     OWN_CONSTANT,
-    POINT,
     SQUARE,
     WORD,
     DocumentFormula,
@@ -129,14 +128,12 @@ class Judge:
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
-        last = formula.sides[-1].text  # can be a load to which this equation alone gives a value
-        is_own = self._namespace.defining.get(last, (None, ""))[0] is formula
-        loads = unknown or [last] * is_own
+        loads = unknown or self._own_load(formula)
         if loads and self._is_equation_without(formula, loads):
             return plain("verified", formula, f"with {', '.join(loads)} as applied forces")
         if unknown and self._amplitudes.holds(formula):
             return plain("verified", formula, "with the stated functions of time")
-        if unknown and (result := self._beside_loads(formula, unknown)) is not None:
+        if loads and (result := self._beside_loads(formula, loads)) is not None:
             return result
         if unknown and self._others.relates_parameters(formula):
             return plain("definition", formula, "")
@@ -177,7 +174,7 @@ class Judge:
         others = (one.text for j, one in enumerate(formula.sides) if j != k)
         used = {word for text in others for word in WORD.findall(text)}
         used |= {w for one in self._namespace.formulas if one is not formula for w in one.words}
-        return sorted(one for one in side - used if not POINT.match(one))
+        return sorted(side - used)
 
     def _not_understood(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
         result = not_understood(formula, unknown)
@@ -228,6 +225,14 @@ class Judge:
                 return free.agreement(left - right) is not None
         return False
 
+    def _own_load(self, formula: DocumentFormula) -> list[str]:
+        """The last side, if it is a load to which such an equation alone gives a value."""
+        last = formula.sides[-1].text
+        defining = self._namespace.defining.get(last, (None, ""))[0]
+        is_load = defining is not None and defining.sides[-1].text == last
+        is_equation = 2 in map(order, formula.words) or formula.sides[0].text.startswith("ddt(")
+        return [last] * (is_load and is_equation)
+
     def _has_foreign_parameters(self, symbols: Set[sp.Symbol]) -> bool:
         """Whether a formula has parameters that no equation with its accelerations has."""
         derivation = self._namespace.derivation
@@ -237,9 +242,10 @@ class Judge:
         return not own <= sp.Tuple(*equations).free_symbols
 
     def _beside_loads(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
-        """The verdict on an equation of motion in which a term beside unknown loads is wrong.
+        """The verdict on an equation of motion in which a term beside loads is wrong.
 
-        For a term that is missing, the loads can stand.
+        For a term that is missing, the loads can stand. A load to which an equation gives a value
+        can be a force between bodies, if the inertia is another one.
         """
         has_reactions = {*unknown} & {*self._namespace.letters.multipliers}
         if not self._is_stated or len(formula.sides) != 2 or has_reactions:
@@ -257,7 +263,9 @@ class Judge:
                 )
                 changes = [f"{one.wrong} {one.correct}" for one in result.verdict.corrections]
                 is_one = len(changes) == 1 and result.verdict.corrections[0].wrong != ""
-                if is_one and {*WORD.findall(changes[0])}.isdisjoint(unknown):
+                words = WORD.findall(changes[0]) if is_one else unknown
+                is_inertia = 2 in map(order, words) and not self._unknown(formula.sides)
+                if {*words}.isdisjoint(unknown) and not is_inertia:
                     return result
         return None
 

@@ -10,6 +10,7 @@ import sympy as sp
 
 from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError, place, summands, syntax_tree
+from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import BY_LAGRANGIAN
@@ -153,10 +154,14 @@ class Roles:
         values = [self._namespace.all_names[word] for word in WORD.findall(first.text)]
         return all(one.is_Symbol for one in values if isinstance(one, Value))
 
-    def equation(self, first: FormulaText, side: FormulaText) -> SideVerdict:
-        """The verdict on an equation of motion."""
-        text = f"{first.text} = {side.text}"
-        verdict = judge_formula(self._model_of(first, side), "", text, "euler_lagrange")
+    def equation(
+        self, first: FormulaText, side: FormulaText, derivation: Derivation | None = None
+    ) -> SideVerdict:
+        """The verdict on an equation of motion, perhaps on one of another derivation."""
+        text, model = f"{first.text} = {side.text}", self._model_of(first, side)
+        if derivation is not None:
+            model = ReferenceSystem(derivation, model.names)
+        verdict = judge_formula(model, "", text, "euler_lagrange")
         verdict = replace(verdict, corrections=self._in_place(verdict.corrections, first))
         return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
 

@@ -44,6 +44,12 @@ ABOUT_FREQUENCIES = re.compile(
 )
 OF_SMALL_MOTIONS = "it is that of small motions"
 
+#: The rate of a name, such as that of a momentum.
+RATE = re.compile(r"ddt\(\w+\)")
+#: The reason of a verdict on an equation that holds with other angles.
+ELSEWHERE = "it holds for small motions about another equilibrium, with angles from there"
+#: The reason of a verdict on the value of a rate that vanishes.
+BOTH_ZERO = "both sides vanish along every motion, but differ at other accelerations"
 #: Energies that have an arbitrary constant.
 TOTAL_ENERGIES = ("energy", "hamiltonian")
 
@@ -90,7 +96,11 @@ class SideComparison:
         if has_reactions:
             left += self._reactions
         if (note := model.agreement(left - right)) is not None:
-            return plain("context" if note == UNDECIDED else "verified", formula, note)
+            if self._are_both_zero(first, left, right):
+                return plain("context", formula, BOTH_ZERO)
+            kind = self._namespace.letters.quantities.get(first.text, "")
+            verdict = plain("context" if note == UNDECIDED else "verified", formula, note)
+            return replace(verdict, kind=kind)
         if is_lagrangian and not has_reactions and self._is_substituted(left - right):
             return plain("verified", formula, SUBSTITUTED)
         if has_reactions:
@@ -117,6 +127,8 @@ class SideComparison:
         is_linear &= depends_on(right, self._namespace.derivation.system.qddot)
         if is_linear and self._linear.holds(left - right, self._model, is_first_order=True):
             return plain("verified", formula, small)
+        if (own := self._of_small_motions(formula, side, left - right, result)) is not None:
+            return own
         match syntax_tree(side.text):
             case ast.Call(func=ast.Name(id="sqrt"), args=[operand]):
                 radicand = side.part(*place(side.text, operand))
@@ -134,6 +146,33 @@ class SideComparison:
                 return plain("context", formula, f"it holds for {text} alone")
             return plain("equivalent", formula, f"it holds for {text}")
         return result
+
+    def _are_both_zero(self, first: FormulaText, left: sp.Expr, right: sp.Expr) -> bool:
+        """Whether a rate and its value differ, but vanish along every motion, as without forces."""
+        has_accelerations = depends_on(right, self._namespace.derivation.system.qddot)
+        if not RATE.fullmatch(first.text) or not has_accelerations:
+            return False
+        is_identity = self._model.context.agreement(left - right) is not None
+        return not is_identity and self._model.agreement(left) is not None
+
+    def _of_small_motions(
+        self, formula: DocumentFormula, side: FormulaText, difference: sp.Expr, result: SideVerdict
+    ) -> SideVerdict | None:
+        """The verdict on a linear equation of motion by those of small motions; None for others.
+
+        It can hold with angles from another equilibrium.
+        """
+        is_explained = result.kind != "euler_lagrange" or len(result.verdict.corrections) == 1
+        if is_explained or difference.atoms(sp.Function):
+            return None
+        derivation = self._linear.derivation
+        if derivation is None:
+            return None
+        for one in self._linear.turned():
+            if one.holds(difference, self._model, is_displaced=True):
+                return plain("context", formula, ELSEWHERE)
+        own = self._roles.equation(formula.sides[0], side, derivation)
+        return own if len(own.verdict.corrections) == 1 else None
 
     def _is_up_to_a_constant(self, formula: DocumentFormula) -> bool:
         """Whether a formula states the energy or one of a part, or has a constant of its own."""

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 
 import sympy as sp
 
@@ -11,7 +12,10 @@ from derive.formulas.expression import parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
+from derive.system.parts import SystemDefinitionError
 from derive.system.symbols import TIME
+from derive.system.system import System
+from derive.verification.documents.letters.energies import StatedInertia
 from derive.verification.documents.letters.letters import KINDS
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
@@ -19,14 +23,18 @@ from derive.verification.judging.reference_system import ReferenceSystem, depend
 
 #: Coordinates of the largest systems whose accelerations are solved for.
 MAX_INVERSE = 3
+#: The value of parameters that only couple accelerations.
+COUPLING = 0.1
 EPSILON = sp.Symbol("epsilon", positive=True)
 
 
 class SmallMotions:
     """The linearised equations of motion of a derivation, with forces that are small, too."""
 
-    def __init__(self, derivation: Derivation) -> None:
-        self._derivation = derivation
+    def __init__(
+        self, derivation: Derivation, place: Mapping[sp.Symbol, sp.Expr] | None = None
+    ) -> None:
+        self._derivation, self._place = derivation, place
 
     def agrees(self, difference: sp.Expr, model: ReferenceSystem) -> bool:
         """Whether a difference vanishes to first order at the origin."""
@@ -95,20 +103,28 @@ class SmallMotions:
         return (self.accelerations or {}).get(symbol)
 
     @cached_property
-    def place(self) -> dict[sp.Symbol, sp.Expr] | None:
-        """An equilibrium: the origin, or where springs at angles of 0 are at rest."""
-        system, d = self._derivation.system, self._derivation
+    def place(self) -> Mapping[sp.Symbol, sp.Expr] | None:
+        """An equilibrium: one that is given, the origin, or where springs at 0 are at rest."""
+        if self._place is not None:
+            return self._place
+        system = self._derivation.system
         place = dict.fromkeys(system.q, sp.S.Zero)
-        still = dict.fromkeys((*system.qdot, *system.qddot, *self._forces), sp.S.Zero)
-        forces = [one.xreplace(still) for one in d.euler_lagrange]
-        for q, force in zip(system.q, forces, strict=True):
+        for q, force in zip(system.q, self._forces_at_rest, strict=True):
             others = {one: value for one, value in place.items() if one != q}
             rest = force.xreplace(others)
             slope = rest.diff(q)
             if rest.subs(q, 0) != 0 and slope != 0 and q not in slope.free_symbols:
                 place[q] = sp.expand(-rest.subs(q, 0) / slope)
-        at_rest = [one.xreplace(place) for one in forces]
-        return place if all(sp.simplify(one) == 0 for one in at_rest) else None
+        return place if self._is_equilibrium(place) else None
+
+    @cached_property
+    def _forces_at_rest(self) -> list[sp.Expr]:
+        system = self._derivation.system
+        still = dict.fromkeys((*system.qdot, *system.qddot, *self._forces), sp.S.Zero)
+        return [one.xreplace(still) for one in self._derivation.euler_lagrange]
+
+    def _is_equilibrium(self, place: Mapping[sp.Symbol, sp.Expr]) -> bool:
+        return all(sp.simplify(one.xreplace(place)) == 0 for one in self._forces_at_rest)
 
     @property
     def is_origin(self) -> bool:
@@ -138,6 +154,41 @@ class SmallMotions:
         shifts |= {s: EPSILON * s for s in (*system.qdot, *system.qddot, *self._forces)}
         shifted = (one.xreplace(shifts) for one in self._derivation.euler_lagrange)
         return [one.diff(EPSILON).subs(EPSILON, 0) for one in shifted]
+
+    @cached_property
+    def derivation(self) -> Derivation | None:
+        """The derivation of a system with these equations of motion; None without any."""
+        if self.accelerations is None or not self.is_origin:
+            return None
+        M, D, K, inputs = self.matrices
+        system = self._derivation.system
+        q, rates = sp.Matrix(system.q), sp.Matrix(system.qdot)
+        forces = -D * rates - K * q
+        forces += sum((one * column for one, column in inputs.items()), sp.zeros(*forces.shape))
+        inertia = StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), sp.ImmutableDenseMatrix(M))
+        # with these values, M is positive
+        coupling = M.free_symbols - sp.Tuple(*M.diagonal()).free_symbols
+        parameters = [
+            replace(one, default=COUPLING) if one.symbol in coupling else one
+            for one in system.parameters
+        ]
+        with suppress(SystemDefinitionError):
+            linear = System(
+                system.name, system.title, system.coordinates, parameters, [inertia],
+                potential=sp.S.Zero, gravity=(sp.S.Zero, sp.S.Zero), forces=[*forces],
+            )  # fmt: skip
+            return Derivation(linear)
+        return None
+
+    def turned(self) -> Iterator["SmallMotions"]:
+        """Yield the small motions about equilibria with some angles turned by π, as upright."""
+        functions = sp.Tuple(*self._derivation.euler_lagrange).atoms(sp.Function)
+        angles = [q for q in self._derivation.system.q if sp.Tuple(*functions).has(q)]
+        for turns in product((sp.S.Zero, sp.pi), repeat=len(angles)):
+            place = dict.fromkeys(self._derivation.system.q, sp.S.Zero)
+            place |= dict(zip(angles, turns, strict=True))
+            if any(turns) and self._is_equilibrium(place):
+                yield SmallMotions(self._derivation, place)
 
     def _combinations(self, linear: sp.Expr) -> Iterator[sp.Expr]:
         """What vanishes if an equation is one of those of small motions, times a factor."""

@@ -88,7 +88,7 @@ def _factor(wrong: sp.Expr, correct: sp.Expr) -> sp.Expr | None:
         powers = {base: power for base, power in rest.as_powers_dict().items() if base != 1}
         is_own = len(powers) == 1 and wrong.has(*powers)
         are_usual = all(
-            abs(power) <= MAX_POWER and (is_own or not base.is_Add)
+            power.is_number and abs(power) <= MAX_POWER and (is_own or not base.is_Add)
             for base, power in powers.items()
         )
         is_exchange = len(powers) == 2 and sum(powers.values()) == 0

@@ -14,13 +14,14 @@ from derive.formulas.expression import FUNCTIONS
 from derive.formulas.syntax import syntax_tree
 from derive.reading.latex.grammar.products import AMBIGUOUS
 from derive.verification.documents.formula_translation import order, stem
-from derive.verification.documents.letters.candidates import SystemCandidate
+from derive.verification.documents.letters.candidates import BY_POTENTIAL, SystemCandidate
 from derive.verification.documents.rules.consequences import (
     UNDECIDED,
     Contradictions,
     WithVerdict,
     opposed,
 )
+from derive.verification.documents.rules.evidence.contrary_statements import ContraryStatements
 from derive.verification.documents.rules.evidence.loads import (
     adds_letters,
     exchanges_loads,
@@ -43,8 +44,6 @@ from derive.verification.judging.motion_verdicts import NOT_LINEAR
 FURTHER = re.compile(r"[LH]_([A-Za-z]{2,})")
 #: The place of one of several bodies.
 INDEXED_PLACE = re.compile(r"[xyzXYZ]_\d+")
-#: The derivative of an energy by a coordinate or a velocity.
-DERIVATIVE = re.compile(r"d[A-Z]\w*_d")
 #: Moments of inertia.
 INERTIA = re.compile(r"[IJ](_\w+)?")
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
@@ -110,6 +109,7 @@ class _Evidence:
         self._is_known = candidate.basis == "catalogue" and not is_stated
         self._lines = {k: formula.occurrence.line for k, (formula, _) in enumerate(results)}
         self._support = Support(results, candidate, is_partial)
+        self._contrary = ContraryStatements(results, candidate, self._support, self._lines)
         self._given = _lines(self._lines[k] for k in candidate.stating)
         self._undecided = {*of_friction(results, candidate)}
 
@@ -167,7 +167,7 @@ class _Evidence:
             return opposed(self._unused[formula.subject])
         if number in self._undecided:
             return f"it contradicts the stated friction: {UNDECIDED}"
-        if self._has_cases:
+        if not self._is_stated and self._contrary.has_cases:
             return other_case
         if any(index in word for index in self._other_indices for word in formula.words):
             return other_case
@@ -179,8 +179,8 @@ class _Evidence:
             return UNSUPPORTED
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
-        if line := self._contrary_energy(number):
-            return opposed(line)
+        if not self._is_stated and (doubt := self._contrary.doubt(number)):
+            return doubt
         if result.kind == "lagrangian" and is_linear_in_rates(formula):
             return "it can be an angular momentum"
         if place := self._other_place(result):
@@ -188,8 +188,6 @@ class _Evidence:
         surplus = [t for t in result.verdict.corrections if t.correct == "0"]
         if any(not WORD.search(t.wrong) for t in surplus) and 2 in map(order, formula.words):
             return "a number that is added can be a constant force"
-        if line := self._other_energy(number):
-            return opposed(line)
         if line := self._special_motion(number) or self._value_in_time(formula, result):
             return f"it can hold with line {line}"
         if self._is_restated(number) or self._is_number(formula, result):
@@ -202,50 +200,9 @@ class _Evidence:
             return other_case
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
             return other_case if is_driven(self._candidate) else ""
-        if self._is_tie or adds_letters(formula, result, self._candidate):
+        if self._is_tie(result) or adds_letters(formula, result, self._candidate):
             return other_case
         return ""
-
-    def _other_energy(self, number: int) -> int | None:
-        """The line of an energy before a formula that can be one of another system."""
-        if self._is_stated:
-            return None
-        before = self._results[:number]
-        return next(
-            (
-                self._lines[k]
-                for k, (_, one) in enumerate(before)
-                if one.kind in OF_ENERGIES
-                and one.verdict.verdict == "wrong"
-                and not self._support.is_explained(one)
-            ),
-            None,
-        )
-
-    def _contrary_energy(self, number: int) -> int | None:
-        """The line of the one energy that states the system, if no motion supports it.
-
-        Against another energy, a formula of motions supports it; against several equations of
-        motion, one of these that holds.
-        """
-        stating = [*self._candidate.stating]
-        if self._candidate.basis != "energies" or len(stating) != 1 or self._is_stated:
-            return None
-        equations = {
-            k: one.verdict.verdict in HOLDING
-            for k, (formula, one) in enumerate(self._results)
-            if len(formula.sides) > 1
-            and (2 in map(order, formula.words) or any("ddt(" in s.text for s in formula.sides))
-        }
-        held = [formula for formula, one in self._results if one.verdict.verdict in HOLDING]
-        words = {word for formula in held for word in formula.words}
-        if self._results[number][1].kind in OF_ENERGIES:
-            is_supported = any(order(one.subject) for one in held) or any(
-                order(word) == 2 or DERIVATIVE.match(word) for word in words
-            )
-        else:
-            is_supported = number not in equations or len(equations) == 1 or any(equations.values())
-        return None if is_supported else self._lines[stating[0]]
 
     def _other_place(self, result: SideVerdict) -> str:
         """A place without a rate in the wrong term of an energy, which no other formula shows."""
@@ -334,15 +291,30 @@ class _Evidence:
         """Whether a single formula supports an unusual meaning of angles."""
         return self._is_known and self._support.holding < 2 and self._candidate.is_turned
 
-    @property
-    def _is_tie(self) -> bool:
-        """Whether equations that state a system are no more certain than one that differs."""
+    def _is_tie(self, result: SideVerdict) -> bool:
+        """Whether equations that state a system are no more certain than one that differs.
+
+        A term with velocities that follows from the inertia is more certain, and so is one with
+        the parameters of an energy that holds.
+        """
         is_alone = (
             len(self._support.independent) == 1
             and self._support.holding >= 2
             and self._support.misfits == 0
         )
-        return self._candidate.is_of_equations and not is_alone
+        if not self._candidate.is_of_equations or is_alone:
+            return False
+        if len(result.verdict.corrections) != 1 or self._support.misfits:
+            return True
+        (change,) = result.verdict.corrections
+        words = {*WORD.findall(f"{change.wrong} {change.correct}")}
+        if any(map(order, words)):
+            return self._candidate.system.name != BY_POTENTIAL
+        own = words & self._candidate.letters
+        return not any(
+            one.kind in OF_ENERGIES and one.verdict.verdict in HOLDING and own <= {*formula.words}
+            for formula, one in self._results
+        )
 
     @cached_property
     def _has_further_coordinates(self) -> bool:
@@ -355,23 +327,6 @@ class _Evidence:
         """Whether an energy has rates of coordinates that the stating equations do not contain."""
         moving = {stem(word) for word in formula.words if order(word)}
         return self._candidate.is_of_equations and not moving <= {*self._candidate.coordinates}
-
-    @cached_property
-    def _has_cases(self) -> bool:
-        """Whether an energy is stated again, with other equations, as for another case."""
-        if len(self._support.wrong) < 2 or self._is_stated:
-            return False
-        stating = self._candidate.stating
-        held = {
-            formula.subject
-            for k, (formula, one) in enumerate(self._results)
-            if k in stating or one.verdict.verdict in HOLDING
-        }
-        return self._candidate.basis in ("energies", "catalogue") and any(
-            one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES and formula.subject in held
-            for k, (formula, one) in enumerate(self._results)
-            if k not in stating and formula.subject
-        )
 
     @cached_property
     def _other_indices(self) -> set[str]:

@@ -1,0 +1,269 @@
+"""Which of the formulas that contradict each other is wrong, and where nothing decides it."""
+
+from pathlib import Path
+
+import pytest
+
+from derive.reading.document_formats import read_document
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+
+
+def judged(folder: Path, text: str) -> tuple[FormulaVerdict, ...]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return judge_document(read_document(folder / "a.md")).formulas
+
+
+def wrong_terms(folder: Path, text: str) -> dict[str, str]:
+    """The wrong formulas of a text without spaces, and their wrong terms."""
+    wrong = [one for one in judged(folder, text) if one.verdict == "wrong"]
+    return {one.latex.replace(" ", ""): one.wrong_term.replace(" ", "") for one in wrong}
+
+
+#: Furuta's pendulum, as lecture notes state it: z has no definition, and one force is zero.
+FURUTA = r"""
+$$K = m r l$$ $$G = m g l$$ $$J_0 = J_1 + m r^2$$ $$J_2 = J + m l^2$$
+$$T=\frac12(J_0+J_2\sin^2\alpha)\dot\theta^2+\frac12J_2\dot\alpha^2+K\cos\alpha\,\dot\theta\dot\alpha$$
+$$V = m g z = m g l\cos\alpha = G\cos\alpha$$ $$L = T - V$$ $$Q_\theta=\tau$$ $$Q_\alpha=0$$
+$$\frac{\partial L}{\partial\dot\theta}=(J_0+J_2\sin^2\alpha)\dot\theta + K\cos\alpha\,\dot\alpha$$
+$$(J_0+J_2\sin^2\alpha)\ddot\theta+K\cos\alpha\,\ddot\alpha+J_2\sin(2\alpha)\dot\theta\dot\alpha
+-K\sin\alpha\,\dot\alpha^2=\tau$$
+$$K\cos\alpha\,\ddot\theta+J_2\ddot\alpha-\frac12J_2\sin(2\alpha)\dot\theta^2-G\sin\alpha=0$$
+$$J_0\ddot\theta+K\ddot\alpha=\tau$$ $$K\ddot\theta + J_2\ddot\alpha - G\alpha = 0$$
+"""
+
+
+def test_a_side_with_a_letter_of_its_own_is_not_judged(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, FURUTA)} == {"verified", "definition"}
+
+
+@pytest.mark.parametrize(("right", "slip", "term"), [
+    (r"\dot\theta + K\cos\alpha\,\dot\alpha", r"\dot\theta + K\sin\alpha\,\dot\alpha",
+     r"K\sin\alpha\,\dot\alpha"),
+    (r"K\ddot\theta + J_2\ddot\alpha - G\alpha", r"K\ddot\theta + J_2\ddot\alpha + G\alpha",
+     r"G\alpha"),  # corrected by the linear equation
+    (r"J_0\ddot\theta+K\ddot\alpha", r"2J_0\ddot\theta+K\ddot\alpha", r"2J_0\ddot\theta"),
+])  # fmt: skip
+def test_a_slip_in_a_linear_equation_is_corrected_by_small_motions(
+    right: str, slip: str, term: str, tmp_path: Path
+) -> None:
+    text = FURUTA.replace(right, slip)
+    assert text != FURUTA
+    assert [*wrong_terms(tmp_path, text).values()] == [term.replace(" ", "")]
+
+
+def test_a_linear_equation_about_another_equilibrium_is_not_accused(tmp_path: Path) -> None:
+    energies = r"""$$T = \frac12 J\dot\theta^2 + \frac12 K\dot\alpha^2 + c\cos\alpha\,\dot\theta
+\dot\alpha$$ $$V = -G\cos\alpha$$ $$L = T - V$$ $$J\ddot\theta + c\cos\alpha\,\ddot\alpha
+- c\sin\alpha\,\dot\alpha^2 = 0$$ $$K\ddot\alpha + c\cos\alpha\,\ddot\theta + G\sin\alpha = 0$$
+Upright: """
+    hanging, upright = (
+        rf"$$K\ddot\alpha {signs[0]} c\ddot\theta {signs[1]} G\alpha = 0$$"
+        for signs in ("++", "--")
+    )
+    assert judged(tmp_path, energies + hanging)[-1].verdict == "verified"
+    assert judged(tmp_path, energies + upright)[-1].verdict == "context"
+    mixed = hanging.replace("+ G", "- G")
+    assert wrong_terms(tmp_path, energies + mixed)[mixed.strip("$").replace(" ", "")] == r"-G\alpha"
+
+
+#: An arm on an elevator: its kinetic energy stands twice, and motors act.
+ELEVATOR = r"""
+$$T=\frac12 M\dot y^2+\frac12 m(\dot y^2+2\dot y l\dot\theta\cos\theta+l^2\dot\theta^2)
++\frac12 I\dot\theta^2$$
+$$T=\frac12(M+m)\dot y^2+m\dot y l\dot\theta\cos\theta+\frac12(m l^2+I)\dot\theta^2$$
+$$V=M g y+m g(y+l\sin\theta)$$ $$L = T - V$$
+$$\frac{\partial L}{\partial\dot y}=(M+m)\dot y+m l\dot\theta\cos\theta$$
+$$\frac{\partial L}{\partial y}=-(M+m)g$$
+$$(M+m)\ddot y+m l(\ddot\theta\cos\theta-\dot\theta^2\sin\theta)+(M+m)g=F$$
+$$\frac{\partial L}{\partial\dot\theta}=m\dot y l\cos\theta+(m l^2+I)\dot\theta$$
+$$\frac{\partial L}{\partial\theta}=-m\dot y l\dot\theta\sin\theta-m g l\cos\theta$$
+$$m l\ddot y\cos\theta+(m l^2+I)\ddot\theta+m g l\cos\theta=\tau$$
+$$(M+m)\ddot y+m l(\ddot\theta\cos\theta-\dot\theta^2\sin\theta)+(M+m)g=F$$
+"""
+
+
+def test_what_most_of_a_document_agrees_with_is_no_other_case(tmp_path: Path) -> None:
+    assert not wrong_terms(tmp_path, ELEVATOR)
+    text = ELEVATOR.replace(r"\frac12(m l^2+I)", r"\frac12(m l+I)")
+    text = text.replace(r"\sin\theta-m g l\cos\theta", r"\sin\theta-m g l\sin\theta")
+    assert [*wrong_terms(tmp_path, text).values()] == ["ml", r"-mgl\sin\theta"]
+
+
+def test_a_load_has_not_the_value_of_the_first_wrong_equation(tmp_path: Path) -> None:
+    text = ELEVATOR.replace(r"\sin\theta)+(M+m)g=F", r"\sin\theta)-(M+m)g=F", 1)
+    equations = [one for one in judged(tmp_path, text) if one.latex.strip().endswith("=F")]
+    assert [one.verdict for one in equations] == ["wrong", "verified"]
+
+
+def test_a_force_between_bodies_has_the_inertia_of_one(tmp_path: Path) -> None:
+    energies = r"""
+$$T=\frac12(M+m)\dot x^2+m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
+$$V = - m g l\cos\theta$$ $$l\ddot\theta + \ddot x\cos\theta + g\sin\theta = 0$$ """
+    force = r"$$m\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = N$$"
+    assert judged(tmp_path, energies + force)[-1].verdict != "wrong"
+
+
+BEAM = r"""
+$$L=\frac12(m+\frac{J}{R^2})\dot r^2+\frac12(m r^2+\frac13 M l^2)\dot\alpha^2-m g r\sin\alpha$$
+$$\frac{\partial L}{\partial r}=m r\dot\alpha^2-m g\sin\alpha$$
+$$\frac{\partial L}{\partial\dot\alpha}=(m r^2+\frac13 M l^2)\dot\alpha$$
+$$(m+\frac{J}{R^2})\ddot r-m r\dot\alpha^2+m g\sin\alpha=0$$
+$$(m r^2+\frac13 M l^2)\ddot\alpha+2m r\dot r\dot\alpha+m g r\cos\alpha=0$$
+"""
+
+
+def test_a_lagrangian_with_a_lost_square_is_the_wrong_formula(tmp_path: Path) -> None:
+    text = BEAM.replace("M l^2", "M l", 1)
+    assert [*wrong_terms(tmp_path, text).values()] == [r"\frac13Ml"]
+    text = text.replace("+2m r", "+m r")  # beside another slip
+    assert [*wrong_terms(tmp_path, text).values()] == [r"\frac13Ml", r"mr\dotr\dot\alpha"]
+
+
+SEGWAY = r"""
+$$T=\frac12 M\dot x^2+m l\dot x\dot\theta\cos\theta+\frac12(I+m l^2)\dot\theta^2$$
+$$V=m g l\cos\theta$$ $$L=T-V$$
+$$M\ddot x+m l\cos\theta\,\ddot\theta-m l\sin\theta\,\dot\theta^2=F$$
+$$(I+m l^2)\ddot\theta+m l\cos\theta\,\ddot x-m g l\sin\theta=-F r$$
+$$M\ddot x+m l\cos\theta\,\ddot\theta-m l\dot\theta^2\sin\theta=F$$
+$$(I+m l^2)\ddot\theta+m l\cos\theta\,\ddot x-m g l\sin\theta=-F r$$
+"""
+
+
+@pytest.mark.parametrize(("right", "slip", "term"), [
+    (r"-m l\sin\theta\,\dot\theta^2", r"+m l\sin\theta\,\dot\theta^2",
+     r"ml\sin\theta\,\dot\theta^2"),
+    (r"-m g l\sin\theta", r"-m g l\cos\theta", r"-mgl\cos\theta"),
+])  # fmt: skip
+def test_energies_decide_which_of_two_equations_is_wrong(
+    right: str, slip: str, term: str, tmp_path: Path
+) -> None:
+    half = SEGWAY.replace(r"+m l\dot x", r"+\frac12 m l\dot x")
+    text = half.replace(right, slip, 1)
+    assert text != half
+    assert [*wrong_terms(tmp_path, text).values()] == [r"\frac12ml\dotx\dot\theta\cos\theta", term]
+
+
+def test_a_sum_of_energies_is_not_accused_for_a_wrong_part(tmp_path: Path) -> None:
+    text = r"""$$K_r=\frac{1}{24}m b^2\dot\theta^2$$ $$K_c=\frac18 m b\dot\theta^2$$
+$$V=-\frac12 m g b\cos\theta$$ $$L=K_c+K_r-V$$
+$$L=\frac16 m b^2\dot\theta^2+\frac12 m g b\cos\theta$$
+$$\frac13 m b^2\ddot\theta+\frac12 m g b\sin\theta=0$$ $$\ddot\theta+\frac{3g}{2b}\sin\theta=0$$"""
+    assert not wrong_terms(tmp_path, text)  # the slip is in a definition
+    right = text.replace("m b", "m b^2", 2).replace("^2^2", "^2")
+    assert [*wrong_terms(tmp_path, right.replace("-V", "+V"))] == ["L=K_c+K_r+V"]
+
+
+#: An elastic pendulum, with L for its length, and ℓ for l in one place.
+ELASTIC = r"""
+$$x = (l+L)\cos\theta$$ $$y = (l+L)\sin\theta$$ $$K = \frac12 m(\dot x^2+\dot y^2)$$
+$$U = \frac12 k(l+L)^2 - m g y$$ $$\mathcal L = \frac12 m[(L+l)^2\dot\theta^2+\dot l^2]^2
+- \frac12 k(L+\ell)^2 + m g(L+l)\cos\theta$$
+$$\frac{\partial\mathcal L}{\partial\theta} = -m g(L+l)\sin\theta$$
+$$\frac{\partial\mathcal L}{\partial\dot\theta} = m(L+l)^2\dot\theta$$
+$$\frac{\partial\mathcal L}{\partial l} = m\dot\theta^2(L+l)+m g\cos\theta-k(L+l)$$
+$$m\ddot l = m\dot\theta^2(L+l)+m g\cos\theta-k(L+l)$$
+$$\ddot l = \dot\theta^2(L+l)+g\cos\theta-\frac{k}{m}(L+l)$$
+"""
+
+
+def test_ell_and_l_are_one_letter_if_more_holds_so(tmp_path: Path) -> None:
+    assert [*wrong_terms(tmp_path, ELASTIC).values()] == [
+        "-mgy", r"[(L+l)^2\dot\theta^2+\dotl^2]",
+    ]  # fmt: skip
+
+
+ROD = r"""
+$$V = m\frac l2 g\cos\theta$$
+$$T = \frac12(M+m)\dot x^2+\frac12 m l\dot x\dot\theta\cos\theta
++\frac12\frac{m l^2}{3}\dot\theta^2$$
+$$L = T - V = \frac12(M+m)\dot x^2+\frac12 m l\dot x\dot\theta\cos\theta
++\frac12\frac{m l^2}{3}\dot\theta^2-m g\frac l2\cos\theta$$
+$$(M+m)\ddot x+\frac{m l}{2}\ddot\theta\cos\theta-\frac{m l}{2}\dot\theta^2\sin\theta=u$$
+$$\frac{m l^2}{3}\ddot\theta+\frac{m l}{2}\ddot x\cos\theta+m g\frac l2\sin\theta=0$$
+$$\ddot\theta=-\frac{3g}{2l}\sin\theta-\frac{3}{2l}\ddot x\cos\theta$$ $$\varphi=\theta-\pi$$
+"""
+
+
+def test_nothing_decides_between_an_energy_and_equations_with_another_sign(tmp_path: Path) -> None:
+    assert not wrong_terms(tmp_path, ROD)
+
+
+def test_all_letters_of_a_chain_of_equal_ones_are_one(tmp_path: Path) -> None:
+    text = r"""$$m_1=m_2=m$$ $$k_1=k_2=k_3=k$$ $$m_1\ddot x_1+(k_1+k_2)x_1-k_2x_2=0$$
+$$m_2\ddot x_2+(k_3+k_2)x_2-k_2x_1=0$$ $$\begin{bmatrix}-2\frac km&\frac km\\
+\frac km&-2\frac km\end{bmatrix}\begin{bmatrix}x_1\\x_2\end{bmatrix}
+=\begin{bmatrix}\ddot x_1\\\ddot x_2\end{bmatrix}$$"""
+    assert judged(tmp_path, text)[-1].verdict == "verified"
+    slip = text.replace("\n" + r"\frac km", "\n" + r"2\frac km")
+    assert judged(tmp_path, slip)[-1].verdict == "wrong"
+
+
+HOOP = r"""
+$$L = \frac12 m a^2(\dot\theta^2+\Omega^2\sin^2\theta)+m g a\cos\theta$$
+$$p = m a^2\dot\theta$$ $$\dot p = m a^2\Omega^2\sin\theta\cos\theta - m g a\sin\theta$$
+$$\ddot\theta = (\Omega^2\cos\theta-\frac ga)\sin\theta$$
+"""
+
+
+def test_beside_the_momentum_p_a_power_is_p_as_well(tmp_path: Path) -> None:
+    power = r"$$P = -2m a^2\Omega^2\dot\theta\cos\theta\sin\theta$$"
+    assert judged(tmp_path, HOOP + power)[-1].verdict == "definition"
+    momentum = HOOP.replace(r"$$p = m a^2\dot\theta$$", "").replace(r"\dot p", r"\dot P")
+    assert judged(tmp_path, momentum + power)[-1].verdict == "wrong"
+
+
+def test_a_displacement_defines_no_coordinate(tmp_path: Path) -> None:
+    near = HOOP + r"Let $\theta=\theta_0+\eta$. $$\ddot\eta=-\eta\Omega^2\sin^2\theta_0$$"
+    assert [one.verdict for one in judged(tmp_path, near)][:4] == ["verified"] * 4
+    slip = near.replace(r"m a^2\dot\theta", r"m a\dot\theta")
+    assert [*wrong_terms(tmp_path, slip)] == [r"p=ma\dot\theta"]
+
+
+def test_a_column_of_coordinates_is_none(tmp_path: Path) -> None:
+    text = r"""$$q = (x, \theta)$$ $$x_p = x - l\sin\theta$$ $$y_p = l\cos\theta$$
+$$T = \frac12 M\dot x^2+\frac12 m(\dot x_p^2+\dot y_p^2)$$
+$$T = \frac12(M+m)\dot x^2 - \frac12 m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
+$$L = \frac12(M+m)\dot x^2 - m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2
+-m g l\cos\theta$$
+$$(M+m)\ddot x-m l\cos\theta\,\ddot\theta+m l\sin\theta\,\dot\theta^2=0$$
+$$l\ddot\theta-\ddot x\cos\theta-g\sin\theta=0$$
+$$\ddot x = \frac{m l\sin\theta(g\cos\theta - l\dot\theta^2)}{M+m\sin^2\theta}$$
+$$H\ddot q+C\dot q+G=\tau$$"""
+    wrong = wrong_terms(tmp_path, text)
+    assert next(iter(wrong.values())) == r"-\frac12ml\dotx\dot\theta\cos\theta"
+    assert len(wrong) == 2  # an acceleration is no rate of a position that agrees with it
+
+
+def test_a_rate_that_vanishes_is_no_evidence(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m\dot x^2 + I\dot\theta^2$$
+$$\frac{d}{dt}\left(\frac{\partial L}{\partial\dot x}\right) = m\ddot x$$
+$$\frac{d}{dt}\left(\frac{\partial L}{\partial\dot\theta}\right) = I\ddot\theta$$"""
+    assert [one.verdict for one in judged(tmp_path, text)][1:] == ["verified", "context"]
+
+
+def test_a_frequency_decides_which_equation_is_wrong(tmp_path: Path) -> None:
+    text = r"""$$-k x = m\ddot x$$ $$\ddot x - \frac km x = 0$$ $$\omega_0^2 = \frac km$$
+$$\omega_0 = \sqrt{\frac km}$$ $$T_0 = \frac{2\pi}{\omega_0}$$"""
+    assert wrong_terms(tmp_path, text) == {r"\ddotx-\frackmx=0": r"-\frackmx"}
+    torsion = r"""$$J\ddot\theta = -C\theta$$ $$\ddot\theta+\frac JC\theta=0$$
+$$T_0 = 2\pi\sqrt{\frac JC}$$ $$T_0^2 = 4\pi^2\frac JC$$ $$\omega_0 = \sqrt{\frac CJ}$$"""
+    assert wrong_terms(tmp_path, torsion) == {r"\ddot\theta+\fracJC\theta=0": r"\fracJC\theta"}
+    undecided = torsion.partition("$$T_0")[0]
+    assert not wrong_terms(tmp_path, undecided)
+
+
+ARM = r"""
+$$T = \frac12(m_1+m_2)l_1^2\dot\theta_1^2+\frac12 m_2l_2^2(\dot\theta_1+\dot\theta_2)^2
++m_2l_1l_2\dot\theta_1(\dot\theta_1+\dot\theta_2)\cos\theta_2$$
+$$U = -(m_1+m_2)g l_1\cos\theta_1-m_2g l_1\cos(\theta_1+\theta_2)$$
+$$T = \frac12\dot q^T M\dot q$$ $$q = [\theta_1, \theta_2]^T$$
+$$(m_1+m_2)l_1^2\ddot\theta_1+m_2l_2^2(\ddot\theta_1+\ddot\theta_2)
++m_2l_1l_2(2\ddot\theta_1+\ddot\theta_2)\cos\theta_2
+-m_2l_1l_2(2\dot\theta_1+\dot\theta_2)\dot\theta_2\sin\theta_2
++(m_1+m_2)l_1g\sin\theta_1+m_2g l_2\sin(\theta_1+\theta_2)=\tau_1$$
+"""
+
+
+def test_an_equation_is_not_accused_by_an_energy_that_nothing_confirms(tmp_path: Path) -> None:
+    assert not wrong_terms(tmp_path, ARM)
