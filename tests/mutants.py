@@ -43,7 +43,8 @@ OTHER_FIELDS = ("annotation", "returns", "type_params", "decorator_list")
 #: Systems, which are data, compared with other sources as a whole.
 LEFT_OUT = ("derive/systems/",)
 #: Arguments that change no result: checks of lengths, and the style of drawings and of output.
-STYLE = ("strict", "flush", "zorder", "alpha", "linewidth", "fontsize", "markersize", "pad", "dpi")
+STYLE = ("strict", "flush", "zorder", "alpha", "linewidth", "fontsize", "markersize", "pad", "dpi",
+    "indent")  # fmt: skip
 #: Comparisons with another value at equality.
 COMPARISONS = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">"}
 OPERATORS = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*", ast.FloorDiv: "*",

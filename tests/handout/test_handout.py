@@ -331,6 +331,14 @@ def test_blank_exercises_show_no_derived_formula(documents, name: str) -> None:
     assert BLANK not in page(documents(name))
 
 
+def test_blank_exercises_state_the_constraints(documents, derivation) -> None:
+    exercises, _ = with_exercises(documents("four_bar"), "blank", 0)
+    stated = [equation.value for equation in exercises.equations if not equation.is_blank]
+    conditions = derivation("four_bar").system.conditions
+    assert conditions
+    assert all(one.formula in stated for one in conditions)
+
+
 def test_blank_exercises_state_the_positions_from_which_all_follows(documents, derivation) -> None:
     exercises, key = with_exercises(documents("double_pendulum"), "blank", 0)
     requested = [equation.value for equation in key.equations]

@@ -327,6 +327,7 @@ def test_a_run_that_resumes_has_the_shortest_step_of_its_times() -> None:
     assert batch.motions["min_h"][0] == shortest_step(0.0, 1.0)
     batch.resume(replace(problem, span=(1.0, 1e6)))
     assert batch.motions["min_h"][0] == shortest_step(1.0, 1e6)
+    assert shortest_step(0.0, -1e6) == shortest_step(-1e6, 0.0) == shortest_step(0.0, 1e6)
 
 
 @pytest.mark.long("other tests reach its code")

@@ -18,7 +18,15 @@ from solvers import load as load_module
 from solvers.app.cli import main
 from solvers.equations.module import has_constraints, inputs
 from solvers.io.figure_names import axis_label
-from solvers.io.quantity import UNITS, QuantityError, dimension, quantity, with_unit
+from solvers.io.quantity import (
+    MAX_LENGTH,
+    UNITS,
+    QuantityError,
+    dimension,
+    formula,
+    quantity,
+    with_unit,
+)
 from solvers.scenes.scene_output import summary
 from solvers.sweeps.definition import map_kinds
 
@@ -110,6 +118,13 @@ def test_units_are_products_and_quotients(text: str, unit: str, value: float) ->
 def test_other_units_are_refused(text: str, words: str) -> None:
     with pytest.raises(QuantityError, match=words):
         quantity(text, "N s/m")
+
+
+def test_a_formula_has_a_largest_length() -> None:
+    longest = "1".rjust(MAX_LENGTH)
+    assert formula(longest, {}) == 1
+    with pytest.raises(QuantityError, match=f"longer than a formula: {MAX_LENGTH + 1} characters"):
+        formula(f" {longest}", {})
 
 
 def read_back(listed: str, module: ModuleType) -> dict[str, float]:

@@ -512,6 +512,10 @@ def test_calls_give_the_lengths_of_vectors() -> None:
     expected = [f"r_{i}_ddot = -k*r_{i}/sqrt(r_0**2 + r_1**2)**3" for i in (0, 1)]
     assert [one.text for one in program.equations] == expected
     assert not program.unread  # the loop is read by itself
+    method = read_program(ORBIT.replace("np.linalg.norm(middle)", "middle.norm()"), "Python")
+    assert [one.text for one in method.equations] == expected
+    unknown = ORBIT.replace("np.linalg.norm(middle)", "h.norm()")  # of a number
+    assert not read_program(unknown, "Python").equations
     other = ORBIT + "r = np.array([1.0, 0.5, 2.0])\norbit(r, r, h)\n"
     assert not read_program(other, "Python").equations
 

@@ -288,6 +288,19 @@ def test_angles_in_degrees_are_right_where_sines_take_degrees() -> None:
     assert not kinds(read_program(text, "JavaScript"))
 
 
+@pytest.mark.parametrize(("argument", "is_fault"), [
+    ("theta_deg", True), ("theta_deg*pi/180", False), ("theta_deg + theta", True),
+])  # fmt: skip
+def test_a_name_in_degrees_needs_a_conversion(argument: str, is_fault: bool) -> None:
+    text = f"def f(t, y):\n    theta, v = y\n    return [v, -g*sin({argument})]\n"
+    assert kinds(read_program("theta_deg = 45\n" + text, "Python")) == (
+        {"degrees"} if is_fault else set()
+    )
+    page = f"let a = 45, v = 0;\nfunction draw() {{ v -= g*sin({argument})*dt; a += v*dt; }}\n"
+    page = page.replace("theta_deg", "a").replace(" + theta", " + b")
+    assert kinds(read_program(page, "JavaScript")) == ({"degrees"} if is_fault else set())
+
+
 def test_commands_of_notebooks_are_left_out() -> None:
     text = "%matplotlib inline\n!pip install numpy\nf = lambda t, y: (y[1], -sin(y[0]))\n"
     program = read_program(text, "Python")

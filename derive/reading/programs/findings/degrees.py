@@ -57,8 +57,9 @@ def is_converted(tree: Expression) -> bool:
 
 
 def angles(values: list[Expression]) -> set[str]:
-    """The variables in the arguments of sines and cosines."""
-    return {path for one in values for _, argument in arguments(one) for path in _names(argument)}
+    """The variables in the arguments of sines and cosines that are not converted there."""
+    names = ({*_names(argument)} for one in values for _, argument in arguments(one))
+    return set[str]().union(*(one for one in names if "pi" not in one))
 
 
 def arguments(tree: Expression) -> Iterator[tuple[int, Expression]]:
