@@ -178,7 +178,13 @@ def joined(displays: Iterable[Display], text: str) -> Iterator[Display]:
             if STARTS.match(one.latex):  # the sign is repeated
                 latex = ENDS.sub("", latex)
             latex = latex.ljust(one.start - before.start) + one.latex
-            before = replace(before, latex=latex, extent=(before.extent[0], one.extent[1]))
+            before = replace(
+                before,
+                latex=latex,
+                extent=(before.extent[0], one.extent[1]),
+                number=max(before.number, one.number),
+                is_inline=before.is_inline and one.is_inline,
+            )
             continue
         if before:
             yield before
@@ -192,8 +198,6 @@ def _continues(before: Display, one: Display, text: str) -> bool:
         before.delimiter in DELIMITERS
         and before.delimiter == one.delimiter
         and before.cell == one.cell
-        and not before.is_inline
-        and not one.is_inline
         and BETWEEN.match(text, before.extent[1], one.extent[0]) is not None
         and bool(ENDS.search(before.latex) or STARTS.match(one.latex))
     )

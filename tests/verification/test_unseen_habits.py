@@ -73,6 +73,15 @@ def test_an_index_plus_continues_no_display(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("text", [
+    "$$V = m g l\\cos\\theta$$$$+ k\\theta$$",
+    "If $m > 0$, $$V = m g l\\cos\\theta$$$$+ k\\theta$$ holds.",
+])  # fmt: skip
+def test_displays_in_one_line_can_be_one_formula(text: str, tmp_path: Path) -> None:
+    (only,) = (one for one in judged(tmp_path, text).formulas if one.latex.startswith("V"))
+    assert only.latex.endswith(r"+ k\theta")
+
+
 BEAD = r"""$$x = s, \quad y = a s^2$$
 $$K = 1 + 4 a^2 s^2$$ $$T = \frac12 m K\dot s^2, \quad V = m g y$$
 $$(1 + 4 a^2 s^2)\ddot s + 4 a^2 s\dot s^2 + 2 g a s = 0$$"""

@@ -18,9 +18,9 @@ from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
+from derive.verification.documents.rules.other_statements import GENERALIZED_FORCE
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import (
-    GENERALIZED_FORCE,
     POINT,
     DocumentFormula,
     Translated,

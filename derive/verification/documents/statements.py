@@ -39,8 +39,6 @@ WORD = re.compile(r"(?<![\d.])[A-Za-z_]\w*")
 GRAVITY = "g"
 #: Names of Cartesian components.
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
-#: Names of generalized forces, which nothing else in a document may state.
-GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: Words for quantities that do not change.
@@ -320,10 +318,7 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
     first, *others = formula.sides
     is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
-    is_letter = not any(
-        (order(formula.subject), POINT.match(formula.subject),
-         GENERALIZED_FORCE.fullmatch(formula.subject))
-    )  # fmt: skip
+    is_letter = not order(formula.subject) and not POINT.match(formula.subject)
     if formula.is_special_case or (is_zero and is_letter):
         return
     if formula.subject:

@@ -31,12 +31,7 @@ from derive.verification.documents.letters.stated_constraints import (
     multipliers_of,
     stated_constraints,
 )
-from derive.verification.documents.statements import (
-    GENERALIZED_FORCE,
-    SQUARE,
-    WORD,
-    DocumentFormula,
-)
+from derive.verification.documents.statements import SQUARE, WORD, DocumentFormula
 
 #: A letter with a number.
 INDEXED = re.compile(r"[A-Za-z]+_\d+")
@@ -255,8 +250,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         lost_dot = lost_dot or any({f"{name}_dot", one} in equal for one in others)
         last = formula.sides[-1]
         is_displaced = orders.get(name) == 2 and formula.is_displacement
-        is_force = GENERALIZED_FORCE.fullmatch(name)  # 0 where none acts
-        if NUMBER.fullmatch(last.text) and not is_force:  # a value, such as m = l = 1
+        if NUMBER.fullmatch(last.text):  # a value, such as m = l = 1
             continue
         if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue

@@ -4,6 +4,7 @@ All candidates of a system are evaluated at once: only accelerations, momenta an
 between them.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
@@ -12,7 +13,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.verification.documents.formula_translation import order
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.numbers.candidate_motions import (
@@ -33,6 +34,8 @@ FAILING, LACKING = 0.5, 0.25
 ENOUGH = 4
 #: Comparisons of a document in which such formulas are considered.
 FEW = 12
+#: A sine or cosine of an angle, and relations of an approximation.
+OF_ANGLE, NEAR = re.compile(r"\b(?:sin|cos)\((\w+)"), ("~", "->")
 #: Most candidates of a system that are considered beside the best.
 MAX_RIVALS = 6
 
@@ -126,11 +129,13 @@ def best_matches(
     others = {w for one in formulas if not (_is_equation(one) or one.is_value) for w in one.words}
     loads = {*letters.of_kind("force")} - others
     free = {k: _without_loads(tried, loads, one) for k, one in enumerate(formulas)}
+    linear = _linearised(formulas)
     votes = [
         (index, side, vote)
         for index, formula in enumerate(formulas)
+        if index not in linear and index not in tried[0].given
         for side, vote in _comparisons(numbers, formula, *free[index])
-        if (index, side) not in trivial and index not in tried[0].given
+        if (index, side) not in trivial
     ]
     if not votes:
         return []
@@ -177,6 +182,25 @@ def _comparisons(
     for side, vote in numbers.comparisons(formula):
         _, other = next(others, (side, vote))
         yield side, np.where(lacking, other, vote)
+
+
+def _linearised(formulas: Sequence[DocumentFormula]) -> set[int]:
+    """The numbers of linear equations of motion behind an approximation.
+
+    They have no function of an angle of which others have a sine or cosine.
+    """
+    angles = {stem(one[1]) for formula in formulas for one in OF_ANGLE.finditer(formula.text)}
+    near = [k for k, one in enumerate(formulas) if not {*one.relations}.isdisjoint(NEAR)]
+    if not angles or not near:
+        return set()
+    return {
+        k
+        for k, one in enumerate(formulas)
+        if k > near[0]
+        and 2 in map(order, one.words)
+        and angles & {*map(stem, one.words)}
+        and not OF_ANGLE.search(one.text)
+    }
 
 
 def _is_equation(formula: DocumentFormula) -> bool:

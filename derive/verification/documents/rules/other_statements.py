@@ -13,11 +13,7 @@ from derive.verification.documents.letters.document_system import is_length
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_comparison import Frequencies
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
-from derive.verification.documents.statements import (
-    GENERALIZED_FORCE,
-    SQUARE,
-    DocumentFormula,
-)
+from derive.verification.documents.statements import SQUARE, DocumentFormula
 from derive.verification.judging.reference_system import depends_on
 
 #: Words of sentences about formulas that leave out terms, and about motions that have none.
@@ -26,6 +22,8 @@ SIMPLIFIED = re.compile(
     r"|without|at rest|zero (?:\w+ )?(?:velocity|momentum|speed)",
     re.IGNORECASE,
 )
+#: Names of generalized forces, which nothing else in a document may state.
+GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
 
 
 class OtherStatements:

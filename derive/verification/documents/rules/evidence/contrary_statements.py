@@ -109,7 +109,7 @@ class ContraryStatements:
         """The line of a stated energy if other equations contradict it, and none confirms a term.
 
         A slip in the energy is as likely. A wrong formula confirms parameters beside its wrong
-        term.
+        term; other energies, which follow from the stated one, confirm no equation.
         """
         _, result = self._results[number]
         is_of_energies = self._candidate.basis == "energies" and not self._candidate.is_of_equations
@@ -121,7 +121,9 @@ class ContraryStatements:
         is_confirmed = any(
             own <= set[str]().union(*_confirmed(formula, one))
             for k, (formula, one) in enumerate(self._results)
-            if k not in stating and one is not result
+            if k not in stating
+            and one is not result
+            and (result.kind in OF_ENERGIES or one.kind not in OF_ENERGIES)
         )
         is_contradicted = any(
             one.verdict.verdict not in HOLDING and own <= {*formula.words}
