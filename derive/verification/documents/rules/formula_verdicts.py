@@ -34,6 +34,7 @@ from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,
     OWN_CONSTANT,
+    POINT,
     SQUARE,
     WORD,
     DocumentFormula,
@@ -174,7 +175,14 @@ class Judge:
         others = (one.text for j, one in enumerate(formula.sides) if j != k)
         used = {word for text in others for word in WORD.findall(text)}
         used |= {w for one in self._namespace.formulas if one is not formula for w in one.words}
-        return sorted(side - used)
+        return sorted(one for one in side - used if not self._is_component(one))
+
+    def _is_component(self, name: str) -> bool:
+        """Whether a name can be a component of a position that a document states."""
+        subjects = (one.subject.removesuffix("_column") for one in self._namespace.formulas)
+        places = [one for one in map(POINT.match, subjects) if one]
+        own = POINT.match(name)
+        return own is not None and any(one[2] == own[2] for one in places)
 
     def _not_understood(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict:
         result = not_understood(formula, unknown)
