@@ -313,3 +313,12 @@ $$H = \frac{1}{2m}(p_x^2+p_y^2) + U(x, y)$$"""
     assert judged(tmp_path, text)[-1].verdict == "verified"
     slip = text.replace(r"\frac{1}{2m}", r"\frac1m")
     assert [*wrong_terms(tmp_path, slip).values()] == [r"\frac1m(p_x^2+p_y^2)"]
+
+
+def test_equations_with_the_same_acceleration_can_be_those_of_another_body(tmp_path: Path) -> None:
+    text = r"""$$\frac12 m\dot x^2+\frac12 k x^2=E$$ $$m\dot x\ddot x+k x\dot x=0$$
+$$m\ddot x+k x=0$$ For a cylinder that rolls: $$\frac32 m\dot x\ddot x+k x\dot x=0$$
+$$(m\ddot x+\frac23 k x)\dot x=0$$ $$m\ddot x+\frac23 k x=0$$"""
+    assert not wrong_terms(tmp_path, text)
+    slip = text.partition("For a cylinder")[0] + r"$$m\ddot x+\frac23 k x=0$$"
+    assert [*wrong_terms(tmp_path, slip).values()] == [r"\frac23kx"]

@@ -158,6 +158,21 @@ def _own_value(formula: DocumentFormula) -> sp.Expr | None:
         return None
 
 
+def acceleration(formula: DocumentFormula) -> sp.Expr | None:
+    """The only acceleration of an equation, in its own names; None of others."""
+    names = {word: sp.Symbol(word) for word in formula.words if word not in FUNCTIONS}
+    unknown = [symbol for word, symbol in names.items() if order(word) == 2]
+    try:
+        left, right = (number(one.text, {**names, **FUNCTIONS}) for one in formula.sides)
+        difference = sp.expand(left - right)
+    except (ExpressionError, TypeError, ValueError):
+        return None
+    slope = difference.diff(unknown[0]) if len(unknown) == 1 else sp.S.Zero
+    if slope == 0 or slope.has(unknown[0]):
+        return None
+    return sp.cancel(-difference.subs(unknown[0], 0) / slope)
+
+
 def _agreeing(formula: DocumentFormula, result: SideVerdict) -> int:
     """How many letters of a formula stand outside its wrong terms."""
     written = sum(len(WORD.findall(side.text)) for side in formula.sides)

@@ -31,6 +31,7 @@ from derive.verification.documents.rules.evidence.loads import (
 from derive.verification.documents.rules.evidence.support import (
     OF_ENERGIES,
     Support,
+    acceleration,
     is_ambiguous,
     is_linear_in_rates,
 )
@@ -169,6 +170,8 @@ class _Evidence:
             return f"it contradicts the stated friction: {UNDECIDED}"
         if not self._is_stated and self._contrary.has_cases:
             return other_case
+        if self._is_known and self._is_repeated(number):
+            return other_case
         if any(index in word for index in self._other_indices for word in formula.words):
             return other_case
         if self._is_known and (
@@ -203,6 +206,16 @@ class _Evidence:
         if self._is_tie(result) or adds_letters(formula, result, self._candidate):
             return other_case
         return ""
+
+    def _is_repeated(self, number: int) -> bool:
+        """Whether another equation that a known system contradicts has the same acceleration."""
+        own = acceleration(self._results[number][0])
+        others = (
+            acceleration(formula)
+            for k, (formula, one) in enumerate(self._results)
+            if k != number and one.verdict.verdict == "wrong"
+        )
+        return own is not None and own in others
 
     def _other_place(self, result: SideVerdict) -> str:
         """A place without a rate in the wrong term of an energy, which no other formula shows."""
