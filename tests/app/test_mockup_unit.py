@@ -245,6 +245,10 @@ def test_an_importer_finds_no_problem_and_simulates(tmp_path: Path) -> None:
         assert result[-1]["theta1"] == pytest.approx(rows[-1][1], abs=error)
         zeros = [row["time"] for row in result if abs(row["theta1"]) < error]
         assert np.unique(np.round(zeros, 4)) == pytest.approx(np.round(events, 4))
+    # an importer that permits no early return has whole steps
+    options["early_return_allowed"] = False
+    whole = fmpy.simulate_fmu(str(path), fmi_type="CoSimulation", **options)
+    assert whole["time"] == pytest.approx(np.linspace(0, 5, 11))
 
 
 def test_a_system_without_a_start_is_no_unit(

@@ -293,3 +293,23 @@ At rest, it would be
 $$ \ddot y = 0 $$
 """)  # fmt: skip
     assert [one.verdict for one in verdicts][1:] == ["verified", "verified", "context"]
+
+
+#: Two cases with positions of their own, below no headings.
+CASES = r"""
+$$x = l\sin\theta$$ $$y = -l\cos\theta$$ $$T = \frac12 m l^2\dot\theta^2$$
+$$V = -m g l\cos\theta$$ $$l\ddot\theta + g\sin\theta = 0$$
+If the pivot moves to the side,
+$$x = a\cos\gamma t + l\sin\theta$$ $$y = -l\cos\theta$$
+$$T = \frac12 m(a^2\gamma^2\sin^2\gamma t - 2 a\gamma l\dot\theta\sin\gamma t\cos\theta
++ l^2\dot\theta^2)$$
+$$V = -m g l\cos\theta$$ $$l\ddot\theta + g\sin\theta = a\gamma^2\cos\gamma t\cos\theta$$
+"""
+
+
+def test_cases_with_positions_of_their_own_are_systems(tmp_path: Path) -> None:
+    assert {one.verdict for one in judged(tmp_path, CASES)} == {"definition", "verified"}
+    text = CASES.replace(r"= a\gamma^2\cos\gamma t\cos", r"= a\gamma^2\cos\gamma t\sin")
+    slip = judged(tmp_path, text)
+    assert [one.verdict for one in slip].count("wrong") == 1
+    assert slip[-1].verdict == "wrong"

@@ -226,7 +226,10 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
         wrong, own = (judges.incorrect(one.candidate) for one in (match, best))
         return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
 
-    stated = [one for one in matches if one.candidate.stating and best.failed - one.failed]
+    others = (one for one in matches if one.candidate.stating and best.failed - one.failed)
+    ranked = sorted(others, key=lambda one: one.score)
+    # of those of the same statements that fail alike, the likeliest
+    stated = [*{(one.candidate.stating, one.failed): one for one in ranked}.values()]
     is_best = all(one.score <= best.score + TIE for one in stated)
     is_decided = stated and is_best and _is_decisive(best, matches)
     if is_decided and judges.count_wrong(best.candidate) == 1:
@@ -237,11 +240,11 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
     for match in stated:
         has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
         is_tie = match.score >= best.score - TIE and not has_more
-        if (is_tie or has_as_few_slips(match)) and not judges.has_more(best, match):
-            more = frozenset(filter(understood.__contains__, best.failed - match.failed))
+        more = best.failed.intersection(understood) - match.failed
+        if more and (is_tie or has_as_few_slips(match)) and not judges.has_more(best, match):
             for number in more:
                 doubts.setdefault(number, match.candidate.stating)
-            for number in match.failed - best.failed if more else ():
+            for number in match.failed - best.failed:
                 disputed.setdefault(number, more)
     return Contradictions(doubts, disputed)
 
