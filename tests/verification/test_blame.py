@@ -92,16 +92,17 @@ def test_what_most_of_a_document_agrees_with_is_no_other_case(tmp_path: Path) ->
 
 
 def test_a_load_has_not_the_value_of_the_first_wrong_equation(tmp_path: Path) -> None:
-    text = ELEVATOR.replace(r"\sin\theta)+(M+m)g=F", r"\sin\theta)-(M+m)g=F", 1)
-    equations = [one for one in judged(tmp_path, text) if one.latex.strip().endswith("=F")]
+    named = ELEVATOR.replace("=F$", "=F_{mot}$")
+    text = named.replace(r"\sin\theta)+(M+m)g=F", r"\sin\theta)-(M+m)g=F", 1)
+    equations = [one for one in judged(tmp_path, text) if one.latex.strip().endswith("=F_{mot}")]
     assert [one.verdict for one in equations] == ["wrong", "verified"]
 
 
 def test_a_force_between_bodies_has_the_inertia_of_one(tmp_path: Path) -> None:
     energies = r"""
-$$T=\frac12(M+m)\dot x^2+m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
+$$T=\frac12(M+m+\frac{J}{R^2})\dot x^2+m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
 $$V = - m g l\cos\theta$$ $$l\ddot\theta + \ddot x\cos\theta + g\sin\theta = 0$$ """
-    force = r"$$m\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = N$$"
+    force = r"$$m\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = S$$"
     assert judged(tmp_path, energies + force)[-1].verdict != "wrong"
 
 
@@ -110,7 +111,7 @@ $$L=\frac12(m+\frac{J}{R^2})\dot r^2+\frac12(m r^2+\frac13 M l^2)\dot\alpha^2-m 
 $$\frac{\partial L}{\partial r}=m r\dot\alpha^2-m g\sin\alpha$$
 $$\frac{\partial L}{\partial\dot\alpha}=(m r^2+\frac13 M l^2)\dot\alpha$$
 $$(m+\frac{J}{R^2})\ddot r-m r\dot\alpha^2+m g\sin\alpha=0$$
-$$(m r^2+\frac13 M l^2)\ddot\alpha+2m r\dot r\dot\alpha+m g r\cos\alpha=0$$
+$$(m r^2+\frac13 M l^2)\ddot\alpha+2m r\dot r\dot\alpha+m g r\cos\alpha=\tau$$
 """
 
 

@@ -32,6 +32,7 @@ def test_one_change_of_a_term_is_a_slip(wrong: str, correct: str) -> None:
     ("", "m*g + k*x"), ("m*x", "m*x*(a + b)"),
     ("m*z_dot**2", "0"), ("a + b", "a"),  # a term too many
     ("transpose(u)*v", "transpose(v)*u"),  # unknown
+    ("k*r**b", "k*r"),  # a power that is no number
 ])  # fmt: skip
 def test_several_changes_are_no_slip(wrong: str, correct: str) -> None:
     assert not is_slip([Correction(wrong, correct)])
