@@ -172,8 +172,11 @@ class Judges:
 
         Such as frequencies, which numbers at states do not show.
         """
-        counts = (self.count_holding(m.candidate) + len(m.candidate.stating) for m in (one, other))
-        return next(counts) >= next(counts) + CLEARLY
+        own, its = (
+            self.count_holding(match.candidate) + len(match.candidate.stating)
+            for match in (one, other)
+        )
+        return own >= its + CLEARLY
 
     def wrong(self, candidate: SystemCandidate) -> list[int]:
         """The numbers of the formulas that are wrong."""
@@ -238,8 +241,8 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
     verdicts = enumerate(judges.verdicts(best.candidate)) if stated else ()
     understood = {k for k, (_, one) in verdicts if one.is_understood}
     for match in stated:
-        has_more = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
-        is_tie = match.score >= best.score - TIE and not has_more
+        is_worse = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
+        is_tie = match.score >= best.score - TIE and not is_worse
         more = best.failed.intersection(understood) - match.failed
         if more and (is_tie or has_as_few_slips(match)) and not judges.has_more(best, match):
             for number in more:
@@ -267,7 +270,7 @@ def with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> 
     """The match of stated energies, or one of positions or a known system with fewer slips.
 
     What follows from a slip is none. Positions that do not lead to the stated energies are one.
-    The second value is whether there are fewer.
+    The second value is whether there are fewer, and as much support.
     """
     if best.candidate.basis == "positions":
         return _with_one_wrong_position(best, matches, judges)

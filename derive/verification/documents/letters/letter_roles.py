@@ -88,8 +88,10 @@ def letters_of(
     quantities |= routhians(formulas, momenta)
     # c of c_1 = c_2 = c is no further parameter, nor is c_3 of c_1 = c_2 = c_3 = c
     equal = [one for one in formulas if equal_letters(one)]
-    defined |= {side.text for one in equal for side in one.sides if "_" not in side.text}
-    defined |= {side.text for one in equal for side in one.sides[2:]}
+    defined |= {
+        side.text for one in equal for k, side in enumerate(one.sides)
+        if k > 1 or "_" not in side.text
+    }  # fmt: skip
     defined -= {*quantities}
     coordinates = [one for one in moving if one not in momenta]
     coordinates.sort(key=lambda one: (-orders[one], stems.index(one)))

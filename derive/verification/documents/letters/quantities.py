@@ -59,7 +59,7 @@ def quantities_of(
         and not (kind == "kinetic_energy" and _is_constant(one, formulas))
         and not (kind == "kinetic_energy" and one in {*transformed, *weights})
         and not (kind == "potential_energy" and _is_effective(one, formulas))
-        and not (kind == "potential_energy" and one not in subjects and _is_any(one, formulas))
+        and not (kind == "potential_energy" and one not in subjects and _is_general(one, formulas))
         and one not in {*forces, *functions_of_forces}
         and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }
@@ -68,7 +68,7 @@ def quantities_of(
     return quantities | matrices_of(formulas)
 
 
-def _is_any(name: str, formulas: Iterable[DocumentFormula]) -> bool:
+def _is_general(name: str, formulas: Iterable[DocumentFormula]) -> bool:
     """Whether a potential energy without a value stands beside a kinetic energy in velocities."""
     sides = ({*WORD.findall(side.text)} for one in formulas for side in one.sides)
     return any(name in words and 1 in map(order, words) for words in sides)

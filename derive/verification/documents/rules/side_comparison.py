@@ -168,7 +168,7 @@ class SideComparison:
         derivation = self._linear.derivation
         if derivation is None:
             return None
-        for one in self._linear.turned():
+        for one in self._linear.turned:
             if one.holds(difference, self._model, is_displaced=True):
                 return plain("context", formula, ELSEWHERE)
         own = self._roles.equation(formula.sides[0], side, derivation)

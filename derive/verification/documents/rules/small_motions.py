@@ -180,15 +180,20 @@ class SmallMotions:
             return Derivation(linear)
         return None
 
-    def turned(self) -> Iterator["SmallMotions"]:
-        """Yield the small motions about equilibria with some angles turned by π, as upright."""
+    @cached_property
+    def turned(self) -> tuple["SmallMotions", ...]:
+        """The small motions about equilibria with some angles turned by π, as upright."""
         functions = sp.Tuple(*self._derivation.euler_lagrange).atoms(sp.Function)
         angles = [q for q in self._derivation.system.q if sp.Tuple(*functions).has(q)]
-        for turns in product((sp.S.Zero, sp.pi), repeat=len(angles)):
-            place = dict.fromkeys(self._derivation.system.q, sp.S.Zero)
-            place |= dict(zip(angles, turns, strict=True))
-            if any(turns) and self._is_equilibrium(place):
-                yield SmallMotions(self._derivation, place)
+        origin = dict.fromkeys(self._derivation.system.q, sp.S.Zero)
+        places = (
+            origin | dict(zip(angles, turns, strict=True))
+            for turns in product((sp.S.Zero, sp.pi), repeat=len(angles))
+            if any(turns)
+        )
+        return tuple(
+            SmallMotions(self._derivation, place) for place in places if self._is_equilibrium(place)
+        )
 
     def _combinations(self, linear: sp.Expr) -> Iterator[sp.Expr]:
         """What vanishes if an equation is one of those of small motions, times a factor."""

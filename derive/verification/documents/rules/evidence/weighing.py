@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
+import sympy as sp
+
 from derive.formulas.expression import FUNCTIONS
 from derive.formulas.syntax import syntax_tree
 from derive.reading.latex.grammar.products import AMBIGUOUS
@@ -84,10 +86,10 @@ def weighed(
     formula; a letter for each of its parameters in formulas that are judged, unless that is a
     factor of the Lagrangian, such as the mass of a single body, and the accelerations as written
     have no potential of their own; a letter for several of them, such as for both masses, in a
-    formula that holds; four formulas that hold for each that no slip explains; and no more slips,
-    if one is in an energy, than half of the formulas that hold. With a partial search for it, none
-    is wrong. A formula whose dimensions contradict those of all others needs no more evidence if
-    one term is wrong.
+    formula that holds; no other equation that contradicts it alike; four formulas that hold for
+    each that no slip explains; and no more slips, if one is in an energy, than half of the formulas
+    that hold. With a partial search for it, none is wrong. A formula whose dimensions contradict
+    those of all others needs no more evidence if one term is wrong.
     """
     evidence = _Evidence(results, candidate, contradictions, is_stated, is_partial)
     for number, (formula, _) in enumerate(results):
@@ -209,13 +211,18 @@ class _Evidence:
 
     def _is_repeated(self, number: int) -> bool:
         """Whether another equation that a known system contradicts has the same acceleration."""
-        own = acceleration(self._results[number][0])
-        others = (
-            acceleration(formula)
-            for k, (formula, one) in enumerate(self._results)
-            if k != number and one.verdict.verdict == "wrong"
-        )
+        own = self._wrong_accelerations[number]
+        others = (one for k, one in self._wrong_accelerations.items() if k != number)
         return own is not None and own in others
+
+    @cached_property
+    def _wrong_accelerations(self) -> dict[int, sp.Expr | None]:
+        """The accelerations of wrong equations, by the numbers of formulas."""
+        return {
+            k: acceleration(formula)
+            for k, (formula, one) in enumerate(self._results)
+            if one.verdict.verdict == "wrong"
+        }
 
     def _other_place(self, result: SideVerdict) -> str:
         """A place without a rate in the wrong term of an energy, which no other formula shows."""
