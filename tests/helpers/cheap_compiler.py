@@ -10,7 +10,7 @@ import os
 import shutil
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import pytest
 from folders import ROOT
@@ -58,8 +58,9 @@ def install(flags: str) -> None:
     libraries, script = folder / "libraries", folder / "cc"
     libraries.mkdir(parents=True, exist_ok=True)
     for library in libraries.iterdir():
-        if library.stat().st_mtime < time.time() - UNUSED:
-            library.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):  # another process has renamed or removed it
+            if library.stat().st_mtime < time.time() - UNUSED:
+                library.unlink()
     lanes = LANES if flags == SHORT else flags
     text = SCRIPT.format(compiler=compiler, folder=folder, flags=flags, lanes=lanes)
     # a script with another time is another compiler, whose libraries are built anew

@@ -1,5 +1,6 @@
 """Loops compiled with less optimisation, as in most tests, move as those of users."""
 
+import os
 import shutil
 from pathlib import Path
 
@@ -41,3 +42,15 @@ def test_levels_of_optimisation_agree_to_rounding(
     for one, other in zip(less, more, strict=True):
         assert np.abs(one - other).max() < 1e-11
     assert not libraries(tmp_path / "less") & libraries(tmp_path / "more")
+
+
+def test_libraries_that_another_process_renames_meanwhile_are_no_obstacle(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A link without its file stands in the folder and has no time, as a name that is gone."""
+    monkeypatch.setattr(cheap_compiler, "PLACE", tmp_path)
+    monkeypatch.setenv("PATH", os.environ["PATH"])
+    (tmp_path / "long" / "libraries").mkdir(parents=True)
+    (tmp_path / "long" / "libraries" / "name.123").symlink_to(tmp_path / "gone")
+    cheap_compiler.install(cheap_compiler.LONG)
+    assert (tmp_path / "long" / "cc").is_file()
