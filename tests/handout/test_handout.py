@@ -419,6 +419,17 @@ def test_all_kinds_of_mistakes_are_planted(documents) -> None:
     }
 
 
+def test_no_planted_mistake_lets_a_formula_vanish(derivation) -> None:
+    """With equal indices of the masses, three operations are gone."""
+    order = DerivedLetters(derivation("double_pendulum").system).order
+    symbols = {s.name: s for s in order.kinds}
+    value = symbols["m1"] * symbols["g"] - symbols["m2"] * symbols["g"]
+    for seed in map(str, range(20)):
+        mistake = planted(NumberedEquation(1, ("F",), value, (), order), seed)
+        assert mistake is not None
+        assert mistake.equation.value != 0
+
+
 def test_a_multiple_of_zero_and_another_zero_of_energy_are_no_mistakes(derivation) -> None:
     order = DerivedLetters(derivation("rotating_hoop").system).order
     symbols = {s.name: s for s in order.kinds}

@@ -83,6 +83,23 @@ def test_flat_and_discontinuous_events_are_located() -> None:
         assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
 
 
+def test_events_of_several_angles_occur_in_an_ensemble_as_each_alone() -> None:
+    events = [Event(dp, "theta1", 3.0), Event(dp, "theta2", 7.0)]
+    starts = np.array([[0.5, 0.6], [0.0, 0.1], [0.0, 0.0], [16.0, 17.0]])
+
+    def occurrences(*chosen: Event) -> tuple[Array, Array]:
+        options = {"h": 0.02, "occurrences": 8, "method": "gauss4"}
+        found = ensemble(dp, (0, 4), starts, dp.DEFAULTS, events=list(chosen), **options)
+        return found.occurred, found.t_events
+
+    occurred, times = occurrences(*events)
+    assert (occurred > 0).all()
+    for k, event in enumerate(events):
+        alone, own = occurrences(event)
+        assert np.array_equal(occurred[:, k], alone[:, 0])
+        assert_allclose(times[:, k], own[:, 0], rtol=1e-12)
+
+
 def test_invalid_events_are_refused() -> None:
     for arguments, message in (
         (("theta3", 0.0), "did you mean 'theta2'"),

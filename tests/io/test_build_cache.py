@@ -385,6 +385,18 @@ def test_a_fork_leaves_the_temporary_folder_to_its_parent(own_cache: Path) -> No
     assert not Path(folder).exists()
 
 
+def test_a_temporary_folder_that_is_gone_before_the_end_is_no_error(own_cache: Path) -> None:
+    own_cache.write_text("")
+    program = (
+        "import shutil, warnings; warnings.simplefilter('ignore')\n"
+        "from solvers.io.build_cache import built_folder\n"
+        "folder = built_folder('one', lambda folder: (folder / 'file').write_text('text'))\n"
+        "shutil.rmtree(folder.parent)\n"
+    )
+    command = [sys.executable, "-c", program]
+    assert subprocess.run(command, capture_output=True, check=True, cwd=ROOT).stderr == b""
+
+
 def test_bytecode_beside_a_cached_module_is_not_loaded() -> None:
     def plain() -> object:
         return cached_module("plain", "key", lambda: {"plain.py": "VALUE = 1\n"})

@@ -3,6 +3,7 @@
 from decimal import Decimal, localcontext
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
@@ -75,3 +76,24 @@ def test_stability_functions_of_gauss_methods_are_symmetric_fractions(stages: in
         expected *= Fraction(stages - k + 1, (2 * stages - k + 1) * k)
         assert function.numerator[k] == expected
         assert function.denominator[k] == (-1) ** k * expected
+
+
+def test_the_matrix_of_the_adjoint_conditions_is_no_radau_method() -> None:
+    """Radau's nodes and weights with the matrix that Butcher's conditions D(3) determine.
+
+    The sum of b_i c_i^(k - 1) a_ij over i is b_j (1 - c_j^k)/k for k from 1 to 3. The order is 5,
+    too, but stages are no values of a polynomial (E. Hairer, G. Wanner, section IV.5).
+    """
+    c = radau_nodes(3)
+    _, b = collocation(c)
+    nodes, weights = np.array(c, float), np.array(b, float)
+    k = np.arange(1, 4)[:, np.newaxis]
+    matrix = np.linalg.solve(weights * nodes ** (k - 1), weights * (1 - nodes**k) / k)
+    assert np.allclose(matrix.sum(axis=1), nodes)
+    *rows, (last, *_) = ([Decimal(repr(a)) for a in row] for row in matrix.tolist())
+    rows.append([last, 1 - last, Decimal(0)])
+    method = Tableau("test", tuple(map(tuple, rows)), tuple(b))
+    vars(method)["order"] = 5  # to the digits of these doubles
+    assert not method.is_radau
+    same = Tableau("test", *collocation(c))
+    assert (same.order, same.is_radau) == (5, True)

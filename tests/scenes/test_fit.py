@@ -261,6 +261,23 @@ def test_rest_determines_no_parameter() -> None:
         fit(single, {"t": t, "theta": 0 * t}, ["l"])
 
 
+def test_relaxed_gaps_close_from_nodes_that_are_far_away() -> None:
+    """A node moves by p: 1 and 2 are measured, so that p is 1 and nothing remains."""
+
+    def linearise(nodes: np.ndarray, params: np.ndarray) -> shooting_steps.LinearisedResiduals:
+        (first,), (second,) = nodes
+        by = np.array([[[1.0, 0.0]]] * 2)
+        gaps = np.array([[first + params[0] - second], [0.0]])
+        gaps_by = np.array([[[1.0, 1.0]], [[0.0, 0.0]]])
+        residuals = nodes - [[1.0], [2.0]]
+        return shooting_steps.LinearisedResiduals(np.zeros(2, int), residuals, by, gaps, gaps_by)
+
+    start = np.array([[5.0], [-3.0]]), np.array([0.0])
+    result = shooting_steps.relaxed(linearise, *start, np.array([False]), np.array([1.0]))
+    assert result.squares < 1e-9
+    assert result.params == pytest.approx([1.0], abs=1e-4)
+
+
 def test_leverages_add_up_to_the_rank_that_exceeds_rounding() -> None:
     """The second column is three times the first one: the rank is 1."""
     column = np.random.default_rng(0).normal(size=50)

@@ -15,16 +15,25 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.single_pendulum as sp
 from solvers.app.cli import main
+from solvers.app.modules import load as load_module
 from solvers.equations.linearisation.normal_modes import Modes, local_eigenvalues
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.status import Status
 from solvers.runge_kutta.method_catalogue import load, names
 from solvers.runge_kutta.stability_function import StabilityFunction, nonnegative_interval
 from solvers.runge_kutta.stepper import Stepper
+from solvers.scenes.scene_reading import find
 from solvers.studies import stability
 from solvers.studies.failure_modes import study
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
-from solvers.studies.stability import CriticalStep, boundaries, critical_step, limit, regions
+from solvers.studies.stability import (
+    CriticalStep,
+    SceneStability,
+    boundaries,
+    critical_step,
+    limit,
+    regions,
+)
 
 F = Fraction
 RUNGE_KUTTA = [name for name in names() if not load(name).is_splitting]
@@ -305,3 +314,13 @@ def test_regions_have_modes_and_motions_in_units_of_the_critical_step() -> None:
     assert area.contains_points([(-1, 0), (-2.7, 0), (-2.9, 0), (1, 0)]).tolist() == [1, 1, 0, 0]
     points = np.concatenate([path.vertices for path in edge.get_paths()])
     assert np.abs(np.abs(functions["rk4"](points @ [1, 1j])) - 1).max() < 0.02
+
+
+def test_a_picture_shows_the_eigenvalues_of_the_motion_from_its_start() -> None:
+    scene = find("report", load_module)
+    step = critical_step("rk4", scene.module, scene.params)
+    (panel,) = SceneStability(scene, [step]).plot().axes
+    along = next(line for line in panel.lines if line.get_marker() == ".")
+    first = step.predicted * local_eigenvalues(scene.module, scene.params, [scene.y0]).ravel()
+    points = along.get_xdata()[: len(first)] + 1j * along.get_ydata()[: len(first)]
+    assert points == pytest.approx(first, abs=1e-12)

@@ -195,6 +195,14 @@ EQUATIONS = {
         "m2*l1*r2*cos(theta1 - theta2)*theta1_ddot + I2*theta2_ddot"
         " - m2*l1*r2*sin(theta1 - theta2)*theta1_dot**2 + m2*g*r2*sin(theta2)",
     ],
+    "two_links_with_motors": [
+        "(I1 + m2*l1**2 + Ir*gr**2 + Ir*(1 + gr)**2)*theta1_ddot"
+        " + (m2*l1*r2*cos(theta1 - theta2) - Ir*gr*(1 + gr))*theta2_ddot"
+        " + m2*l1*r2*sin(theta1 - theta2)*theta2_dot**2 + (m1*r1 + m2*l1)*g*sin(theta1)",
+        "(m2*l1*r2*cos(theta1 - theta2) - Ir*gr*(1 + gr))*theta1_ddot"
+        " + (I2 + Ir*gr**2)*theta2_ddot"
+        " - m2*l1*r2*sin(theta1 - theta2)*theta1_dot**2 + m2*g*r2*sin(theta2)",
+    ],
     "two_half_rods": [
         "(4*m1/3 + 4*m2)*l1*theta1_ddot + 2*m2*l2*cos(theta1 - theta2)*theta2_ddot"
         " + 2*m2*l2*sin(theta1 - theta2)*theta2_dot**2 + (m1 + 2*m2)*g*sin(theta1)",
