@@ -225,7 +225,7 @@ class Alembert:
         ]
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=2)
 def test_motions_and_reactions_satisfy_d_alembert_s_principle(
     system: System, module: ModuleType
 ) -> None:
@@ -290,7 +290,7 @@ def test_energy_changes_by_the_power_of_forces_and_drives_alone(
             assert abs(change) > 1e-6 * scale
 
 
-@pytest.mark.long("more cases of the same kind", keep=9)
+@pytest.mark.long("more cases of the same kind", keep=5)
 def test_hamilton_s_form_is_the_same_motion(module: ModuleType) -> None:
     if "hamiltonian" not in module.FORMS:
         return  # the system has constraints

@@ -63,6 +63,7 @@ $$U = -m g l\cos\theta$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_equation_with_a_force_that_has_a_value_is_not_accused(tmp_path: Path) -> None:
     equation = r"$$m l\ddot x\cos\theta + m l^2\ddot\theta + m g l\sin\theta = f_\theta$$"
     one = last(tmp_path, CART + equation)

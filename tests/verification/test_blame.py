@@ -33,10 +33,12 @@ $$J_0\ddot\theta+K\ddot\alpha=\tau$$ $$K\ddot\theta + J_2\ddot\alpha - G\alpha =
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_side_with_a_letter_of_its_own_is_not_judged(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, FURUTA)} == {"verified", "definition"}
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("right", "slip", "term"), [
     (r"\dot\theta + K\cos\alpha\,\dot\alpha", r"\dot\theta + K\sin\alpha\,\dot\alpha",
      r"K\sin\alpha\,\dot\alpha"),
@@ -84,6 +86,7 @@ $$(M+m)\ddot y+m l(\ddot\theta\cos\theta-\dot\theta^2\sin\theta)+(M+m)g=F$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_what_most_of_a_document_agrees_with_is_no_other_case(tmp_path: Path) -> None:
     assert not wrong_terms(tmp_path, ELEVATOR)
     text = ELEVATOR.replace(r"\frac12(m l^2+I)", r"\frac12(m l+I)")
@@ -91,6 +94,7 @@ def test_what_most_of_a_document_agrees_with_is_no_other_case(tmp_path: Path) ->
     assert [*wrong_terms(tmp_path, text).values()] == ["ml", r"-mgl\sin\theta"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_load_has_not_the_value_of_the_first_wrong_equation(tmp_path: Path) -> None:
     named = ELEVATOR.replace("=F$", "=F_{mot}$")
     text = named.replace(r"\sin\theta)+(M+m)g=F", r"\sin\theta)-(M+m)g=F", 1)
@@ -216,6 +220,7 @@ def test_a_displacement_defines_no_coordinate(tmp_path: Path) -> None:
     assert [*wrong_terms(tmp_path, slip)] == [r"p=ma\dot\theta"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_column_of_coordinates_is_none(tmp_path: Path) -> None:
     text = r"""$$q = (x, \theta)$$
 $$T = \frac12(M+m)\dot x^2-\frac12 m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
@@ -226,6 +231,7 @@ $$l\ddot\theta-\ddot x\cos\theta-g\sin\theta=0$$ $$H(q)\ddot q+C(q,\dot q)\dot q
     assert [*wrong_terms(tmp_path, text).values()] == [r"-\frac12ml\dotx\dot\theta\cos\theta"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_acceleration_of_a_coordinate_is_no_rate_of_a_position(tmp_path: Path) -> None:
     text = r"""$$x_p = x - l\sin\theta$$ $$y_p = l\cos\theta$$
 $$T = \frac12 M\dot x^2+\frac12 m(\dot x_p^2+\dot y_p^2)$$
@@ -269,6 +275,7 @@ $$(m_1+m_2)l_1^2\ddot\theta_1+m_2l_2^2(\ddot\theta_1+\ddot\theta_2)
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_equation_is_not_accused_by_an_energy_that_nothing_confirms(tmp_path: Path) -> None:
     assert not wrong_terms(tmp_path, ARM)
 
@@ -306,6 +313,7 @@ def test_nothing_decides_between_energies_and_several_equations(tmp_path: Path) 
     assert not wrong_terms(tmp_path, WHEEL)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_potential_energy_can_have_no_value(tmp_path: Path) -> None:
     text = r"""$$L = T - U = \frac12 m(\dot x^2+\dot y^2) - U(x, y)$$ $$p_x = m\dot x$$
 $$p_y = m\dot y$$ $$\dot x = \frac{p_x}{m}$$ $$\dot y = \frac{p_y}{m}$$

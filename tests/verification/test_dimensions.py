@@ -286,6 +286,7 @@ function derivatives(t, y) {
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_numbers_of_a_state_have_no_unit_by_their_letter() -> None:
     results = judge_program(read_program(HOOP, "JavaScript")).formulas
     assert len(results) == 2

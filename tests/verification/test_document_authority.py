@@ -285,7 +285,7 @@ SLIPS = {
 }
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("name", SLIPS)
 def test_slips_beside_them_are_found_or_left_open(tmp_path: Path, name: str) -> None:
     right, slip = SLIPS[name]

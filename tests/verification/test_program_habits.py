@@ -330,6 +330,7 @@ def test_of_two_equations_the_one_with_a_slip_is_wrong() -> None:
     assert equations(judged(slip)) == ["wrong", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_gravity_with_another_sign_in_all_equations_is_another_angle(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -372,6 +373,7 @@ end program
     assert equations(judged(text, "Fortran")) == ["verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_gain_of_an_input_is_no_friction() -> None:
     # a two-link arm whose second joint has the torque B u
     text = """

@@ -248,6 +248,7 @@ def test_systems_can_have_the_same_coordinate(headings: dict[str, str], tmp_path
     assert (wrong.verdict, wrong.wrong_term) == ("wrong", "b x^2")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_energies_after_equations_can_be_those_of_another_system(tmp_path: Path) -> None:
     verdicts = judged(tmp_path, r"""
 ## Spring

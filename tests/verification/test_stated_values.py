@@ -325,6 +325,7 @@ def test_a_critical_speed_does_not_define_the_speed(tmp_path: Path) -> None:
     assert one.correction.endswith("+ a g r = 0")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_square_of_an_abbreviation_is_no_special_case(tmp_path: Path) -> None:
     # the equation is compared near x = l as well, where most digits cancel
     text = r"""
@@ -356,7 +357,12 @@ def test_constraints_of_positions_can_be_substituted_into_a_lagrangian(tmp_path:
     (only,) = wrong(tmp_path, SUBSTITUTED.replace(r"\frac34", r"\frac54"))
     assert only.latex.startswith("L =")
     assert r"\frac{3}{4} m (b - a)^2" in only.correction
-    # one with all velocities keeps them
+
+
+@pytest.mark.long("the same Lagrangian with all velocities")
+def test_a_lagrangian_that_keeps_dependent_velocities_is_corrected_with_them(
+    tmp_path: Path,
+) -> None:
     whole = (
         r"$$L = \frac12 m (b - a)^2\dot\theta^2 + \frac12 m a^2\dot\psi^2"
         r" + m g (b - a)\cos\theta$$"
@@ -444,6 +450,7 @@ With one mass, $$20\ddot x + 5\dot x + 16 x = f(t)$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_letter_of_formulas_that_are_not_judged_is_no_parameter(tmp_path: Path) -> None:
     assert wrong(tmp_path, ONE_SPRING_LESS) == []
 

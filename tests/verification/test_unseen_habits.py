@@ -345,6 +345,7 @@ def test_letters_of_multipliers_can_be_moments_of_inertia(tmp_path: Path) -> Non
     assert found[1:3] == ["definition", "wrong"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_term_that_an_equation_lacks_can_be_a_load_without_a_meaning(tmp_path: Path) -> None:
     text = (
         TOP
@@ -373,6 +374,7 @@ def test_positions_of_one_part_do_not_state_the_system(tmp_path: Path) -> None:
     assert verdicts(tmp_path, BALANCED.replace("- g", "+ g"))[-1] == "wrong"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_tip_of_a_top_does_not_state_the_system(tmp_path: Path) -> None:
     text = r"""
 $$L = \frac12 I(\dot\phi^2\sin^2\theta + \dot\theta^2)
@@ -434,6 +436,7 @@ $$H = \frac{p^2}{2 m(1 + 4 a^4 x^2)} + m\left(g a^2 - \frac{\omega^2}{2}\right) 
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_any_axis_of_positions_can_be_the_vertical_one(tmp_path: Path) -> None:
     assert verdicts(tmp_path, PARABOLA) == [*["definition"] * 3, *["verified"] * 5]
     found = verdicts(tmp_path, PARABOLA.replace("(g a^2 - ", "(g a^2 + "))
@@ -600,6 +603,7 @@ def test_the_search_for_meanings_of_letters_ends(
     assert "wrong" not in verdicts(tmp_path, FALL)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_energies_in_coordinates_of_two_kinds_are_not_accused(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 m(\dot x^2 + \dot y^2 + \dot z^2)
@@ -691,6 +695,7 @@ $$v(t) = \frac{dx}{dt} = -x_m\omega_0\sin(\omega_0 t) = -0{,}40\sin(10 t)$$"""
     assert "wrong" not in verdicts(tmp_path, text)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_letter_of_friction_is_not_exchanged_for_another(tmp_path: Path) -> None:
     text = r"""The car obeys
 $$
@@ -907,6 +912,7 @@ $$(1 + 4 a^2 r^2)\ddot r + 4 a^2 r\dot r^2 = \frac{l^2}{m^2 r^3} - 2 g a r$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_that_contradict_a_lagrangian_together_are_not_wrong(tmp_path: Path) -> None:
     # the sign of the potential energy can be wrong instead
     assert "wrong" not in verdicts(tmp_path, PARABOLOID)
