@@ -110,6 +110,29 @@ $$V = - m g l\cos\theta$$ $$l\ddot\theta + \ddot x\cos\theta + g\sin\theta = 0$$
     assert judged(tmp_path, energies + force)[-1].verdict != "wrong"
 
 
+def test_the_force_of_a_rod_is_no_wrong_equation_of_the_cart(tmp_path: Path) -> None:
+    energies = r"""
+$$T=\frac12(M+m)\dot x^2+m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
+$$V = - m g l\cos\theta$$ $$L = T - V$$ The force of the rod is """
+    force = r"$$m\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F_{rod}$$"
+    assert judged(tmp_path, energies + force)[-1].verdict == "context"
+    whole = force.replace("m", "(M+m)", 1)
+    assert judged(tmp_path, energies + whole)[-1].verdict == "verified"
+    assert judged(tmp_path, energies + whole.replace("-", "+"))[-1].verdict == "wrong"
+    # another equation gives it the inertia of the cart
+    assert judged(tmp_path, energies + whole + force)[-1].verdict == "wrong"
+
+
+def test_a_stiffness_is_no_applied_force_and_a_moment_of_a_coordinate_is_one(
+    tmp_path: Path,
+) -> None:
+    energies = r"$$T = \frac12 m l^2\dot\theta^2$$ $$V = -m g l\cos\theta$$ $$L = T - V$$"
+    equation = r"$$m l^2\ddot\theta + m g l\sin\theta = M_\theta\cos\theta$$"
+    for letter, verdict in (("M_\\theta", "verified"), ("Q", "verified"), ("k", "context")):
+        formula = equation.replace("M_\\theta", letter)
+        assert judged(tmp_path, energies + formula)[-1].verdict == verdict
+
+
 BEAM = r"""
 $$L=\frac12(m+\frac{J}{R^2})\dot r^2+\frac12(m r^2+\frac13 M l^2)\dot\alpha^2-m g r\sin\alpha$$
 $$\frac{\partial L}{\partial r}=m r\dot\alpha^2-m g\sin\alpha$$

@@ -1,9 +1,8 @@
 """Verdicts on the formulas of a document whose letters are known."""
 
 import re
-from collections.abc import Collection, Sequence, Set
+from collections.abc import Collection, Sequence
 from contextlib import suppress
-from copy import copy
 from dataclasses import replace
 
 import sympy as sp
@@ -11,16 +10,15 @@ import sympy as sp
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
-from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
-from derive.verification.documents.formula_translation import FormulaText, order, stem
+from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
 from derive.verification.documents.rules.derived_matrices import DerivedMatrices
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
-from derive.verification.documents.rules.other_statements import OtherStatements
+from derive.verification.documents.rules.other_statements import AppliedLoads, OtherStatements
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
 from derive.verification.documents.rules.side_verdict import (
@@ -39,7 +37,6 @@ from derive.verification.documents.statements import (
     WORD,
     DocumentFormula,
     Occurrence,
-    without_unknown_terms,
 )
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
@@ -80,6 +77,7 @@ class Judge:
         self._comparison = SideComparison(namespace, linear, self._roles)
         self._frequencies = Frequencies(namespace, linear, self._roles)
         self._others = OtherStatements(namespace, self._frequencies)
+        self._loads = AppliedLoads(namespace, linear, self._comparison)
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
@@ -129,12 +127,12 @@ class Judge:
         unknown = self._unknown(formula.sides)
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
-        loads = unknown or self._own_load(formula)
-        if loads and self._is_equation_without(formula, loads):
+        loads = unknown or self._loads.own(formula)
+        if loads and self._loads.explain(formula, loads):
             return plain("verified", formula, f"with {', '.join(loads)} as applied forces")
         if unknown and self._amplitudes.holds(formula):
             return plain("verified", formula, "with the stated functions of time")
-        if loads and (result := self._beside_loads(formula, loads)) is not None:
+        if loads and self._is_stated and (result := self._loads.beside(formula, loads)) is not None:
             return result
         if unknown and self._others.relates_parameters(formula):
             return plain("definition", formula, "")
@@ -201,81 +199,6 @@ class Judge:
             numbers = all(not isinstance(one, sp.MatrixBase) for one in differences)
             return bool(others) and numbers and all(map(vanishes, differences))
         return False
-
-    def _is_equation_without(self, formula: DocumentFormula, unknown: Sequence[str]) -> bool:
-        """Whether a formula is an equation of motion but for terms with unknown letters."""
-        system, letters = self._namespace.derivation.system, self._namespace.letters
-        if {*unknown} & {*letters.multipliers}:  # all reactions would be correct
-            return False
-        if {*map(stem, unknown)} & letters.elsewhere:
-            return False
-        energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
-        if any({*unknown} & {*one.words} for one in energies):  # of which they are no loads
-            return False
-        known = without_unknown_terms(formula, unknown)
-        if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
-            return False
-        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-            left, right = (self._namespace.value(one.text) for one in known.sides)
-            symbols = sp.Tuple(left, right).free_symbols
-            if not symbols & {*system.qddot} or self._has_foreign_parameters(symbols):
-                return False
-            result = self._comparison.compared(known, *known.sides, left, right)
-            if result.verdict.verdict == "verified":
-                return True
-            # unknown letters can stand for the forces of other formulas, as f sin(θ) for F_x
-            own = {self._namespace.names.get(word) for word in formula.words}
-            loads = sp.Tuple(*system.forces).free_symbols & {*system.params} - own
-            if loads:
-                absent = dict.fromkeys(loads, sp.S.Zero)
-                forces = [force.xreplace(absent) for force in system.forces]
-                free = replace(self._model, derivation=Derivation(replace(system, forces=forces)))
-                return free.agreement(left - right) is not None
-        return False
-
-    def _own_load(self, formula: DocumentFormula) -> list[str]:
-        """The last side, if it is a load to which such an equation alone gives a value."""
-        last = formula.sides[-1].text
-        defining = self._namespace.defining.get(last, (None, ""))[0]
-        is_load = defining is not None and defining.sides[-1].text == last
-        is_equation = 2 in map(order, formula.words) or formula.sides[0].text.startswith("ddt(")
-        return [last] * (is_load and is_equation)
-
-    def _has_foreign_parameters(self, symbols: Set[sp.Symbol]) -> bool:
-        """Whether a formula has parameters that no equation with its accelerations has."""
-        derivation = self._namespace.derivation
-        moving = symbols & {*derivation.system.qddot}
-        equations = [one for one in derivation.euler_lagrange if one.has(*moving)]
-        own = symbols & {*derivation.system.params}
-        return not own <= sp.Tuple(*equations).free_symbols
-
-    def _beside_loads(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
-        """The verdict on an equation of motion in which a term beside loads is wrong.
-
-        For a term that is missing, the loads can stand. A load to which an equation gives a value
-        can be a force between bodies, if the inertia is another one.
-        """
-        has_reactions = {*unknown} & {*self._namespace.letters.multipliers}
-        if not self._is_stated or len(formula.sides) != 2 or has_reactions:
-            return None
-        if without_unknown_terms(formula, unknown) is None:
-            return None
-        namespace = copy(self._namespace)
-        namespace.correct(dict.fromkeys(unknown, sp.S.Zero))
-        roles = Roles(namespace, self._linear)
-        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-            left, right = (namespace.value(one.text) for one in formula.sides)
-            if depends_on(left - right, self._namespace.derivation.system.qddot):
-                result = SideComparison(namespace, self._linear, roles).compared(
-                    formula, *formula.sides, left, right
-                )
-                changes = [f"{one.wrong} {one.correct}" for one in result.verdict.corrections]
-                is_one = len(changes) == 1 and result.verdict.corrections[0].wrong != ""
-                words = WORD.findall(changes[0]) if is_one else unknown
-                is_inertia = 2 in map(order, words) and not self._unknown(formula.sides)
-                if {*words}.isdisjoint(unknown) and not is_inertia:
-                    return result
-        return None
 
     def _first_side(self, formula: DocumentFormula) -> SideVerdict | None:
         """The verdict on the first side if all others agree, so that it is the wrong one.

@@ -1,19 +1,30 @@
-"""Statements that do not hold for every motion, and are not wrong: relations, values, forces."""
+"""Statements that are not wrong though they differ from a system: relations, values, loads."""
 
 import re
+from collections.abc import Sequence, Set
 from contextlib import suppress
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
 
 import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
+from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
-from derive.verification.documents.formula_translation import order
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.document_system import is_length
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.rules.side_comparison import Frequencies
+from derive.verification.documents.rules.roles import Roles
+from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
-from derive.verification.documents.statements import SQUARE, DocumentFormula
+from derive.verification.documents.rules.small_motions import SmallMotions
+from derive.verification.documents.statements import (
+    SQUARE,
+    WORD,
+    DocumentFormula,
+    without_unknown_terms,
+)
 from derive.verification.judging.reference_system import depends_on
 
 #: Words of sentences about formulas that leave out terms, and about motions that have none.
@@ -22,6 +33,8 @@ SIMPLIFIED = re.compile(
     r"|without|at rest|zero (?:\w+ )?(?:velocity|momentum|speed)",
     re.IGNORECASE,
 )
+#: Kinds of parameters of which no applied force consists.
+CONSTANTS = ("mass", "length", "gravity", "stiffness", "inertia")
 #: Names of generalized forces, which nothing else in a document may state.
 GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
 
@@ -43,6 +56,9 @@ class OtherStatements:
             return plain("context", formula, "it states a generalized force")
         if self._is_foreign(formula):
             return plain("context", formula, "it has no parameter of the system")
+        if self._is_between_bodies(formula):
+            note = f"{formula.sides[-1].text} can be a force between bodies"
+            return plain("context", formula, note)
         if (other := self._with_an_energy(formula)) is not None:
             return other
         if self._is_place(formula):
@@ -61,6 +77,25 @@ class OtherStatements:
         is_equation = any(order(word) == 2 for word in formula.words)
         has_numbers = any(one.is_number for one in known)
         return is_equation and has_numbers and sp.Tuple(*known).free_symbols.isdisjoint(params)
+
+    def _is_between_bodies(self, formula: DocumentFormula) -> bool:
+        """Whether an equation gives a value to a force by the inertia of some bodies alone.
+
+        Nothing else contains the force, and without the masses that the equation lacks it holds.
+        """
+        derivation, last = self._namespace.derivation, formula.sides[-1].text
+        forces = sp.Tuple(*derivation.system.forces).free_symbols
+        is_single = sum(last in one.words for one in self._namespace.formulas) == 1
+        if not is_single or self._namespace.names.get(last) not in forces:
+            return False
+        with suppress(ExpressionError, TypeError):
+            left, right = (self._namespace.value(side.text) for side in formula.sides)
+            others = {*derivation.system.params} - sp.Tuple(left, right).free_symbols
+            absent = dict.fromkeys(others, sp.S.Zero)
+            rows = [row.xreplace(absent) for row in derivation.euler_lagrange]
+            is_zero = self._namespace.model.context.is_zero
+            return any(is_zero(row + sign * (left - right)) for row in rows for sign in (1, -1))
+        return False
 
     @cached_property
     def _ambiguous(self) -> set[str]:
@@ -167,6 +202,101 @@ class OtherStatements:
         with suppress(ExpressionError, NotImplementedError):
             result = self._frequencies.verdict(formula, name, formula.sides[-1], power)
             return result if result and result.verdict.verdict in CORRECT else None
+        return None
+
+
+class AppliedLoads:
+    """Letters of an equation of motion that stand for applied forces and moments."""
+
+    def __init__(
+        self, namespace: DocumentNamespace, linear: SmallMotions, comparison: SideComparison
+    ) -> None:
+        self._namespace, self._model, self._linear = namespace, namespace.model, linear
+        self._comparison = comparison
+
+    def own(self, formula: DocumentFormula) -> list[str]:
+        """The last side, if it is a load to which such an equation alone gives a value."""
+        last = formula.sides[-1].text
+        defining = self._namespace.defining.get(last, (None, ""))[0]
+        is_load = defining is not None and defining.sides[-1].text == last
+        is_equation = 2 in map(order, formula.words) or formula.sides[0].text.startswith("ddt(")
+        return [last] * (is_load and is_equation)
+
+    def explain(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
+        """Whether a formula is an equation of motion but for terms with these letters."""
+        system, letters = self._namespace.derivation.system, self._namespace.letters
+        if {*loads} & {*letters.multipliers}:  # all reactions would be correct
+            return False
+        if {*map(stem, loads)} & letters.elsewhere or self._are_constants(loads):
+            return False
+        energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
+        if any({*loads} & {*one.words} for one in energies):  # of which they are no loads
+            return False
+        known = without_unknown_terms(formula, loads)
+        if known is None or len(known.sides) != 2 or len(known.words) == len(formula.words):
+            return False
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            left, right = (self._namespace.value(one.text) for one in known.sides)
+            symbols = sp.Tuple(left, right).free_symbols
+            if not symbols & {*system.qddot} or self._has_foreign_parameters(symbols):
+                return False
+            result = self._comparison.compared(known, *known.sides, left, right)
+            if result.verdict.verdict == "verified":
+                return True
+            # these letters can stand for the forces of other formulas, as f sin(θ) for F_x
+            own = {self._namespace.names.get(word) for word in formula.words}
+            forces = sp.Tuple(*system.forces).free_symbols & {*system.params} - own
+            if forces:
+                absent = dict.fromkeys(forces, sp.S.Zero)
+                rest = [force.xreplace(absent) for force in system.forces]
+                free = replace(self._model, derivation=Derivation(replace(system, forces=rest)))
+                return free.agreement(left - right) is not None
+        return False
+
+    def _are_constants(self, loads: Sequence[str]) -> bool:
+        """Whether letters are those of masses, lengths or stiffnesses, and of no loads.
+
+        One with a coordinate as its index can be a load: the moment M_theta.
+        """
+        letters = self._namespace.letters
+        own = {one for kind in ("force", "damping") for one in letters.of_kind(kind)}
+        own |= {one for one in loads if one.partition("_")[2] in letters.coordinates}
+        return {*loads} <= {one for kind in CONSTANTS for one in letters.of_kind(kind)} - own
+
+    def _has_foreign_parameters(self, symbols: Set[sp.Symbol]) -> bool:
+        """Whether a formula has parameters that no equation with its accelerations has."""
+        derivation = self._namespace.derivation
+        moving = symbols & {*derivation.system.qddot}
+        equations = [one for one in derivation.euler_lagrange if one.has(*moving)]
+        own = symbols & {*derivation.system.params}
+        return not own <= sp.Tuple(*equations).free_symbols
+
+    def beside(self, formula: DocumentFormula, loads: Sequence[str]) -> SideVerdict | None:
+        """The verdict on an equation of motion in which a term beside loads is wrong.
+
+        For a term that is missing, the loads can stand. A load to which an equation gives a value
+        can be a force between bodies, if the inertia is another one.
+        """
+        has_reactions = {*loads} & {*self._namespace.letters.multipliers}
+        if len(formula.sides) != 2 or has_reactions:
+            return None
+        if without_unknown_terms(formula, loads) is None:
+            return None
+        namespace = copy(self._namespace)
+        namespace.correct(dict.fromkeys(loads, sp.S.Zero))
+        roles = Roles(namespace, self._linear)
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            left, right = (namespace.value(one.text) for one in formula.sides)
+            if depends_on(left - right, self._namespace.derivation.system.qddot):
+                result = SideComparison(namespace, self._linear, roles).compared(
+                    formula, *formula.sides, left, right
+                )
+                changes = [f"{one.wrong} {one.correct}" for one in result.verdict.corrections]
+                is_one = len(changes) == 1 and result.verdict.corrections[0].wrong != ""
+                words = WORD.findall(changes[0]) if is_one else loads
+                has_value = all(one in self._namespace.all_names for one in loads)
+                if {*words}.isdisjoint(loads) and not (has_value and 2 in map(order, words)):
+                    return result
         return None
 
 
