@@ -149,6 +149,19 @@ def test_a_lagrangian_with_a_lost_square_is_the_wrong_formula(tmp_path: Path) ->
     assert [*wrong_terms(tmp_path, text).values()] == [r"\frac13Ml", r"mr\dotr\dot\alpha"]
 
 
+def test_two_sides_of_a_chain_decide_about_the_third(tmp_path: Path) -> None:
+    """The Lagrangian alone states the system, and nothing else of it moves."""
+    text = r"""
+$$L = \frac\mu2(\dot r^2 + r^2\dot\phi^2) - V(r)$$ $$\ell = \mu r^2\dot\phi$$
+$$E = \frac\mu2(\dot r^2 + r^2\dot\phi^2) + V(r)
+= \frac\mu2\dot r^2 + \frac{\ell^2}{2\mu r^2} + V(r)$$"""
+    assert judged(tmp_path, text)[-1].verdict == "verified"
+    slip = text.replace("{2\\mu r^2}", "{\\mu r^2}")
+    assert [*wrong_terms(tmp_path, slip).values()] == [r"\frac{\ell^2}{\mur^2}"]
+    short = slip.replace(r"= \frac\mu2(\dot r^2 + r^2\dot\phi^2) + V(r)", "")
+    assert not wrong_terms(tmp_path, short)
+
+
 SEGWAY = r"""
 $$F=\frac{\tau_1+\tau_2}{r}$$
 $$T=\frac12 M\dot x^2+\frac12 m l\dot x\dot\theta\cos\theta+\frac12(I+m l^2)\dot\theta^2$$

@@ -156,3 +156,50 @@ def test_a_sum_over_coordinates_without_numbers_is_not_judged(tmp_path: Path) ->
     assert verdicts(tmp_path, force)[-1] == "verified"
     numbered = SUM.replace("A", r"\theta_1").replace("B", r"\theta_2")
     assert verdicts(tmp_path, numbered.replace("q_i", r"\theta_i"))[0] == "verified"
+
+
+ARM = r"""$$ r_1^0 = \begin{bmatrix} a\cos q_1 + b\cos(q_1 + q_2) \\ a\sin q_1 + b\sin(q_1 + q_2)
+\\ 0 \end{bmatrix} $$
+$$ \dot r_1^0 = \begin{bmatrix} -a\sin(q_1)\dot q_1 - b\sin(q_1 + q_2)(\dot q_1 + \dot q_2) \\
+a\cos(q_1)\dot q_1 + b\cos(q_1 + q_2)(\dot q_1 + \dot q_2) \\ 0 \end{bmatrix} $$
+$$ \|\dot r_1^0\|^2 = a^2\dot q_1^2 + b^2(\dot q_1 + \dot q_2)^2
++ 2 a b\cos(q_2)\dot q_1(\dot q_1 + \dot q_2) $$"""
+
+
+def test_columns_have_their_norms_and_their_rates_in_the_fixed_frame(tmp_path: Path) -> None:
+    """The angle q_1 drops out of the square of the velocity."""
+    assert verdicts(tmp_path, ARM) == ["definition", "verified", "verified"]
+    (tmp_path / "a.md").write_text(ARM.replace(r"\cos(q_2)", r"\sin(q_2)"), encoding="utf-8")
+    *_, last = judge_document(read_document(tmp_path / "a.md")).formulas
+    assert last.verdict == "wrong"
+    assert last.note.endswith("it contradicts the definition of r_1")
+    assert last.wrong_term == r"2 a b\sin(q_2)\dot q_1"
+    assert r"+ 2 a b \cos\left(q_2\right) \dot q_1" in last.correction
+    # nothing else confirms the column
+    alone = ARM.partition(r"$$ \dot r")
+    text = alone[0] + ARM[ARM.index(r"$$ \|") :].replace(r"\cos(q_2)", r"\sin(q_2)")
+    assert verdicts(tmp_path, text) == ["context", "context"]
+
+
+ENTRIES = r"""$$ D_{11} = I + 2 c\cos q_2 $$ $$ D_{12} = J + c\cos q_2 $$
+$$ \frac{\partial D_{11}}{\partial q_1} = 0 $$
+$$ \frac{\partial D_{11}}{\partial q_2} = -2 c\sin q_2 $$
+$$ \dot q_2 \frac{\partial D_{11}}{\partial q_2} = -2 c\sin(q_2) \dot q_2 $$
+$$ \dot q_1 \frac{\partial D_{12}}{\partial q_2} = -c\sin(q_2) \dot q_1 $$"""
+
+
+@pytest.mark.parametrize(("old", "new", "expected"), [
+    ("", "", ["definition"] * 2 + ["verified"] * 4),
+    # a definition that other formulas confirm
+    ("-2 c\\sin q_2", "2 c\\sin q_2",
+     ["definition"] * 2 + ["verified", "wrong"] + ["verified"] * 2),
+    # one that nothing confirms
+    ("-c", "c", ["definition", "context"] + ["verified"] * 3 + ["context"]),
+    # with a function of time, which a partial derivative by the time holds or not
+    ("-2 c\\sin(q_2) \\dot q_2", r"\frac{\partial D_{11}}{\partial t}",
+     ["definition"] * 2 + ["verified"] * 2 + ["context", "verified"]),
+])  # fmt: skip
+def test_partial_derivatives_are_those_of_definitions(
+    old: str, new: str, expected: list[str], tmp_path: Path
+) -> None:
+    assert verdicts(tmp_path, ENTRIES.replace(old, new) if old else ENTRIES) == expected

@@ -250,8 +250,13 @@ def with_differences(node: Any) -> Any:
 
 
 def with_labels(node: Any, names: Collection[str]) -> Any:
-    """A tree, or a tuple of trees, in which letters as exponents of some letters are indices."""
+    """A tree, or a tuple of trees, in which letters as exponents of some letters are indices.
+
+    An exponent 0 is that of the fixed frame, in which a vector has its components.
+    """
     match node:
+        case Power(base=Letter(name=name) as base, exponent=Number(digits="0")) if name != "e":
+            return replace(base, span=node.span)
         case Power(base=Letter() as base, exponent=Letter() as label) if base.name in names:
             index = "_".join(filter(None, (base.index, label.identifier)))
             return replace(base, index=index, span=node.span)

@@ -210,7 +210,8 @@ def _judge(
             waiting += [one for one in parted if len(one) < len(remaining)]
     understood = {place for place, (_, result) in results.items() if result.is_understood}
     left = {one for one in statements.formulas if one.occurrence not in understood}
-    follow = *general_verdicts(statements), *Identities(statements.formulas, left).verdicts()
+    identities = Identities(statements.formulas, statements.derivatives, left)
+    follow = *general_verdicts(statements), *identities.verdicts()
     results |= {one.occurrence: (one, result) for one, result in follow if one in left}
     note = without_meaning(hints)
     if work.left < 0:

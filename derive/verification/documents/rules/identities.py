@@ -5,17 +5,27 @@ of polar coordinates.
 """
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, Value, parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
-from derive.system.symbols import TIME
+from derive.mechanics.derivation import Derivation
+from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
+from derive.system.symbols import TIME, acceleration, velocity
+from derive.system.system import System
 from derive.verification.documents.formula_translation import RATES, order, stem
+from derive.verification.documents.letters.energies import StatedInertia
+from derive.verification.documents.numbers.numbers import Derivatives
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
+from derive.verification.judging.engine import joined
+from derive.verification.judging.reference_system import ReferenceSystem
+from derive.verification.quantity_verdicts import judge_formula
 
 #: Unit vectors of polar coordinates, along r and along an angle.
 UNIT = re.compile(r"(?:(?:e|ehat|u|uhat)_([a-zA-Z]+)|([a-zA-Z]+)hat)(?:_column)?\Z")
@@ -26,6 +36,8 @@ AXES = {"i": 0, "imath": 0, "x": 0, "j": 1, "jmath": 1, "y": 1, "k": 2, "z": 2}
 COMPONENT = re.compile(r"(\w+)_([a-zA-Z]+)\Z")
 #: Vectors that are rates of others.
 RATE_OF = {"v_column": "r_column", "a_column": "v_column", "vbar": "rbar", "abar": "vbar"}
+#: The name of the value that a side must have.
+REQUIRED = "required"
 #: What cannot be computed.
 ERRORS = (ExpressionError, NotImplementedError, TypeError, ValueError, IndexError)
 
@@ -34,9 +46,12 @@ class Identities:
     """The formulas of a document as identities in letters, which may be any functions of time."""
 
     def __init__(
-        self, formulas: Sequence[DocumentFormula], left: Collection[DocumentFormula]
+        self,
+        formulas: Sequence[DocumentFormula],
+        derivatives: Derivatives,
+        left: Collection[DocumentFormula],
     ) -> None:
-        self._formulas, self._left = formulas, left
+        self._formulas, self._derivatives, self._left = formulas, derivatives, left
         words = {word for one in formulas for word in one.words}
         self._moving = {stem(word) for word in words if order(word)}
         matches = {name: match for name in map(stem, words) if (match := UNIT.match(name))}
@@ -67,7 +82,7 @@ class Identities:
         A side is wrong if it has the letters of the side before it, and each name in both has a
         single definition, by which other formulas hold.
         """
-        confirmed, failed = set[str](), list[tuple[DocumentFormula, set[str]]]()
+        confirmed, failed = set[str](), list[tuple[DocumentFormula, set[str], int]]()
         defining: dict[str, list[DocumentFormula]] = {}
         verified: list[DocumentFormula] = []
         for formula in self._formulas:
@@ -76,8 +91,8 @@ class Identities:
             if results and all(holds for holds, _ in results):
                 confirmed |= {*used, formula.subject}
                 verified.append(formula)
-            elif any(holds is False for holds, _ in results):
-                failed.append((formula, used))
+            elif False in (kinds := [holds for holds, _ in results]):
+                failed.append((formula, used, kinds.index(False)))
             for name, text in definitions(formula):
                 is_place = formula.is_value and name in self._moving
                 if not order(name) and name not in WORD.findall(text) and not is_place:
@@ -85,7 +100,7 @@ class Identities:
                     own = defining.setdefault(name, [])
                     if formula not in own and (formula not in verified or not own):
                         own.append(formula)
-        wrong = [formula for formula, _ in failed]
+        wrong = [formula for formula, *_ in failed]
         defining = {name: [f for f in own if f not in wrong] for name, own in defining.items()}
         single = {name: own[0] for name, own in defining.items() if len(own) == 1}
         confirmed |= {*self._axes}
@@ -93,10 +108,47 @@ class Identities:
             yield single[name], plain("definition", single[name], "others follow from it")
         for formula in verified:
             yield formula, plain("verified", formula, "it follows whatever the motion is")
-        for formula, used in failed:
-            if used and used <= confirmed and used <= {*single, *self._values}:
-                note = f"it contradicts the definition of {', '.join(sorted(used))}"
-                yield formula, plain("wrong", formula, note)
+        for formula, used, number in failed:
+            defined = used - {*self._derivatives}
+            if used and used <= confirmed and defined <= {*single, *self._values}:
+                note = f"it contradicts the definition of {', '.join(sorted(defined))}"
+                yield formula, self._wrong(formula, number, note)
+
+    def _wrong(self, formula: DocumentFormula, number: int, note: str) -> SideVerdict:
+        """The verdict on a formula whose sides with this number and the next are not equal.
+
+        With a correction of the second one if it is no column.
+        """
+        result, side = plain("wrong", formula, note), formula.sides[number + 1]
+        with suppress(*ERRORS, SystemDefinitionError):
+            words = {*WORD.findall(side.text)} - {*FUNCTIONS}
+            names = {word: self._name(word, 0) for word in words}
+            names[REQUIRED] = self._value(formula.sides[number].text)
+            verdict = judge_formula(self._model(names), "", side.text, "value", REQUIRED)
+            if verdict.verdict == "wrong" and verdict.corrections:
+                verdict = replace(verdict, note=joined(verdict.note, note))
+                return SideVerdict(verdict, ((0, side),), "value")
+        return result
+
+    def _model(self, names: Mapping[str, Value]) -> ReferenceSystem:
+        """Names as those of a system that has the moving letters as coordinates."""
+        symbols = sorted(sp.Tuple(*names.values()).free_symbols, key=str)
+        moving = {stem(one.name) for one in symbols if stem(one.name) in self._moving}
+        q = {name: sp.Symbol(name, real=True) for name in sorted(moving)}
+        orders = (lambda one: one), velocity, acceleration
+        own = {
+            one: orders[order(one.name)](q[stem(one.name)])
+            for one in symbols
+            if stem(one.name) in moving
+        }
+        origin, inertia = (sp.S.Zero, sp.S.Zero), sp.ImmutableDenseMatrix(sp.eye(len(q)))
+        system = System(
+            "definitions", "Definitions", [Coordinate(one, "1", "a letter") for one in q.values()],
+            [Parameter(one, "1", 1.0, "a letter") for one in symbols if one not in own],
+            [StatedInertia(sp.S.One, origin, inertia)], gravity=origin,
+        )  # fmt: skip
+        values = {name: value.xreplace(own) for name, value in names.items()}
+        return ReferenceSystem(Derivation(system), values)
 
     def _compared(self, formula: DocumentFormula) -> Iterator[tuple[bool | None, set[str]]]:
         """Yield whether neighbouring sides are equal, and the names whose definitions they use.
@@ -106,19 +158,22 @@ class Identities:
         if {*formula.relations} - {"=", ":="}:
             return
         for one, other in zip(formula.sides, formula.sides[1:], strict=False):
-            words = {stem(w) for side in (one, other) for w in WORD.findall(side.text)}
-            used = words & {*self._values, *self._texts}
+            written = {w for side in (one, other) for w in WORD.findall(side.text)}
+            partial = {w: self._derivatives[w][0] for w in written if self._is_partial(w)}
+            words = {*map(stem, written - {*partial}), *partial.values()}
+            used = words & {*self._values, *self._texts} | {*partial}
             used |= {known for word in words if (known := self._column(word) or self._place(word))}
             texts = one.text, other.text
-            is_definition = any(text.isidentifier() and not order(text) for text in texts)
+            is_definition = any(
+                text.isidentifier() and not order(text) and text not in partial for text in texts
+            )
             holds: bool | None = None
             try:
                 left, right = map(self._value, texts)
                 is_zero = isinstance(left, sp.MatrixBase) and right == 0
                 rest = left if is_zero else left - right
                 holds = all(map(is_small, rest if isinstance(rest, sp.MatrixBase) else [rest]))
-                letters = (_reduced(one).free_symbols for one in (left, right))
-                if not holds and (not used or len({*map(frozenset, letters)}) > 1):
+                if not holds and (not used or _letters(left) != _letters(right)):
                     holds = None
             except ERRORS:
                 pass
@@ -128,7 +183,13 @@ class Identities:
                 yield holds, used
 
     def _value(self, text: str, depth: int = 0) -> Value:
-        functions = {**FUNCTIONS, "ddt": self._rate, "cross": lambda one, other: one.cross(other)}
+        functions = {
+            **FUNCTIONS,
+            "ddt": self._rate,
+            "cross": lambda one, other: one.cross(other),
+            "norm": lambda one: sp.sqrt(one.dot(one)),
+            "transpose": lambda one: one.T,
+        }
         words = {*WORD.findall(text)} - {*functions}
         return parse(text, {**functions, **{word: self._name(word, depth) for word in words}})
 
@@ -137,6 +198,9 @@ class Identities:
         name = stem(word)
         if depth > len(self._texts):
             raise ExpressionError("names define one another")
+        if self._is_partial(word):
+            operand, variables = self._derivatives[word]
+            return self._name(operand, depth + 1).diff(*map(self._symbol, variables))
         value = self._values.get(name)
         if value is None and name in self._texts and self._texts[name] != "0":
             value = self._value(self._texts[name], depth + 1)
@@ -153,6 +217,11 @@ class Identities:
         for _ in range(order(word)):
             value = self._rate(value)
         return value
+
+    def _is_partial(self, name: str) -> bool:
+        """Whether a name is a partial derivative of another that has a definition."""
+        operand, variables = self._derivatives.get(name, ("", ()))
+        return operand in self._texts and not {*map(stem, variables)} & {*self._texts, "t"}
 
     def _column(self, name: str) -> str:
         """The known vector of which a name is the component along a unit vector, or ""."""
@@ -178,6 +247,11 @@ class Identities:
         return result
 
 
-def _reduced(value: Value) -> Value:
-    """A column whose entries have no letters that drop out, as of a vector product."""
-    return value.applyfunc(sp.trigsimp) if isinstance(value, sp.MatrixBase) else value
+def _letters(value: Value) -> set[sp.Symbol]:
+    """The letters on which a value depends, without those that drop out."""
+    entries = [*value] if isinstance(value, sp.MatrixBase) else [value]
+    return {
+        letter
+        for letter in value.free_symbols
+        if not all(is_small(one.diff(letter)) for one in entries)
+    }

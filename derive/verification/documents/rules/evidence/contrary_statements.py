@@ -81,8 +81,8 @@ class ContraryStatements:
     def _one_energy(self, number: int) -> int | None:
         """The line of the one energy that states the system, if no motion supports it.
 
-        Against another energy, a formula of motions supports it; against several equations of
-        motion, one of these that holds, or a frequency.
+        Against another energy, a formula of motions supports it, or another side of its chain;
+        against several equations of motion, one of these that holds, or a frequency.
         """
         stating = [*self._candidate.stating]
         if self._candidate.basis != "energies" or len(stating) != 1:
@@ -100,10 +100,18 @@ class ContraryStatements:
             is_supported = any(order(one.subject) for one in held) or any(
                 order(word) == 2 or DERIVATIVE.match(word) for word in words
             )
+            is_supported = is_supported or self._has_another_side(number)
         else:
             is_supported = number not in equations or len(equations) == 1 or frequencies
             is_supported = is_supported or any(equations.values())
         return None if is_supported else self._lines[stating[0]]
+
+    def _has_another_side(self, number: int) -> bool:
+        """Whether a side of a wrong chain that moves is another than the wrong one."""
+        formula, result = self._results[number]
+        wrong = {side for _, side in result.parts}
+        others = (one.text for one in formula.sides[1:] if one not in wrong)
+        return any(map(order, WORD.findall(" ".join(others))))
 
     def _lone_energy(self, number: int) -> int | None:
         """The line of a stated energy if other equations contradict it, and none confirms a term.
@@ -133,25 +141,34 @@ class ContraryStatements:
         lines = (self._lines[k] for k in stating if own & {*self._results[k][0].words})
         return min(lines, default=None) if is_contradicted and not is_confirmed else None
 
-    @cached_property
-    def has_cases(self) -> bool:
-        """Whether an energy is stated again, with other equations, as for another case.
+    def can_be_of_another_case(self, number: int) -> bool:
+        """Whether an energy is stated again between the stated system and a formula."""
+        held = (k for k, (_, one) in enumerate(self._results) if one.verdict.verdict in HOLDING)
+        first = min(self._candidate.stating, default=next(held, 0))
+        return any(first < k <= number or number <= k < first for k in self._cases)
 
-        Not if most formulas after it hold.
+    @cached_property
+    def _cases(self) -> list[int]:
+        """Energies that are stated again, with other equations, as for another case.
+
+        Not if most formulas after one hold.
         """
-        if len(self._support.wrong) < 2:
-            return False
+        if len(self._support.wrong) < 2 or self._candidate.basis not in ("energies", "catalogue"):
+            return []
         stating = self._candidate.stating
         held = {
             formula.subject
             for k, (formula, one) in enumerate(self._results)
             if k in stating or one.verdict.verdict in HOLDING
         }
-        return self._candidate.basis in ("energies", "catalogue") and any(
-            one.verdict.verdict == "wrong" and one.kind in OF_ENERGIES and formula.subject in held
+        return [
+            k
             for k, (formula, one) in enumerate(self._results)
+            if one.verdict.verdict == "wrong"
+            and one.kind in OF_ENERGIES
+            and formula.subject in held
             if k not in stating and formula.subject and not self._holds_after(k)
-        )
+        ]
 
     def _holds_after(self, number: int) -> bool:
         """Whether most formulas on the motion hold that follow a formula."""

@@ -78,7 +78,8 @@ def weighed(
     A formula is wrong by a system that the user states, or that follows from positions or energies
     in the document. It is not if other formulas of the document fit the rest as well and agree with
     it, in which case neither these nor what holds with them alone is verified; nor if one of
-    several wrong ones is an energy that is stated correctly elsewhere, as for another case; nor if
+    several wrong ones, between it and the stated system, is an energy that is stated correctly
+    elsewhere, as for another case; nor if
     it has the index of a further Lagrangian, as of L_small; nor if it is the rate of a position
     that a system of energies or equations does not contain; nor if it gives a name a number, as in
     an example. One slip must explain it, or all others must hold, but for a few. A system that is
@@ -170,7 +171,7 @@ class _Evidence:
             return opposed(self._unused[formula.subject])
         if number in self._undecided:
             return f"it contradicts the stated friction: {UNDECIDED}"
-        if not self._is_stated and self._contrary.has_cases:
+        if not self._is_stated and self._contrary.can_be_of_another_case(number):
             return other_case
         if self._is_known and self._is_repeated(number):
             return other_case
