@@ -149,6 +149,21 @@ def test_a_lagrangian_with_a_lost_square_is_the_wrong_formula(tmp_path: Path) ->
     assert [*wrong_terms(tmp_path, text).values()] == [r"\frac13Ml", r"mr\dotr\dot\alpha"]
 
 
+#: A spherical pendulum, and at the end its Hamiltonian with gravity in the other direction.
+TURNED = r"""
+$$L = \frac12 m r^2(\dot\theta^2+\dot\phi^2\sin^2\theta) - m g r\cos\theta$$
+$$p_\theta = m r^2\dot\theta$$ $$p_\phi = m r^2\sin\theta\,\dot\phi$$
+$$H = \frac{p_\theta^2}{2 m r^2}+\frac{p_\phi^2}{2 m r^2\sin^2\theta} + m g r\cos\theta$$
+$$\dot\phi = \frac{p_\phi}{m r^2\sin^2\theta}$$
+$$H = \frac{p_\theta^2}{2 m r^2}+\frac{p_\phi^2}{2 m r^2\sin^2\theta} - m g r\cos\theta$$
+"""
+
+
+def test_formulas_before_an_energy_of_another_case_are_not_of_this_case(tmp_path: Path) -> None:
+    found = [one.verdict for one in judged(tmp_path, TURNED)]
+    assert found == ["definition", "verified", "wrong", "verified", "verified", "context"]
+
+
 def test_two_sides_of_a_chain_decide_about_the_third(tmp_path: Path) -> None:
     """The Lagrangian alone states the system, and nothing else of it moves."""
     text = r"""

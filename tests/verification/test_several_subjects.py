@@ -314,3 +314,29 @@ def test_cases_with_positions_of_their_own_are_systems(tmp_path: Path) -> None:
     slip = judged(tmp_path, text)
     assert [one.verdict for one in slip].count("wrong") == 1
     assert slip[-1].verdict == "wrong"
+
+
+MODES = r"""
+## Energies
+$$L = \frac12 m(\dot x_1^2 + \dot x_2^2 + \dot x_3^2)
+ - \frac12 k\left[x_1^2 + x_2^2 + \left(x_3 - \tfrac12(x_1 + x_2)\right)^2\right]$$
+## Equations of motion
+$$m\ddot x_1 = -\frac14 k(5 x_1 + x_2 - 2 x_3)$$
+$$m\ddot x_2 = -\frac14 k(x_1 + 5 x_2 - 2 x_3)$$
+$$m\ddot x_3 = -\frac12 k(-x_1 - x_2 + 2 x_3)$$
+## A rotation
+$$x_1 = a\theta$$ $$x_2 = -a\theta$$
+$$2 m a^2\ddot\theta = -2 k a^2\theta$$
+"""
+
+
+def test_a_section_is_judged_by_the_energies_before_it(tmp_path: Path) -> None:
+    def first(text: str) -> list[str]:
+        return [one.verdict for one in judged(tmp_path, text)[:4]]
+
+    assert first(MODES) == ["definition"] + ["verified"] * 3
+    slip = MODES.replace("5 x_2 - 2", "5 x_2 + 2")
+    assert first(slip) == ["definition", "verified", "wrong", "verified"]
+    # energies behind the equations are those of another system
+    head, energies, equations, rest = slip.split("## ")
+    assert "wrong" not in first("## ".join([head, equations, energies, rest]))

@@ -1,7 +1,7 @@
 """Verdicts on all formulas of a document, from its displays alone."""
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -20,6 +20,7 @@ from derive.verification.documents.formula_translation import (
     RATES,
     FormulaTranslator,
     UntranslatableError,
+    order,
     stem,
 )
 from derive.verification.documents.letter_meanings import (
@@ -65,6 +66,7 @@ from derive.verification.documents.rules.identities import Identities
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.statements import (
     IMPLIED,
+    POINT,
     DocumentFormula,
     Occurrence,
     Translated,
@@ -169,8 +171,12 @@ def _judge(
         remaining, count, moving = waiting.pop(0), 0, set[str]()
         while remaining and count < (1 if hints else MAX_SYSTEMS):
             count += 1
-            part = replace(statements, formulas=remaining)
-            found = interpretation(part, hints, work, moving)
+            found = interpretation(replace(statements, formulas=remaining), hints, work, moving)
+            open_ones = (one for one in statements.formulas if one.occurrence not in results)
+            if found.match is None and (more := _with_stating(open_ones, remaining, statements)):
+                beside = interpretation(replace(statements, formulas=more), hints, work, moving)
+                if beside.match and beside.match.candidate.basis != "catalogue":
+                    found, remaining = beside, more
             if found.match is None:
                 if found.contradictions.lost_dots:
                     formula = remaining[found.contradictions.inhomogeneous or 0]
@@ -234,6 +240,25 @@ def _judge(
     return DocumentVerdicts(
         document.file, document.kind, system, tuple(ordered), notes, meanings, tuple(others)
     )
+
+
+def _with_stating(
+    others: Iterable[DocumentFormula], formulas: Formulas, statements: Translated
+) -> Formulas:
+    """Formulas of a section with energies and positions in their coordinates before it.
+
+    Nothing if there are none.
+    """
+    own = {*letters_of(formulas, statements.derivatives).coordinates}
+    before = [one for one in others if one.occurrence.start < formulas[0].occurrence.start]
+    quantities = letters_of(before, statements.derivatives).quantities
+    stating = []
+    for one in before:
+        rates = {stem(word) for word in one.words if order(word)}
+        is_energy = one.subject in quantities and rates and rates <= own
+        if is_energy or (POINT.match(one.subject) and own & {*one.words} and not rates):
+            stating.append(one)
+    return (*stating, *formulas) if stating else ()
 
 
 def _reasons(found: Interpretation, formulas: Formulas) -> Iterator[tuple[int, str]]:
