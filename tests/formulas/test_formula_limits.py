@@ -66,6 +66,7 @@ def chain(rule: str, length: int = 40) -> str:
     ("*".join(["[[x, k], [k, x]]"] * 50), "is out of bounds"),
     (f"[[{'x], [' * 100}x]]*[[{'x, ' * 100}x]]", "a product of matrices has some .* operands"),
     ("sin(sqrt(-1))*x", "I is not a real number"),
+    ("(1 + sqrt(-1))**(1/2)*x", "1 [+] I is not a real number"),
     (nested(20, "log", "2"), "is not a real number"),
 ])  # fmt: skip
 def test_formulas_beyond_the_limits_are_refused(formula: str, message: str) -> None:

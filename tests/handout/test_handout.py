@@ -197,6 +197,20 @@ def test_tables_repeat_their_heads_on_every_page(documents) -> None:
     assert "coordinate & unit & meaning \\\\\n\\hline\n\\endhead\n$\\theta_1$ & rad &" in text
 
 
+@pytest.mark.parametrize(("name", "words"), [
+    ("spherical_pendulum", "The momentum `p_phi` of the cyclic coordinate `phi` is constant."),
+    ("heavy_top", "of the cyclic coordinates are constant."),
+])  # fmt: skip
+def test_cyclic_coordinates_are_one_or_several(documents, name: str, words: str) -> None:
+    paragraphs = [
+        block.text
+        for section in documents(name).sections
+        for block in section.blocks
+        if isinstance(block, Paragraph)
+    ]
+    assert any(words in text for text in paragraphs)
+
+
 @needs_latex
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["blank", "mistakes"])

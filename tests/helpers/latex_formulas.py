@@ -148,6 +148,8 @@ mcos^2{\theta}  ⟶  m cos(theta)^2
 \text{sgn}\,\,\,\,\,\,\,\,\,\,\,\, \dot q  ⟶  sign(q.)
 \mathrm{sin}\,\theta  ⟶  sin(theta)
 \ln\left|x\right|  ⟶  log(|x|)
+y = a + ln x  ⟶  y = (a + log(x))
+y = aln x  ⟶  y = a l n x
 \exp(-t/\tau)  ⟶  exp(- [t / tau])
 \det(A)  ⟶  det(A)
 \det\mathbf{M}  ⟶  det(bold M)
@@ -243,6 +245,8 @@ dL/dx  ⟶  d(L; x)
 d^2x/dt^2  ⟶  d(x; t, t)
 m d\theta/dt  ⟶  m d(theta; t)
 \partial L/\partial\dot q - x  ⟶  (∂(L; q.) - x)
+k = \partial^2 L/\partial x\,\partial y  ⟶  k = ∂(L; x, y)
+k = \partial^2 L/\partial x^2 y  ⟶  k = ∂(L; x, x) y
 \dv{t}\left(\pdv{L}{\dot q}\right) + \dv[2]{x}{t}  ⟶  (d(∂(L; q.); t) + d(x; t, t))
 \pdv{L}{x}{y}  ⟶  ∂(L; x, y)
 \frac{d}{l}  ⟶  [d / l]

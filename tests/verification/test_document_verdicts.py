@@ -257,6 +257,11 @@ $$x = l\sin\theta,\quad y = -l\cos\theta$$
     notes = [(one.line, one.note) for one in document.formulas if one.verdict == "wrong"]
     follows = "it follows from line 2"
     assert notes == [(2, ""), (3, follows), (4, follows), (5, follows), (6, "")]
+    # a wrong momentum between them is no source
+    between = text.replace("\n$$L", "\n$$p_\\theta = 2 m l^2\\dot\\theta$$\n$$L")
+    document = judged(tmp_path, between)
+    notes = [(one.line, one.note) for one in document.formulas if one.verdict == "wrong"]
+    assert notes == [(2, ""), (3, ""), (4, follows), (5, follows), (6, follows), (7, "")]
 
 
 HOOP = r"""

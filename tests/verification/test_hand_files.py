@@ -67,6 +67,19 @@ def test_a_word_of_python_can_be_a_name(name: str, tmp_path: Path) -> None:
     assert [one.wrong for one in wrong.corrections] == [f"g*sin({name})"]
 
 
+def test_source_and_note_of_a_derivation_are_printed_before_its_verdicts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = f'{PENDULUM}source = "A book, page 7"\nnote = "its angle is from hanging"\n'
+    written(tmp_path, f'{text}euler_lagrange = ["{RIGHT} = 0"]\n')
+    assert main(["verify", "page.toml"]) == 0
+    first, second, third, *_ = capsys.readouterr().out.splitlines()
+    assert first == "page.toml: single_pendulum: A book, page 7"
+    assert second == "its angle is from hanging"
+    assert "verified" in third
+
+
 def test_a_greek_letter_has_one_name_in_all_its_shapes(tmp_path: Path) -> None:
     text = f'{PENDULUM}momenta = {{ "#" = "m*l**2*#_dot" }}\nnames = {{ "#" = "theta" }}'
     (equation,) = judge(written(tmp_path, text.replace("#", "\u03d5"))).equations

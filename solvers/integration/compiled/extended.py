@@ -174,7 +174,7 @@ def integrate_extended(
     loop, samples = kernel(module, precision), np.ascontiguousarray(times, dtype=float)
     begin, end = float(samples[0]), float(samples[-1])
     size = len(module.STATE)
-    rows, numbers = np.empty((len(samples), size)), np.zeros(4 + size)
+    rows, numbers = np.empty((len(samples), size)), np.zeros(1 + size)
     kept = np.zeros(len(integrals(module)))  # values that C sets
     start, values = _parts(loop.form, y0), np.array([*params, *kept], dtype=float)
     signs = np.random.default_rng(perturbation).choice([-CHANGE, CHANGE], len(start) + len(values))
@@ -192,7 +192,7 @@ def integrate_extended(
         status = STATUSES[code]
         loop.progress(motion, numbers.ctypes.data)
         progress(float(numbers[0]))
-        t, y = float(numbers[0]), numbers[4:]
+        t, y = float(numbers[0]), numbers[1:]
         if status is Status.SINGULAR:
             near = distance_from_singularity(module, params, y.tolist(), t) <= NEAR
             status = status if near else None  # steps are short for another reason

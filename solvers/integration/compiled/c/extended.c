@@ -190,22 +190,18 @@ int64_t extended_advance(
                 motion->h *= factor;
             }
         } else {
-            motion->rejected++;
             motion->h = (lower)h*(factor ? -factor : 0.25);
         }
     }
 }
 
-/* Time, samples, steps and rejected steps so far, and the ordinary state. */
+/* The time, and the ordinary state. */
 void extended_progress(const Motion *motion, double *numbers)
 {
     for (int k = 0; k < ORDINARY; k++) {
-        numbers[4 + k] = (double)motion->y[COLUMN[k]];
+        numbers[1 + k] = (double)motion->y[COLUMN[k]];
     }
     numbers[0] = (double)motion->t;
-    numbers[1] = (double)motion->rows;
-    numbers[2] = motion->steps;
-    numbers[3] = motion->rejected;
 }
 
 /* One step with arbitrary numbers, in a process of its own before a new library is used. */

@@ -20,7 +20,7 @@ typedef struct {
     real params[PARAMETERS + 1], params_low[PARAMETERS + 1];
     Polynomial polynomial;          /* of the last step */
     lower h, last_h, longest;       /* lengths of the next, the last and the longest step */
-    double steps, rejected;
+    double steps;
     int64_t rows;                   /* samples written */
 } Motion;
 
