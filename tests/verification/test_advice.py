@@ -15,9 +15,11 @@ from formula_truth import formulas, is_right
 
 from derive import Derivation, load
 from derive.reading.document_formats import read_document
+from derive.verification.corrections import advice
 from derive.verification.corrections.advice import MAX_LENGTH
 from derive.verification.documents.judgement import judge_document
 from derive.verification.hand_derivation_files import judge
+from derive.verification.judging import terms
 from derive.verification.judging.reference_system import ReferenceSystem
 from derive.verification.judging.verdict import Verdict
 from derive.verification.quantity_verdicts import judge_formula
@@ -364,3 +366,15 @@ def solutions(equations: list[str]) -> dict[sp.Symbol, sp.Expr]:
     rates = [names[word] for word in sorted(words) if word.endswith("dot")]
     (solution,) = sp.linsolve(residuals, rates)
     return {rate: sp.simplify(value) for rate, value in zip(rates, solution, strict=True)}
+
+
+def test_long_equations_of_motion_are_no_correct_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fractions of 1,000 operations take minutes to cancel."""
+    text = "m*l**2*theta_ddot - m*g*l*sin(theta) = 0"
+    assert judged("single_pendulum", "euler_lagrange", "", text).corrections
+    monkeypatch.setattr(advice, "MAX_OPERATIONS", 5)
+    cancelled: list[sp.Expr] = []
+    monkeypatch.setattr(terms, "coefficients", lambda *one: cancelled.append(one) or {})
+    monkeypatch.setattr(advice, "coefficients", lambda one, _: cancelled.append(one) or {})
+    assert judged("single_pendulum", "euler_lagrange", "", text).verdict == "wrong"
+    assert len(cancelled) == 0

@@ -402,3 +402,38 @@ $$(m\ddot x+\frac23 k x)\dot x=0$$ $$m\ddot x+\frac23 k x=0$$"""
     assert not wrong_terms(tmp_path, text)
     slip = text.partition("For a cylinder")[0] + r"$$m\ddot x+\frac23 k x=0$$"
     assert [*wrong_terms(tmp_path, slip).values()] == [r"\frac23kx"]
+
+
+def test_an_equation_of_velocities_can_hold_for_some_constants_of_the_motion(
+    tmp_path: Path,
+) -> None:
+    text = r"""
+$$T=\frac A2(\dot\theta^2+\dot\phi^2\sin^2\theta)+\frac C2(\dot\psi+\dot\phi\cos\theta)^2$$
+$$V=m g l\cos\theta$$ $$N=C(\dot\psi+\dot\phi\cos\theta)$$
+$$p_\phi=A\dot\phi\sin^2\theta+N\cos\theta$$ $$E = T + V$$
+$$\frac A2\dot\theta^2=(1-\cos\theta)\left(m g l-\frac{N^2}{2A(1+\cos\theta)}\right)$$"""
+    *_, last = judged(tmp_path, text)
+    assert (last.verdict, last.note) == ("context", "it can hold for some constants of the motion")
+
+
+def test_a_momentum_of_another_coordinate_is_not_wrong(tmp_path: Path) -> None:
+    """On a helix z is R*theta, and p is the momentum of z."""
+    text = r"""
+$$x = r\cos\theta$$ $$y = r\sin\theta$$ $$z = R\theta$$ $$\dot z = R\dot\theta$$
+$$T = \frac12 m(r^2\dot\theta^2 + \dot z^2)$$ $$V = m g z$$
+$$p = \frac{\partial L}{\partial\dot z} = m\dot z(1 + \frac{r^2}{R^2})$$"""
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
+
+
+def test_a_potential_energy_can_stand_beside_another_part(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac{m l^2}{2}(\dot\theta_1^2 + \dot\theta_2^2)$$
+$$V = \frac{m g l}{2}(\theta_1^2 + \theta_2^2)$$
+$$V_{coupling} = \frac k2\frac{l^2}{4}(\theta_2 - \theta_1)^2$$
+$$L = \frac{m l^2}{2}(\dot\theta_1^2 + \dot\theta_2^2) - \frac12\left(m g l(\theta_1^2 + \theta_2^2)
++ k\frac{l^2}{4}(\theta_2 - \theta_1)^2\right)$$
+$$m l^2\ddot\theta_1 + m g l\theta_1 - k\frac{l^2}{4}(\theta_2 - \theta_1) = 0$$"""
+    verdicts = {one.latex.strip()[:2]: one for one in judged(tmp_path, text)}
+    assert verdicts["V "].note == "without V_coupling"
+    slip = text.replace(r"\frac{m g l}{2}(\theta_1^2 +", r"\frac{m g l}{2}(\theta_1^2 -")
+    assert "without" not in [one.note for one in judged(tmp_path, slip)][1]

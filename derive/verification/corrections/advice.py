@@ -172,7 +172,7 @@ def _all_terms(
 
 
 def _correct_form(model: ReferenceSystem, kind: str, name: str, value: sp.Expr) -> sp.Expr | None:
-    """The correct form of a formula; None if it requires a large inverse."""
+    """The correct form of a formula; None if it requires a large inverse, or is too long."""
     if kind == "euler_lagrange":
         return _closest_equation(value, model)
     return printed_formula(model, kind, name)
@@ -189,9 +189,15 @@ def _state(
     return ", ".join(f"{name} = {number}" for name, number in numbers.items())
 
 
-def _closest_equation(value: sp.Expr, model: ReferenceSystem) -> sp.Expr:
-    """The derived equation of motion, times a factor, from which a wrong one differs least."""
-    system, equations = model.derivation.system, model.derivation.euler_lagrange
+def _closest_equation(value: sp.Expr, model: ReferenceSystem) -> sp.Expr | None:
+    """The derived equation of motion, times a factor, from which a wrong one differs least.
+
+    Long equations, of which fractions take minutes to cancel, are left out.
+    """
+    system, every = model.derivation.system, model.derivation.euler_lagrange
+    equations = [one for one in every if one.count_ops() <= MAX_OPERATIONS]
+    if not equations:
+        return None
     state = variables(system)
     printed = coefficients(value, state)
     factors = [closest_factor(printed, coefficients(e, state), system.qddot) for e in equations]

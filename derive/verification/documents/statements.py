@@ -140,13 +140,17 @@ class DocumentFormula:
         return first if is_equation and first.isidentifier() else ""
 
 
+#: Names such as ``dL_dtheta``, with the operand and the variables.
+Derivatives = Mapping[str, tuple[str, tuple[str, ...]]]
+
+
 @dataclass(frozen=True)
 class Translated:
     """All statements of a document, those without a translation, and the derivatives in them."""
 
     formulas: tuple[DocumentFormula, ...]
     failures: tuple[tuple[Occurrence, str], ...]
-    derivatives: Mapping[str, tuple[str, tuple[str, ...]]]
+    derivatives: Derivatives
 
 
 def translated(occurrences: Sequence[Occurrence]) -> Translated:

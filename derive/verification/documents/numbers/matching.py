@@ -20,8 +20,12 @@ from derive.verification.documents.numbers.candidate_motions import (
     ArbitraryMotion,
     CandidateMotions,
 )
-from derive.verification.documents.numbers.numbers import Derivatives, Numbers, Votes
-from derive.verification.documents.statements import DocumentFormula, without_unknown_terms
+from derive.verification.documents.numbers.numbers import Numbers, Votes
+from derive.verification.documents.statements import (
+    Derivatives,
+    DocumentFormula,
+    without_unknown_terms,
+)
 
 #: The worth of a formula that holds but for one term.
 NEARLY = 0.5

@@ -1,6 +1,6 @@
 """Values of the names of a document for several meanings of its letters, in numbers."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -24,6 +24,7 @@ from derive.verification.documents.numbers.candidate_motions import (
 from derive.verification.documents.numbers.single_mistakes import is_near
 from derive.verification.documents.statements import (
     EQUALITIES,
+    Derivatives,
     DocumentFormula,
     definitions,
     values_last,
@@ -35,8 +36,6 @@ CLOSE, DIGITS = 1e-7, 6
 #: Rounds in which definitions are sought: a name can be defined after its use.
 ROUNDS = 3
 
-#: Names such as ``dL_dtheta``, with the operand and the variables.
-Derivatives = Mapping[str, tuple[str, tuple[str, ...]]]
 Votes = NDArray[np.bool_]
 
 

@@ -20,9 +20,13 @@ from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
 from derive.verification.documents.formula_translation import RATES, order, stem
 from derive.verification.documents.letters.energies import StatedInertia
-from derive.verification.documents.numbers.numbers import Derivatives
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
-from derive.verification.documents.statements import WORD, DocumentFormula, definitions
+from derive.verification.documents.statements import (
+    WORD,
+    Derivatives,
+    DocumentFormula,
+    definitions,
+)
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import ReferenceSystem
 from derive.verification.quantity_verdicts import judge_formula

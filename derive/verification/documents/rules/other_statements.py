@@ -14,6 +14,7 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.document_system import is_length
+from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
@@ -56,6 +57,12 @@ class OtherStatements:
             return plain("context", formula, "it states a generalized force")
         if self._is_foreign(formula):
             return plain("context", formula, "it has no parameter of the system")
+        if parts := self._other_parts(formula):
+            return plain("verified", formula, f"without {', '.join(parts)}")
+        if self._is_first_integral(formula):
+            return plain("context", formula, "it can hold for some constants of the motion")
+        if variable := self._other_variable(formula):
+            return plain("context", formula, f"it is the momentum of {variable}")
         if self._is_between_bodies(formula):
             note = f"{formula.sides[-1].text} can be a force between bodies"
             return plain("context", formula, note)
@@ -77,6 +84,46 @@ class OtherStatements:
         is_equation = any(order(word) == 2 for word in formula.words)
         has_numbers = any(one.is_number for one in known)
         return is_equation and has_numbers and sp.Tuple(*known).free_symbols.isdisjoint(params)
+
+    def _other_parts(self, formula: DocumentFormula) -> list[str]:
+        """The names of partial potential energies, with which a stated one is the whole."""
+        if self._namespace.letters.quantities.get(formula.subject) != "potential_energy":
+            return []
+        names, defining = self._namespace.names, self._namespace.defining
+        parts = [one for one in defining if energy_of_part(one) == "potential_energy"]
+        with suppress(ExpressionError, TypeError):
+            value = self._namespace.value(formula.sides[-1].text)
+            rest = self._namespace.derivation.potential_energy - value
+            missing = rest - sp.Add(*(names[one] for one in parts))
+            if parts and self._namespace.model.context.is_zero(missing):
+                return parts
+        return []
+
+    def _is_first_integral(self, formula: DocumentFormula) -> bool:
+        """Whether an equation of velocities can hold along some motions.
+
+        It follows from no definition: its first side has coordinates and their rates alone.
+        """
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        first = formula.sides[0]
+        values = [names[word] for word in WORD.findall(first.text) if word in names]
+        own = [one for one in values if isinstance(one, sp.Expr)]
+        if first.text.isidentifier() or not {*own} <= {*system.q, *system.qdot, *system.params}:
+            return False
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            left, *rest = (self._namespace.value(one.text) for one in formula.sides)
+            is_moving = bool({*own} & {*system.qdot}) and len(rest) == 1
+            return is_moving and not depends_on(left - rest[0], system.qddot)
+        return False
+
+    def _other_variable(self, formula: DocumentFormula) -> str:
+        """The coordinate by whose rate a side of a momentum of another one is a derivative."""
+        own = self._namespace.letters.momenta.get(formula.subject)
+        for word in formula.words if own else ():
+            _, variables = self._namespace.derivatives.get(word, ("", ()))
+            if len(variables) == 1 and order(variables[0]) == 1 and stem(variables[0]) != own:
+                return stem(variables[0])
+        return ""
 
     def _is_between_bodies(self, formula: DocumentFormula) -> bool:
         """Whether an equation gives a value to a force by the inertia of some bodies alone.
