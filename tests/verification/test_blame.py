@@ -131,6 +131,9 @@ def test_a_stiffness_is_no_applied_force_and_a_moment_of_a_coordinate_is_one(
     for letter, verdict in (("M_\\theta", "verified"), ("Q", "verified"), ("k", "context")):
         formula = equation.replace("M_\\theta", letter)
         assert judged(tmp_path, energies + formula)[-1].verdict == verdict
+    # nor is a moment of inertia, beside a force
+    formula = equation.replace("m l^2", "(m l^2 - 2 J_m)").replace("M_\\theta", "Q")
+    assert judged(tmp_path, energies + formula)[-1].verdict == "context"
 
 
 BEAM = r"""
@@ -170,6 +173,9 @@ $$V = M g l\cos\theta$$ $$L = T - V$$
 $$p_\phi = I_1\dot\phi\sin^2\theta + I_3(\dot\psi+\dot\phi\cos\theta)\cos\theta$$
 $$p_\psi = I_3(\dot\psi+\dot\phi\cos\theta)$$ $$p_\psi = I_3\omega_3$$ It precesses steadily with
 $$\dot\phi = \Omega$$ $$\dot\theta = 0$$ $$\dot\psi = \dot\psi_0$$ $$p_\psi = I_3 n$$
+$$I_1\Omega^2\sin\theta\cos\theta + I_3(\dot\psi_0 + \Omega\cos\theta)\Omega\sin\theta
+= M g l\sin\theta$$
+$$n = \dot\psi_0 + \Omega\cos\theta$$ $$\Omega = \frac{g}{R^2\dot\psi}$$
 $$I_1\Omega^2\cos\theta - I_3 n\Omega + M g l = 0$$ $$\Omega = \frac{M g l}{I_3 n}$$
 """
 

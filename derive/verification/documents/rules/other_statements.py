@@ -9,6 +9,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
@@ -285,6 +286,8 @@ class AppliedLoads:
         with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
             left, right = (self._namespace.value(one.text) for one in known.sides)
             symbols = sp.Tuple(left, right).free_symbols
+            if self._are_inertia(formula, loads):
+                return False
             if not symbols & {*system.qddot} or self._has_foreign_parameters(symbols):
                 return False
             result = self._comparison.compared(known, *known.sides, left, right)
@@ -299,6 +302,14 @@ class AppliedLoads:
                 free = replace(self._model, derivation=Derivation(replace(system, forces=rest)))
                 return free.agreement(left - right) is not None
         return False
+
+    def _are_inertia(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
+        """Whether letters are factors of accelerations."""
+        letters = {one: sp.Symbol(one) for one in loads}
+        names = {**self._namespace.all_names, **letters}
+        values = [parse(one.text, names) for one in formula.sides]
+        slopes = [one.diff(a) for one in values for a in self._namespace.derivation.system.qddot]
+        return not sp.Tuple(*slopes).free_symbols.isdisjoint(letters.values())
 
     def _are_constants(self, loads: Sequence[str]) -> bool:
         """Whether letters are those of masses, lengths or stiffnesses, and of no loads.
