@@ -24,6 +24,7 @@ EXPRESSIONS = """
 did_you_mean("lenght", ["length", "mass", "Lengths"])
 did_you_mean("LEN", ["mass", "length"])
 did_you_mean("le", ["mass", "length"])
+did_you_mean("the", ["mass", "theta1_dot"])
 did_you_mean("dt", ["h", "rtol"])
 did_you_mean("h", ["step", "rtol"])
 did_you_mean("q", [])

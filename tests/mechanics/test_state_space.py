@@ -24,6 +24,7 @@ from derive import (
 from derive.system.parts import SystemDefinitionError
 from solvers import Held, build, integrate, linearise
 from solvers import load as module_of
+from solvers.equations.linearisation import linear_system
 
 cart = build(cart_pole)
 
@@ -202,3 +203,15 @@ def test_invalid_numbers_are_refused() -> None:
         linearise(cart, {}, {}, outputs=["thta"])
     with pytest.raises(ValueError, match="no derivative at y"):
         linearise(module_of("spherical_pendulum"), {}, {})
+
+
+@pytest.mark.parametrize("infinite", [0, 1])
+def test_outputs_without_a_finite_derivative_are_refused(
+    infinite: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That by the state or that by the inputs alone is not finite."""
+    matrices = [np.ones((4, 4)), np.ones((4, 2))]
+    matrices[infinite][0, 0] = np.inf
+    monkeypatch.setattr(linear_system, "_of_outputs", lambda *_: matrices)
+    with pytest.raises(ValueError, match="the outputs have no finite derivative at y"):
+        linearise(cart, {}, {}, outputs=["x"])
