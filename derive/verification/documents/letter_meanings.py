@@ -234,7 +234,7 @@ def _best(
         refuted = next((one for one in by_energies if one.is_refuted_by_one), None)
         return Interpretation(judges, fitting, refuted=None if fitting else refuted)
     best = with_direction(best, matches, judges)
-    best, is_decided = with_fewest_slips(best, supported, judges)
+    best, is_decided = with_fewest_slips(best, matches, judges)
     rivals = tuple(_rivals(best, matches))
     if best.candidate.basis == "energies":  # which equations alone can contradict
         matches += circular
@@ -268,16 +268,12 @@ def _alike(group: Sequence[SystemCandidate]) -> Iterator[Sequence[SystemCandidat
 
 
 def _is_supported(best: Match, least: float) -> bool:
-    """Whether enough comparisons hold: more of them if most do not, or letters are unusual.
-
-    A formula with letters that a stated system does not contain does not speak against it.
-    """
+    """Whether enough comparisons hold: more of them if most do not, or letters are unusual."""
     held = best.compared - len(best.failed)
     is_known = best.candidate.basis == "catalogue"
     if best.support < 0 and held < (UNUSUAL * best.compared if is_known else ENOUGH):
         return False
-    foreign = 0 if is_known else best.foreign
-    holding, compared = best.holding - best.stating, best.compared - best.stating - foreign
+    holding, compared = best.holding - best.stating, best.compared - best.stating
     if best.candidate.is_usual:
         return holding >= max(1, min(ENOUGH, least * compared))
     return holding >= max(1, UNUSUAL * compared)

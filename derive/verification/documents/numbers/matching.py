@@ -61,8 +61,6 @@ class Match:
     signature: bytes = b""
     #: Comparisons that hold because they state the system.
     stating: int = 0
-    #: Comparisons that do not hold, of formulas with letters that have no meaning.
-    foreign: int = 0
     #: Whether each formula was compared, but for those that hold whatever the motion is.
     is_of_all_formulas: bool = False
 
@@ -149,13 +147,8 @@ def best_matches(
     failing = len(votes) - int(agreeing.sum(axis=0).max())
     if len(votes) - failing * (1 - NEARLY) * (1 + FAILING) < least_support:
         return []  # even if all others hold but for one term
-    near, foreign = np.zeros_like(agreeing), np.zeros_like(agreeing)
+    near = np.zeros_like(agreeing)
     uses_letters = cache(partial(_uses_letters, tried))
-    moving = {*letters.coordinates} - {*tried[0].coordinates}
-    for row, (index, _, vote) in enumerate(votes):
-        words = {*formulas[index].words}
-        is_known = uses_letters(frozenset(words & {*letters.parameters}))
-        foreign[row] = ~vote & (~is_known | (not moving.isdisjoint(map(stem, words))))
     if len(votes) <= FEW:
         for row, (index, side, vote) in enumerate(votes):
             written = frozenset(formulas[index].words) & {*letters.parameters}
@@ -180,8 +173,7 @@ def best_matches(
     is_full = {*map(int, rows), *(index for index, _ in trivial)} == {*range(len(formulas))}
     return [
         Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
-              bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows),
-              int(foreign[:, k].sum()), is_full)
+              bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows), is_full)
         for signature, k in [*chosen.items()][:MAX_RIVALS]
     ]  # fmt: skip
 
