@@ -304,12 +304,15 @@ class AppliedLoads:
         return False
 
     def _are_inertia(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
-        """Whether letters are factors of accelerations."""
+        """Whether letters are factors of accelerations, which those of matrices are not."""
         letters = {one: sp.Symbol(one) for one in loads}
         names = {**self._namespace.all_names, **letters}
-        values = [parse(one.text, names) for one in formula.sides]
-        slopes = [one.diff(a) for one in values for a in self._namespace.derivation.system.qddot]
-        return not sp.Tuple(*slopes).free_symbols.isdisjoint(letters.values())
+        rates = self._namespace.derivation.system.qddot
+        with suppress(ExpressionError, TypeError, ValueError):
+            values = [parse(one.text, names) for one in formula.sides]
+            slopes = [one.diff(rate) for one in values for rate in rates]
+            return not sp.Tuple(*slopes).free_symbols.isdisjoint(letters.values())
+        return False
 
     def _are_constants(self, loads: Sequence[str]) -> bool:
         """Whether letters are those of masses, lengths or stiffnesses, and of no loads.
