@@ -131,6 +131,9 @@ def test_a_stiffness_is_no_applied_force_and_a_moment_of_a_coordinate_is_one(
     for letter, verdict in (("M_\\theta", "verified"), ("Q", "verified"), ("k", "context")):
         formula = equation.replace("M_\\theta", letter)
         assert judged(tmp_path, energies + formula)[-1].verdict == verdict
+    # nor is a spring beside a force
+    formula = equation.replace(r"= M_\theta\cos\theta", r"+ k\theta = Q")
+    assert judged(tmp_path, energies + formula)[-1].verdict == "context"
     # nor is a moment of inertia, beside a force
     formula = equation.replace("m l^2", "(m l^2 - 2 J_m)").replace("M_\\theta", "Q")
     assert judged(tmp_path, energies + formula)[-1].verdict == "context"

@@ -1,5 +1,6 @@
 """Statements that are not wrong though they differ from a system: relations, values, loads."""
 
+import ast
 import re
 from collections.abc import Sequence, Set
 from contextlib import suppress
@@ -10,7 +11,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.formulas.expression import parse
-from derive.formulas.syntax import ExpressionError
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
@@ -275,7 +276,7 @@ class AppliedLoads:
         system, letters = self._namespace.derivation.system, self._namespace.letters
         if {*loads} & {*letters.multipliers}:  # all reactions would be correct
             return False
-        if {*map(stem, loads)} & letters.elsewhere or self._are_constants(loads):
+        if {*map(stem, loads)} & letters.elsewhere or self._are_constants(formula, loads):
             return False
         energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
         if any({*loads} & {*one.words} for one in energies):  # of which they are no loads
@@ -314,15 +315,21 @@ class AppliedLoads:
             return not sp.Tuple(*slopes).free_symbols.isdisjoint(letters.values())
         return False
 
-    def _are_constants(self, loads: Sequence[str]) -> bool:
-        """Whether letters are those of masses, lengths or stiffnesses, and of no loads.
+    def _are_constants(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
+        """Whether letters of a term are those of masses, lengths or stiffnesses, and of no loads.
 
         One with a coordinate as its index can be a load: the moment M_theta.
         """
         letters = self._namespace.letters
         own = {one for kind in ("force", "damping") for one in letters.of_kind(kind)}
         own |= {one for one in loads if one.partition("_")[2] in letters.coordinates}
-        return {*loads} <= {one for kind in CONSTANTS for one in letters.of_kind(kind)} - own
+        constants = {one for kind in CONSTANTS for one in letters.of_kind(kind)} - own
+        terms = (
+            {*loads} & {*WORD.findall(ast.unparse(term))}
+            for side in formula.sides
+            for term, _ in summands(syntax_tree(side.text))
+        )
+        return any(words and words <= constants for words in terms)
 
     def _has_foreign_parameters(self, symbols: Set[sp.Symbol]) -> bool:
         """Whether a formula has parameters that no equation with its accelerations has."""
