@@ -423,3 +423,38 @@ $$m l^2\ddot\theta_1 + m g l\theta_1 - k\frac{l^2}{4}(\theta_2 - \theta_1) = 0$$
     assert verdicts["V "].note == "without V_coupling"
     slip = text.replace(r"\frac{m g l}{2}(\theta_1^2 +", r"\frac{m g l}{2}(\theta_1^2 -")
     assert "without" not in [one.note for one in judged(tmp_path, slip)][1]
+
+
+SPRING = r"""$$\ddot x = (l_0 + x)\dot\theta^2 - \frac{k}{m} x + g\cos\theta$$
+$$\ddot\theta = \frac{-g\sin\theta - \dot x\dot\theta}{l_0 + x}$$
+$$T = \frac12 m(\dot x^2 + (l_0 + x)^2\dot\theta^2)$$ $$V_g = -m g (l_0 + x)\cos\theta$$
+$$L[\theta,\dot\theta,x,\dot x] = \frac12 m(\dot x^2 + (l_0 + x)^2\dot\theta^2)
++ m g (l_0 + x)\cos\theta - \frac12 k x^2 = \frac12 m\dot x^2 + \frac12 m (l_0 + x)^2\dot\theta^2
++ m g (l_0 + x)\cos\theta - k x^2$$
+$$\ddot\theta = \frac{-g\sin\theta - 2\dot x\dot\theta}{l_0 + x}$$"""
+
+
+def test_a_chain_that_contradicts_itself_is_not_of_another_case(tmp_path: Path) -> None:
+    assert [*wrong_terms(tmp_path, SPRING).values()] == [
+        r"-\dot x\dot\theta".replace(" ", ""),
+        "-kx^2",
+    ]
+
+
+@pytest.mark.parametrize("lagrangian", ["L = T", "V = 0 \\implies L = T"])
+def test_an_energy_that_states_the_system_is_not_verified_by_it(
+    lagrangian: str, tmp_path: Path
+) -> None:
+    text = rf"""$$T = \frac12 m\dot x^2 + I\dot\theta^2$$ $${lagrangian}$$
+$$\frac{{d}}{{dt}}\left(\frac{{\partial L}}{{\partial\dot x}}\right) = m\ddot x$$"""
+    results = judged(tmp_path, text)
+    assert (results[0].verdict, results[0].note) == ("definition", "it states the system")
+
+
+def test_an_energy_among_accelerations_is_another_quantity(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m\dot y^2$$ $$V = m g y$$ $$\ddot y = -g$$ $$m\ddot y = {} - m g$$"""
+    results = judged(tmp_path, text.replace("{}", "T"))  # a tension
+    assert results[-1].verdict == "context"
+    assert results[-1].note == "T is no energy beside accelerations"
+    rate = judged(tmp_path, text + r"$$\frac{d T}{dt} = m\dot y\ddot y$$".replace("{}", "0"))
+    assert rate[-1].verdict != "context"

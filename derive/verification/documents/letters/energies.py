@@ -26,7 +26,7 @@ from derive.verification.documents.letters.implied_energies import (
     energies_of_hamiltonians,
 )
 from derive.verification.documents.letters.letters import Letters, energy_of_part
-from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.statements import WORD, DocumentFormula, definitions
 
 #: Energies by their kinds, and the numbers of their formulas: different values, the first first.
 Stated = Mapping[str, Sequence[tuple[sp.Expr, int]]]
@@ -247,7 +247,9 @@ def stated_energies(
     for kind, sign in (("lagrangian", -1), ("energy", 1), ("hamiltonian", 1)):
         for value, number in stated.get(kind, ()):
             V = sign * value.xreplace(at_rest)
-            yield sp.expand(value - sign * V), V, frozenset({number})
+            own = {*WORD.findall(formulas[number].sides[-1].text)}  # such as T in L = T
+            others = {k for _, k in (*kinetic, *potential) if formulas[k].subject in own}
+            yield sp.expand(value - sign * V), V, frozenset({number, *others})
     yield from energies_of_hamiltonians(letters, formulas, values)
     if not kinetic:
         yield from _sums_of_parts(formulas, values)
