@@ -10,7 +10,7 @@ from derive.reading.document_formats import read_document
 from derive.reading.latex.display_reader import formulas as statements_of
 from derive.reading.programs.program_reader import read_program
 from derive.verification.documents.judgement import judge_document
-from derive.verification.documents.letters.dimensions import inhomogeneous_formula
+from derive.verification.documents.letters.dimensions import inhomogeneous_formulas
 from derive.verification.documents.letters.hints import without_meaning
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
@@ -22,7 +22,7 @@ from derive.verification.documents.statements import Occurrence, translated
 NO_SYSTEM = without_meaning(None)
 
 
-def inhomogeneous(*formulas: str, are_of_program: bool = False) -> int | None:
+def inhomogeneous(*formulas: str, are_of_program: bool = False) -> list[int]:
     places = [
         Occurrence(number, number, 1, 0, 0, latex, tree)
         for number, latex in enumerate(formulas)
@@ -31,7 +31,7 @@ def inhomogeneous(*formulas: str, are_of_program: bool = False) -> int | None:
     read = translated(places)
     letters = letters_of(read.formulas, read.derivatives)
     letters = replace(letters, are_of_program=are_of_program)
-    return inhomogeneous_formula(letters, read.formulas, read.derivatives)
+    return [*inhomogeneous_formulas(letters, read.formulas, read.derivatives)]
 
 
 def judged(folder: Path, *formulas: str) -> list[FormulaVerdict]:
@@ -240,7 +240,7 @@ T, V = r"T = \frac{1}{2} m l^2 \dot\theta^2", r"V = - m g l \cos\theta"
     (r"\tanh(a x) = \sqrt{b} y", r"\frac{\partial T}{\partial \dot\theta} = m l^2 \dot\theta", T),
 ])  # fmt: skip
 def test_formulas_with_the_same_dimensions_have_no_odd_one(formulas: tuple[str, ...]) -> None:
-    assert inhomogeneous(*formulas) is None
+    assert inhomogeneous(*formulas) == []
 
 
 @pytest.mark.parametrize(("number", "formulas"), [
@@ -263,17 +263,17 @@ def test_formulas_with_the_same_dimensions_have_no_odd_one(formulas: tuple[str, 
 def test_the_odd_one_is_that_whose_dimensions_contradict_all_others(
     number: int, formulas: tuple[str, ...]
 ) -> None:
-    assert inhomogeneous(*formulas) == number
+    assert inhomogeneous(*formulas) == [number]
 
 
 @pytest.mark.parametrize(("term", "document", "program"), [
-    ("", None, None),
-    ("+ 2", 1, None),  # a program states a force by its number
-    ("+ 2 m", 1, 1),
-    ("+ 0.5 m", 1, 1),
-    ("+ 9.81 m", None, None),  # a number of a unit
+    ("", [], []),
+    ("+ 2", [1], []),  # a program states a force by its number
+    ("+ 2 m", [1], [1]),
+    ("+ 0.5 m", [1], [1]),
+    ("+ 9.81 m", [], []),  # a number of a unit
 ])  # fmt: skip
-def test_numbers_can_have_units(term: str, document: int | None, program: int | None) -> None:
+def test_numbers_can_have_units(term: str, document: list[int], program: list[int]) -> None:
     pair = (r"m\ddot x = - k x", rf"m\ddot y = - k y {term}")
     assert inhomogeneous(*pair) == document
     assert inhomogeneous(*pair, are_of_program=True) == program
@@ -291,3 +291,64 @@ def test_numbers_of_a_state_have_no_unit_by_their_letter() -> None:
     results = judge_program(read_program(HOOP, "JavaScript")).formulas
     assert len(results) == 2
     assert INHOMOGENEOUS not in {one.note for one in results}
+
+
+#: A particle about a centre that no other formula describes: F is any force.
+CENTRAL = (
+    r"p = m r^2 \dot\phi", r"E = \frac{1}{2} m \dot r^2 + \frac{p^2}{2 m r^2} + U(r)",
+    r"m \ddot r - \frac{p^2}{m r^3} = F(r)",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("number", "old", "new"), [
+    (1, "2 m r^2", "2 m r"), (2, "m r^3", "m r^2"), (2, "m r^3", "m r^4"), (2, "p^2", "p"),
+])  # fmt: skip
+def test_the_only_other_power_that_restores_the_dimensions_is_the_correction(
+    number: int, old: str, new: str, tmp_path: Path
+) -> None:
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, *CENTRAL)]
+    formulas = [*CENTRAL]
+    formulas[number] = formulas[number].replace(old, new)
+    (wrong,) = [one for one in judged(tmp_path, *formulas) if one.verdict == "wrong"]
+    assert wrong.line == number + 1
+    assert wrong.note.startswith(INHOMOGENEOUS)
+    formulas[number] = wrong.correction
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, *formulas)]
+
+
+def test_two_formulas_that_agree_with_two_others_each_are_not_wrong(tmp_path: Path) -> None:
+    slips = CENTRAL[1].replace("2 m r^2", "2 m r^3"), r"m \ddot r - \frac{p^2}{m r^4} + k r = 0"
+    results = judged(tmp_path, CENTRAL[0], slips[0], CENTRAL[2], slips[1])
+    assert "wrong" not in [one.verdict for one in results]
+
+
+def test_two_formulas_with_a_wrong_power_each_are_wrong(tmp_path: Path) -> None:
+    results = judged(
+        tmp_path, CENTRAL[0], r"p^2 = m k r", r"\ddot r = r \dot\phi^2 - \frac{k}{m r^2}",
+        r"E = \frac{1}{2} m \dot r^2 + \frac{p^2}{m r}",
+        r"m \ddot r - \frac{p^2}{m r^4} = - \frac{k}{r^2}",
+    )  # fmt: skip
+    assert [one.line for one in results if one.verdict == "wrong"] == [4, 5]
+
+
+@pytest.mark.parametrize("formulas", [
+    # T is a tension beside an energy; a is no acceleration in one formula
+    (r"T = \frac{1}{2} m \dot y^2", "V = m g y", r"m \ddot y = m g - T",
+     r"J \ddot\phi = T R", r"J = \frac{1}{2} M R^2"),
+    (r"a = \ddot x", r"m a = - \mu m g", r"m \ddot x = - k x",
+     r"\mu = \frac{\mu_0}{1 + a v}", r"\dot x = v"),
+])  # fmt: skip
+def test_letters_with_two_meanings_make_no_formula_wrong(
+    formulas: tuple[str, ...], tmp_path: Path
+) -> None:
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, *formulas)]
+
+
+def test_a_wrong_factor_of_what_vanishes_along_every_motion_is_wrong(tmp_path: Path) -> None:
+    # without the force that the document applies, the angle has no acceleration
+    results = judged(
+        tmp_path, r"L = \frac{1}{2} m \dot x^2 + \frac{1}{2} (J + m l^2) \dot\phi^2",
+        r"p = (J + m l^2) \dot\phi", r"(J + m l) \ddot\phi = 0",
+    )  # fmt: skip
+    assert [one.verdict for one in results] == ["definition", "definition", "wrong"]
+    assert results[2].correction == r"(J + m l^2) \ddot\phi = 0"

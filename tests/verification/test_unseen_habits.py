@@ -231,7 +231,8 @@ $$K = \frac12 m l^2\dot\theta^2$$ $$U = -m g l\cos\theta$$ $$E = K + U$$"""
         for one in judged(tmp_path, text.replace(r"\ddot", r"\dot")).formulas
         if one.verdict == "wrong"
     ]
-    assert (wrong.line, wrong.wrong_term) == (1, r"\dot\theta")
+    assert (wrong.line, wrong.wrong_term, wrong.correction) == (1, r"m l^2\dot\theta", "")
+    assert wrong.note.endswith("but not with theta_dot**2 or theta_ddot")
 
 
 CARRIAGE = r"""$$L = T - V$$ $$\frac{d}{dt}\frac{\partial L}{\partial\dot x} = 0$$
@@ -517,7 +518,7 @@ def test_a_function_of_forces_is_no_potential_energy(tmp_path: Path) -> None:
     text = r"""
 $$L = K + U$$ Others write $L = K - V$ with the potential energy $V$.
 $$K = \frac12 m\dot x^2$$ $$U = m g x - \frac12 k x^2$$ $$m\ddot x = m g - k x$$"""
-    expected = ["definition", "verified", "verified", "definition", "verified"]
+    expected = ["definition", "verified", "definition", "definition", "verified"]
     assert verdicts(tmp_path, text) == expected
     assert verdicts(tmp_path, text.replace("= m g - k x", "= m g + k x"))[-1] != "verified"
 

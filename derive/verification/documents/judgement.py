@@ -59,7 +59,7 @@ from derive.verification.documents.rules.corrected_formulas import corrected
 from derive.verification.documents.rules.corrected_formulas import written as latex_of
 from derive.verification.documents.rules.evidence.weighing import (
     INHOMOGENEOUS,
-    of_lost_dots,
+    of_dimensions,
     weighed,
 )
 from derive.verification.documents.rules.identities import Identities
@@ -171,17 +171,18 @@ def _judge(
         remaining, count, moving = waiting.pop(0), 0, set[str]()
         while remaining and count < (1 if hints else MAX_SYSTEMS):
             count += 1
-            found = interpretation(replace(statements, formulas=remaining), hints, work, moving)
+            found = interpretation(statements.part(remaining), hints, work, moving)
             open_ones = (one for one in statements.formulas if one.occurrence not in results)
             if found.match is None and (more := _with_stating(open_ones, remaining, statements)):
-                beside = interpretation(replace(statements, formulas=more), hints, work, moving)
+                beside = interpretation(statements.part(more), hints, work, moving)
                 if beside.match and beside.match.candidate.basis != "catalogue":
                     found, remaining = beside, more
             if found.match is None:
-                if found.contradictions.lost_dots:
-                    formula = remaining[found.contradictions.inhomogeneous or 0]
-                    result = of_lost_dots(formula, found.contradictions)
-                    results[formula.occurrence] = formula, result
+                for number, restoration in found.contradictions.inhomogeneous.items():
+                    if restoration:
+                        formula = remaining[number]
+                        result = of_dimensions(formula, restoration)
+                        results[formula.occurrence] = formula, result
                 for number, reason in _reasons(found, remaining):
                     reasons.setdefault(remaining[number].occurrence, reason)
                 break
@@ -267,8 +268,7 @@ def _reasons(found: Interpretation, formulas: Formulas) -> Iterator[tuple[int, s
     The dimensions of one contradict those of all others, or it contradicts the one that states a
     system.
     """
-    if (number := found.contradictions.inhomogeneous) is not None:
-        yield number, INHOMOGENEOUS
+    yield from ((number, INHOMOGENEOUS) for number in found.contradictions.inhomogeneous)
     if found.refuted:
         stating, (failed,) = found.refuted.candidate.stating, found.refuted.failed
         yield failed, opposed(formulas[min(stating)].occurrence.line)

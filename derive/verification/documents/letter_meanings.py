@@ -18,8 +18,8 @@ from derive.verification.documents.judges import (
 )
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates
 from derive.verification.documents.letters.dimensions import (
-    inhomogeneous_formula,
-    lost_dots,
+    Restoration,
+    inhomogeneous_formulas,
     with_other_powers,
 )
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
@@ -115,8 +115,12 @@ def interpretation(
         other = _best(judges, _of_templates(letters, statements, numbers), work)
         if other.match and (result.match is None or other.match.score > result.match.score):
             result = other
-    number = inhomogeneous_formula(letters, statements.formulas, statements.derivatives)
-    return result if number is None else _without_inhomogeneous(result, number)
+    odd = inhomogeneous_formulas(
+        letters, statements.formulas, statements.derivatives, statements.elsewhere
+    )
+    if len(odd) == 1:
+        return _without_inhomogeneous(result, odd)
+    return replace(result, contradictions=replace(result.contradictions, inhomogeneous=odd))
 
 
 def _lacks_numbers(match: Match | None, letters: Letters) -> bool:
@@ -126,12 +130,13 @@ def _lacks_numbers(match: Match | None, letters: Letters) -> bool:
     return bool(match.failed) and letters.are_of_program
 
 
-def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretation:
+def _without_inhomogeneous(
+    result: Interpretation, odd: Mapping[int, Restoration | None]
+) -> Interpretation:
     """The interpretation, or one by the other formulas if these alone refute the inhomogeneous."""
-    judges = result.judges
+    judges, (number,) = result.judges, odd
     letters, statements = judges.letters, judges.statements
-    dots = lost_dots(letters, statements.formulas, statements.derivatives, number)
-    known = replace(result.contradictions, inhomogeneous=number, lost_dots=dots)
+    known = replace(result.contradictions, inhomogeneous=odd)
     own = result.match.candidate if result.match else None
     if own and _refutes(judges, own, number):
         disputed = {k: them - {number} for k, them in known.disputed.items() if them - {number}}
@@ -139,21 +144,23 @@ def _without_inhomogeneous(result: Interpretation, number: int) -> Interpretatio
         if judges.count_wrong(own) == 1:
             return replace(result, contradictions=known)
     if own and number in own.stating and (restored := _restored(judges, own, number)):
-        return _with_inhomogeneous(judges, restored, number)
+        return _with_inhomogeneous(judges, restored, odd)
     nothing = replace(statements.formulas[number], sides=(FormulaText("0"),), relations=())
     others = (*statements.formulas[:number], nothing, *statements.formulas[number + 1 :])
     tried = chain.from_iterable(_stated(letters, replace(statements, formulas=others)))
     for candidate in islice(tried, MAX_VERIFIED):
         if _refutes(judges, candidate, number) and judges.count_wrong(candidate) == 1:
-            return _with_inhomogeneous(judges, candidate, number)
+            return _with_inhomogeneous(judges, candidate, odd)
     return replace(result, contradictions=known)
 
 
-def _with_inhomogeneous(judges: Judges, one: SystemCandidate, number: int) -> Interpretation:
+def _with_inhomogeneous(
+    judges: Judges, one: SystemCandidate, odd: Mapping[int, Restoration | None]
+) -> Interpretation:
     """The interpretation by a candidate that one inhomogeneous formula contradicts."""
     formulas, derivatives = judges.statements.formulas, judges.statements.derivatives
     matches = best_matches([one], judges.letters, formulas, derivatives, frozenset())
-    contradictions = Contradictions(inhomogeneous=number)
+    contradictions = Contradictions(inhomogeneous=odd)
     return Interpretation(judges, next(iter(matches), None), contradictions=contradictions)
 
 

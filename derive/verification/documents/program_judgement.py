@@ -98,7 +98,7 @@ def _reading(equations: Sequence[ProgramEquation], hints: Hints | None) -> _Read
     found = _interpretation(equations, hints)
     if found.match is None:
         odd, note = found.contradictions.inhomogeneous, without_meaning(hints)
-        notes = (INHOMOGENEOUS if k == odd else note for k, _ in enumerate(equations))
+        notes = (INHOMOGENEOUS if k in odd else note for k, _ in enumerate(equations))
         return _Reading(None, tuple(map(_plain, equations, notes)), ())
     candidate = found.match.candidate
     verdicts = found.judges.verdicts(candidate)

@@ -151,6 +151,12 @@ class Translated:
     formulas: tuple[DocumentFormula, ...]
     failures: tuple[tuple[Occurrence, str], ...]
     derivatives: Derivatives
+    elsewhere: frozenset[DocumentFormula] = frozenset()  # formulas of other parts
+
+    def part(self, formulas: Sequence[DocumentFormula]) -> "Translated":
+        """Some of the formulas as a part of the document."""
+        elsewhere = frozenset(self.formulas).difference(formulas)
+        return Translated(tuple(formulas), self.failures, self.derivatives, elsewhere)
 
 
 def translated(occurrences: Sequence[Occurrence]) -> Translated:

@@ -1,10 +1,10 @@
 """The verdict on one equation, and tables of verdicts as plain text."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from shutil import get_terminal_size
 from textwrap import TextWrapper, shorten
-from typing import Literal, TypeAlias
+from typing import Literal, Self, TypeAlias
 
 #: Columns of the verdict, and of the widest table.
 VERDICT_WIDTH, MAX_WIDTH = 13, 120
@@ -22,11 +22,27 @@ VerdictName: TypeAlias = Literal[
 
 @dataclass(frozen=True)
 class Correction:
-    """A wrong term as written, and the correct one; the wrong one is empty if a term is missing."""
+    """A wrong term as written, and the correct one.
+
+    The wrong one is empty if a term is missing, the correct one if it is not known.
+    """
 
     wrong: str
     correct: str
     span: tuple[int, int] = (0, 0)  # of the wrong term with its sign, in the judged formula
+
+    def applied(self, text: str) -> str:
+        """The judged formula with the correct term."""
+        start, end = self.span
+        return text[:start] + self.correct + text[end:]
+
+    def widened(self, text: str, span: tuple[int, int]) -> Self:
+        """The same correction of a longer part of the judged formula."""
+        start, end = span
+        inner = replace(self, span=(self.span[0] - start, self.span[1] - start))
+        return replace(
+            self, wrong=text[start:end], correct=inner.applied(text[start:end]), span=span
+        )
 
 
 @dataclass(frozen=True)

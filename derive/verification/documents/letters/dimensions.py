@@ -8,11 +8,12 @@ letters; others follow from the document.
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from derive.formulas.syntax import ExpressionError, summands, syntax_tree
+from derive.formulas.syntax import ExpressionError, is_sum, summands, syntax_tree
+from derive.formulas.syntax import place as place_of
 from derive.verification.documents.formula_translation import (
     RATES,
     FormulaText,
@@ -36,58 +37,142 @@ FUNCTIONS = ("sin", "cos", "tan", "exp", "sinh", "cosh", "tanh", "asin", "acos",
 COORDINATES, PARAMETERS = ("x", "y", "z", "r", "s"), ("l", "ell")
 #: Names of the numbers of a state in programs, whatever they are.
 STATE = re.compile(r"[a-zA-Z]+_\d+")
-#: A name, perhaps with a square; not that of a function, or with another power.
-POWER = re.compile(r"(?<![\w.])(?P<name>[A-Za-z_]\w*)(?![\w(])(?:(?P<square>\*\*2)(?!\d)|(?!\*\*))")
-#: The fewest formulas with dimensions.
-FEWEST = 2
+#: A name, perhaps with a power; not that of a function.
+FACTOR = re.compile(
+    r"(?<![\w.])(?P<name>[A-Za-z_]\w*)(?![\w(])(?:\*\*(?P<power>\d)(?![\w.])|(?!\*\*))"
+)
+#: The fewest formulas with dimensions, and the most that contradict all others.
+FEWEST, MOST_ODD = 2, 3
+
+
+#: Whether a formula has no contradictory dimensions with another text of one of its sides.
+Homogeneity = Callable[[int, str], bool]
+
+
+@dataclass(frozen=True)
+class Restoration:
+    """Corrections in one side of a formula that restore its dimensions."""
+
+    side: int
+    #: A correct term is empty if several are possible.
+    corrections: tuple[Correction, ...]
+    #: The factors that can be correct, if several can.
+    choices: tuple[str, ...] = ()
 
 
 class _NoDimensionError(ValueError):
     """A formula whose dimensions are not known, such as one with matrices or numbers of units."""
 
 
-def inhomogeneous_formula(
+def inhomogeneous_formulas(
     letters: Letters,
     formulas: Sequence[DocumentFormula],
     derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
-) -> int | None:
-    """The number of the one formula whose dimensions contradict those of all others, if any.
+    elsewhere: Collection[DocumentFormula] = (),
+) -> dict[int, Restoration | None]:
+    """The fewest formulas whose dimensions contradict those of all others, by their numbers.
 
-    There is none if these contradict each other as well, as without units, or if another formula
-    could be the one. A formula whose parameters have no dimension can be one in other units.
+    There are none if as many others could be those, if a formula can be one in other units, as its
+    parameters have no dimension, or if they alone agree with formulas `elsewhere` in the document.
+    Of several, each has corrections.
     """
     equations = _Equations(letters, formulas, derivatives)
     rows = equations.rows()
     if len(rows) < FEWEST or _pivots(rows.values()) is not None:
-        return None
-    odd = {
-        number: pivots
-        for number in rows
-        if (pivots := _pivots(own for other, own in rows.items() if other != number)) is not None
-    }
-    if len(odd) != 1:
-        return None
-    ((number, pivots),) = odd.items()
-    own = (one for one in letters.parameters if one in formulas[number].words)
-    dimensions = (_reduced(equations.letter(one), pivots) for one in own)
-    has_units = any(one and {*one} <= {*UNITS} for one in dimensions)
-    return number if has_units else None
+        return {}
+    sizes = ({*_removable(rows, count)} for count in range(1, MOST_ODD + 1))
+    sets = next(filter(None, sizes), set[frozenset[int]]())
+    if len(sets) != 1:
+        return {}
+    (odd,) = sets
+    pivots = _pivots(own for number, own in rows.items() if number not in odd) or {}
+    further = [*map(equations.row, elsewhere)]
+    if _pivots(further, pivots) is None and _agree(further, (rows[number] for number in odd)):
+        return {}
+    for number in odd:
+        own = (one for one in letters.parameters if one in formulas[number].words)
+        dimensions = (_reduced(equations.letter(one), pivots) for one in own)
+        if not any(one and {*one} <= {*UNITS} for one in dimensions):
+            return {}
+    result = {k: _restoration(letters, formulas[k], equations, pivots) for k in sorted(odd)}
+    return result if len(odd) == 1 or all(result.values()) else {}
 
 
-def lost_dots(
+def _removable(rows: Mapping[int, Sequence[Dimension]], count: int) -> Iterator[frozenset[int]]:
+    """Yield the sets of so many formulas without which no dimensions contradict each other."""
+    if _pivots(rows.values()) is not None:
+        yield frozenset()
+    elif count:
+        for number in _conflict(rows):
+            others = {k: own for k, own in rows.items() if k != number}
+            yield from (odd | {number} for odd in _removable(others, count - 1))
+
+
+def _agree(groups: Sequence[Sequence[Dimension]], others: Iterable[Sequence[Dimension]]) -> bool:
+    """Whether no dimensions of two groups contradict each other."""
+    pivots = _pivots(groups)
+    return pivots is not None and _pivots(others, pivots) is not None
+
+
+def _conflict(rows: Mapping[int, Sequence[Dimension]]) -> list[int]:
+    """Formulas that contradict each other, but not without one of them."""
+    numbers = [*rows]
+    for number in rows:
+        others = [k for k in numbers if k != number]
+        if _pivots(rows[k] for k in others) is None:
+            numbers = others
+    return numbers
+
+
+def _restoration(
     letters: Letters,
-    formulas: Sequence[DocumentFormula],
-    derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
-    number: int,
-) -> tuple[Correction, ...]:
-    """The rates in place of letters in the last side of a formula that restore its dimensions.
+    formula: DocumentFormula,
+    equations: "_Equations",
+    others: Mapping[str, Dimension],
+) -> Restoration | None:
+    """What restores the dimensions of an inhomogeneous formula, if any is known.
 
-    These are one rate, or those of all letters without dots; none if several would do.
+    It changes the power or the rate of a letter in a term, if one term alone can be wrong so. If no
+    term differs from the others, it has rates in place of letters of the last side.
     """
-    formula = formulas[number]
-    *first, last = formula.sides
-    words = {word for one in formulas for word in one.words}
-    moving = {*letters.coordinates, *(stem(word) for word in words if order(word))}
+    if formula.index:
+        return None
+
+    def is_homogeneous(side: int, text: str) -> bool:
+        sides = (*formula.sides[:side], FormulaText(text), *formula.sides[side + 1 :])
+        return _pivots([equations.row(replace(formula, sides=sides))], others) is not None
+
+    moving = {*letters.coordinates, *equations.moving}
+    terms = [*_odd_terms(formula, is_homogeneous)]
+    if not terms:
+        return _lost_dots(letters, formula, moving, is_homogeneous)
+    restorations = []
+    for side, span in terms:
+        text = formula.sides[side].text
+        changes = _changes(text, span, letters, moving)
+        found = [one for one in changes if is_homogeneous(side, one.applied(text))]
+        if len(found) == 1:
+            restorations.append(Restoration(side, (found[0].widened(text, span),)))
+        elif found:
+            term = Correction(text[slice(*span)], "", span)
+            choices = tuple(one.correct for one in found)
+            restorations.append(Restoration(side, (term,), choices))
+    return restorations[0] if len(restorations) == 1 else None
+
+
+def _lost_dots(
+    letters: Letters,
+    formula: DocumentFormula,
+    moving: Collection[str],
+    is_homogeneous: Homogeneity,
+) -> Restoration | None:
+    """The only rates in the last side that restore the dimensions: one, or all without dots.
+
+    A letter of an energy with a product of rates can be another quantity.
+    """
+    last = formula.sides[-1]
+    if formula.subject in letters.quantities and any(map(order, WORD.findall(last.text))):
+        return None
     places = [one for one in WORD.finditer(last.text) if stem(one[0]) in moving]
     found: dict[str, tuple[Correction, ...]] = {}
     for chosen in ([one for one in places if not order(one[0])], *([one] for one in places)):
@@ -96,11 +181,40 @@ def lost_dots(
             rate = stem(place[0]) + RATES[min(2, order(place[0]) + 1)]
             text = text[: place.start()] + rate + text[place.end() :]
             pieces.append(Correction(place[0], rate, place.span()))
-        other = replace(formula, sides=(*first, FormulaText(text)))
-        changed = (*formulas[:number], other, *formulas[number + 1 :])
-        if _pivots(_Equations(letters, changed, derivatives).rows().values()) is not None:
+        if is_homogeneous(len(formula.sides) - 1, text):
             found[text] = tuple(pieces[::-1])
-    return next(iter(found.values())) if len(found) == 1 and not formula.index else ()
+    if len(found) != 1:
+        return None
+    return Restoration(len(formula.sides) - 1, next(iter(found.values())))
+
+
+def _odd_terms(
+    formula: DocumentFormula, is_homogeneous: Homogeneity
+) -> Iterator[tuple[int, tuple[int, int]]]:
+    """Yield the terms of sums without which a formula is homogeneous, none with another in it."""
+    for number, side in enumerate(formula.sides):
+        text = side.text
+        nodes = (one for one in ast.walk(syntax_tree(text)) if isinstance(one, ast.expr))
+        spans = {place_of(text, term) for one in nodes if is_sum(one) for term, _ in summands(one)}
+        odd = [(a, b) for a, b in spans if is_homogeneous(number, f"{text[:a]}0{text[b:]}")]
+        for a, b in sorted(odd):
+            if not any(a <= c and d <= b and (a, b) != (c, d) for c, d in odd):
+                yield number, (a, b)
+
+
+def _changes(
+    text: str, span: tuple[int, int], letters: Letters, moving: Collection[str]
+) -> Iterator[Correction]:
+    """Yield another power or rate of each letter of a term."""
+    own = {*letters.coordinates, *letters.parameters, *letters.momenta}
+    for one in _other_powers(text, span):
+        if stem(one.wrong.partition("**")[0]) in own:
+            yield one
+    for word in WORD.finditer(text, *span):
+        if stem(word[0]) in moving:
+            near = (order(word[0]) - 1, order(word[0]) + 1)
+            for k in (k for k in near if k in range(3)):
+                yield Correction(word[0], stem(word[0]) + RATES[k], word.span())
 
 
 def with_other_powers(
@@ -109,20 +223,26 @@ def with_other_powers(
     derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
     number: int,
 ) -> Iterator[tuple[DocumentFormula, ...]]:
-    """Yield the formulas with a square for a letter, or a letter for a square, in one of them.
+    """Yield the formulas with the next power of a letter in one of them.
 
     With these, the dimensions of the last side of this formula contradict no others.
     """
     formula = formulas[number]
     *first, last = formula.sides
-    for place in POWER.finditer(last.text):
-        name = place["name"]
-        power = name if place["square"] else f"{name}**2"
-        text = f"{last.text[: place.start()]}({power}){last.text[place.end() :]}"
-        other = replace(formula, sides=(*first, FormulaText(text)))
+    for one in _other_powers(last.text, (0, len(last.text))):
+        other = replace(formula, sides=(*first, FormulaText(one.applied(last.text))))
         changed = (*formulas[:number], other, *formulas[number + 1 :])
         if _pivots(_Equations(letters, changed, derivatives).rows().values()) is not None:
             yield changed
+
+
+def _other_powers(text: str, span: tuple[int, int]) -> Iterator[Correction]:
+    """Yield the names in a part of a text with the next powers."""
+    for one in FACTOR.finditer(text, *span):
+        power = int(one["power"] or 1)
+        for other in (power + 1, power - 1)[: 1 + (power > 1)]:
+            new = one["name"] if other == 1 else f"{one['name']}**{other}"
+            yield Correction(one[0], new, one.span())
 
 
 class _Equations:
@@ -148,39 +268,45 @@ class _Equations:
                 self._known[name] = {LENGTH: Fraction(1)}
             elif is_coordinate and letter in ANGLES and letter != "q":
                 self._known[name] = ONE
-        for name in {stem(word) for formula in formulas for word in formula.words}:
+        words = {word for formula in formulas for word in formula.words}
+        #: Letters of which there is a rate.
+        self.moving = {stem(word) for word in words if order(word)}
+        for name in map(stem, words):
             if name.lower().startswith("omega"):
                 self._known[name] = {TIME: Fraction(-1)}
         for name, kind in letters.quantities.items():
             if kind not in MATRICES.values():
                 self._known[name] = ENERGY
         self._formulas, self._derivatives = formulas, derivatives
-        self._are_of_program = letters.are_of_program
+        self._letters = letters
         self._equal: list[Dimension] = []
 
     def rows(self) -> dict[int, list[Dimension]]:
-        """The equations of each formula with any: dimensions that vanish."""
-        result: dict[int, list[Dimension]] = {}
-        for number, formula in enumerate(self._formulas):
-            if {*formula.relations} - {"=", ":="} or len(formula.sides) < 2:
-                continue
-            self._equal = []
-            try:
-                trees = [syntax_tree(side.text) for side in formula.sides]
-                if not any(isinstance(one, ast.Constant) and one.value for one in trees):
-                    self._sum(trees)
-            except (_NoDimensionError, ExpressionError):
-                continue
-            if self._equal:
-                result[number] = self._equal
-        return result
+        """The equations of each formula with any."""
+        rows = {number: self.row(formula) for number, formula in enumerate(self._formulas)}
+        return {number: own for number, own in rows.items() if own}
+
+    def row(self, formula: DocumentFormula) -> list[Dimension]:
+        """The equations of a formula: dimensions that vanish."""
+        if {*formula.relations} - {"=", ":="} or len(formula.sides) < 2:
+            return []
+        if self._letters.reused(formula):
+            return []
+        self._equal = []
+        try:
+            trees = [syntax_tree(side.text) for side in formula.sides]
+            if not any(isinstance(one, ast.Constant) and one.value for one in trees):
+                self._sum(trees)
+        except (_NoDimensionError, ExpressionError):
+            return []
+        return self._equal
 
     def _sum(self, terms: Sequence[ast.expr]) -> Dimension | None:
         """The dimension of terms, which have the same; None of zero, which has any.
 
         A number that a program adds, such as a constant force, can have any unit as well.
         """
-        if self._are_of_program:
+        if self._letters.are_of_program:
             terms = [one for one in terms if any(isinstance(x, ast.Name) for x in ast.walk(one))]
         known = [one for term in terms if (one := self._dimension(term)) is not None]
         self._equal += [_product(one, known[0], -1) for one in known[1:]]
@@ -255,9 +381,14 @@ def _product(one: Dimension, other: Dimension, exponent: int | Fraction = 1) -> 
     return {name: number for name, number in result.items() if number}
 
 
-def _pivots(groups: Iterable[Sequence[Dimension]]) -> dict[str, Dimension] | None:
-    """The products that determine a letter each; None if not all products can have no dimension."""
-    pivots: dict[str, Dimension] = {}
+def _pivots(
+    groups: Iterable[Sequence[Dimension]], known: Mapping[str, Dimension] | None = None
+) -> dict[str, Dimension] | None:
+    """The products that determine a letter each; None if not all products can have no dimension.
+
+    Those in `known` come first.
+    """
+    pivots = dict(known or {})
     for one in (one for group in groups for one in group):
         row = _reduced(one, pivots)
         own = [name for name in row if name not in UNITS]

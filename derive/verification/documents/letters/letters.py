@@ -13,8 +13,10 @@ from typing import Any, Self
 
 import sympy as sp
 
+from derive.verification.documents.formula_translation import order
 from derive.verification.documents.jets import FUNCTIONS
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
+from derive.verification.documents.statements import WORD, DocumentFormula
 
 #: Names of energies and of the Lagrangian, without their index.
 QUANTITIES: dict[str, str] = {
@@ -82,6 +84,8 @@ ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
 #: A column of names.
 COLUMN = re.compile(r"\((\w+(?:, \w+)+)\)")
 GENERIC = re.compile(r"\w+_[ij]\Z")
+#: The derivative of a name.
+DERIVATIVE = re.compile(r"\b(?:ddt|diff)\(\w+(?:, \w+)*\)")
 
 
 #: Names of angles and of other coordinates by their first letters.
@@ -114,6 +118,17 @@ class Letters:
         name = names.pop() if len(names) == 1 else ""
         numbered = [f"{name}_{k + 1}" for k in range(len(self.ordered))]
         return name if [*self.ordered] == numbered and name not in self.parameters else ""
+
+    def reused(self, formula: DocumentFormula) -> str:
+        """A letter of an energy among accelerations, where it is another quantity.
+
+        Such as a tension T; empty if there is none.
+        """
+        names = WORD.findall(DERIVATIVE.sub("", formula.text))
+        if not any(order(name) == 2 for name in names):
+            return ""
+        energies = {name for name, kind in self.quantities.items() if kind not in MATRICES.values()}
+        return next((name for name in names if name in energies - {formula.subject}), "")
 
     def hinted(self, kinds: Mapping[str, str]) -> Self:
         """The letters with given kinds of parameters."""

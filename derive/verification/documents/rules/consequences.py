@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from derive.formulas.syntax import ExpressionError
+from derive.verification.documents.letters.dimensions import Restoration
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import time_derivative
-from derive.verification.judging.verdict import Correction
 
 #: The note on a formula that follows correctly from a wrong one.
 FOLLOWS = "it follows from line"
@@ -35,10 +35,8 @@ class Contradictions:
     doubts: Mapping[int, frozenset[int]] = field(default_factory=dict)
     #: Formulas that hold, and those that do not hold unless these are wrong.
     disputed: Mapping[int, frozenset[int]] = field(default_factory=dict)
-    #: The one formula whose dimensions contradict those of all others.
-    inhomogeneous: int | None = None
-    #: The rates that it lacks.
-    lost_dots: tuple[Correction, ...] = ()
+    #: The formulas whose dimensions contradict those of all others, and what restores them.
+    inhomogeneous: Mapping[int, Restoration | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,8 @@ def corrected(
         span = source_span(latex, result, one)
         if span is None:
             return Corrected(correction=written(verdict.correction, letters, is_plain))
+        if not one.correct:
+            return Corrected(latex[slice(*span)], "", (span,))
         new = written(one.correct, letters, is_plain)
         if one.wrong.startswith("-") and not latex[slice(*span)].startswith("-"):
             # the sign stands before a fraction, of which this is the numerator

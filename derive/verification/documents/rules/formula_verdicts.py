@@ -107,6 +107,8 @@ class Judge:
             return plain("context", formula, "its superscripts are indices")
         if formula.is_update:
             return plain("context", formula, "it is a step in time")
+        if reused := self._namespace.letters.reused(formula):
+            return plain("context", formula, f"{reused} is no energy beside accelerations")
         if formula.subject in INDICES or self._others.states_value(formula):
             return plain("context", formula, "it states a value")
         if values := self._prescribed(formula):

@@ -17,6 +17,7 @@ from derive.formulas.syntax import syntax_tree
 from derive.reading.latex.grammar.products import AMBIGUOUS
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_POTENTIAL, SystemCandidate
+from derive.verification.documents.letters.dimensions import Restoration
 from derive.verification.documents.rules.consequences import (
     UNDECIDED,
     Contradictions,
@@ -51,8 +52,8 @@ INDEXED_PLACE = re.compile(r"[xyzXYZ]_\d+")
 INERTIA = re.compile(r"[IJ](_\w+)?")
 #: The reason of a verdict on a single formula that holds with an unusual meaning of angles alone.
 UNSTATED = "it holds with angles from the horizontal alone, which nothing states: use --names"
-#: The note on a formula whose dimensions contradict those of all others.
-INHOMOGENEOUS = "its dimensions contradict those of all other formulas"
+#: The note on a formula whose dimensions contradict those of the others.
+INHOMOGENEOUS = "its dimensions contradict those of the other formulas"
 #: The note on a rate that contradicts any position.
 NO_RATE = "nothing that depends on the coordinates has this rate"
 #: The reason of a verdict that a system without enough support gives.
@@ -120,8 +121,8 @@ class _Evidence:
     def weighed(self, number: int) -> SideVerdict:
         """The verdict on a formula in the light of the others."""
         formula, result = self._results[number]
-        if number == self._contradictions.inhomogeneous:
-            own = self._of_dimensions(formula, result)
+        if number in self._contradictions.inhomogeneous:
+            own = self._of_dimensions(number)
             if own is not None:
                 return own
         is_wrong = result.verdict.verdict == "wrong"
@@ -138,16 +139,15 @@ class _Evidence:
             return plain("context", formula, doubt)
         return _noted(result, f"given {self._given}") if is_wrong and self._given else result
 
-    def _of_dimensions(self, formula: DocumentFormula, result: SideVerdict) -> SideVerdict | None:
-        """The verdict on the formula whose dimensions contradict those of all others."""
+    def _of_dimensions(self, number: int) -> SideVerdict | None:
+        """The verdict on a formula whose dimensions contradict those of all others."""
+        formula, result = self._results[number]
         verdict = result.verdict
-        if verdict.verdict == "wrong":
-            if len(verdict.corrections) != 1:
-                return None
+        if verdict.verdict == "wrong" and len(verdict.corrections) == 1:
             noted = _noted(result, INHOMOGENEOUS)
             return _noted(noted, f"given {self._given}") if self._given else noted
-        if self._contradictions.lost_dots:
-            return of_lost_dots(formula, self._contradictions)
+        if restoration := self._contradictions.inhomogeneous[number]:
+            return of_dimensions(formula, restoration)
         if verdict.verdict == "definition":
             return plain("context", formula, INHOMOGENEOUS)
         return None
@@ -158,9 +158,8 @@ class _Evidence:
         if is_ambiguous(formula):
             return AMBIGUOUS
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
-        inhomogeneous = self._contradictions.inhomogeneous
-        if inhomogeneous is not None and inhomogeneous in self._candidate.stating:
-            return opposed(self._lines[inhomogeneous])
+        if odd := {*self._contradictions.inhomogeneous} & {*self._candidate.stating}:
+            return opposed(self._lines[min(odd)])
         if self._further_inertia and not result.verdict.note.endswith(NOT_LINEAR):
             return f"line {self._further_inertia} states an inertia beside the positions"
         if number in self._contradictions.doubts:
@@ -171,7 +170,8 @@ class _Evidence:
             return opposed(self._unused[formula.subject])
         if number in self._undecided:
             return f"it contradicts the stated friction: {UNDECIDED}"
-        if not self._is_stated and self._contrary.can_be_of_another_case(number):
+        is_open = not self._is_stated and not _contradicts_itself(formula, result)
+        if is_open and self._contrary.can_be_of_another_case(number):
             return other_case
         if self._is_known and self._is_repeated(number):
             return other_case
@@ -411,11 +411,21 @@ def _noted(result: SideVerdict, note: str) -> SideVerdict:
     return replace(result, verdict=replace(verdict, note=joined(verdict.note, note)))
 
 
-def of_lost_dots(formula: DocumentFormula, contradictions: Contradictions) -> SideVerdict:
-    """The verdict on a formula that lacks dots, which its dimensions alone show."""
-    result = plain("wrong", formula, INHOMOGENEOUS)
-    verdict = replace(result.verdict, corrections=contradictions.lost_dots)
-    return replace(result, verdict=verdict, parts=((0, formula.sides[-1]),))
+def _contradicts_itself(formula: DocumentFormula, result: SideVerdict) -> bool:
+    """Whether a factor of one side is wrong, and a side before it holds."""
+    sides, corrections = [side for _, side in result.parts], result.verdict.corrections
+    if len(sides) != 1 or len(corrections) != 1 or sides[0] not in formula.sides[2:]:
+        return False
+    return bool(corrections[0].wrong) and corrections[0].correct != "0"
+
+
+def of_dimensions(formula: DocumentFormula, restoration: Restoration) -> SideVerdict:
+    """The verdict on a formula with a term that its dimensions alone refute."""
+    choices = " or ".join(restoration.choices)
+    note = f"{INHOMOGENEOUS}, but not with {choices}" if choices else INHOMOGENEOUS
+    result = plain("wrong", formula, note)
+    verdict = replace(result.verdict, corrections=restoration.corrections)
+    return replace(result, verdict=verdict, parts=((0, formula.sides[restoration.side]),))
 
 
 def _lines(numbers: Iterable[int]) -> str:
