@@ -160,6 +160,12 @@ do i = 1, n
 end do
 end program swing
 """
+TRANSPOSED = """
+function d = f(t, y)
+    s = [a b; c e]'*[y(1); y(2)];
+    d = [y(3); y(4); s(1); s(2)];
+end
+"""
 #: Programs with their language and their equations, as read by eye.
 PROGRAMS = {
     "matrices": (
@@ -183,6 +189,11 @@ PROGRAMS = {
     "limits": (LIMITS, "MATLAB", "x_1_ddot = u_1/m - g"),
     "parts": (PARTS, "JavaScript", "x_ddot = -k*x/m; y_ddot = -k*y/m"),
     "momentum": (MOMENTUM, "Python", "r_0_ddot = -k*r_0/m; r_1_ddot = -k*r_1/m"),
+    "transposed": (
+        TRANSPOSED,
+        "MATLAB",
+        "y_1_ddot = a*y_1 + c*y_2; y_2_ddot = b*y_1 + e*y_2",
+    ),
     "shared": (SHARED, "JavaScript", "x_ddot = -g/L*sin(x) - b*x_dot"),
     "object": (OBJECT, "Python", ""),
     "Heun": (HEUN, "Python", "x_ddot = -omega**2*sin(x)"),
@@ -265,6 +276,17 @@ for _ in range(n):
     assert old == [(9, True), (10, True)]
 
 
+@pytest.mark.parametrize(("first", "second", "is_whole"), [
+    ("x += v*h/4", "x += 3*v*h/4", True),
+    ("x += 1.5*v*h", "x -= 0.5*v*h", True),
+    ("x += 0.25*v*h", "x += 0.5*v*h", False),
+    ("x += 0.25*v*h", "x += 0.75*v*s", False),
+])  # fmt: skip
+def test_parts_of_a_step_add_up_to_it(first: str, second: str, is_whole: bool) -> None:
+    text = f"while t < 9:\n    {first}\n    v += -k*x*h\n    {second}\n"
+    assert (equations(text, "Python") == ["x_ddot = -k*x"]) == is_whole
+
+
 def test_a_limit_of_0_is_that_of_a_contact() -> None:
     text = "def f(t, y, k):\n    x, v = y\n    return v, -k*max(x, 0)\n"
     assert not read_program(text, "Python").equations
@@ -332,6 +354,14 @@ def test_properties_have_the_values_of_their_functions(language: str) -> None:
         PROPERTY[language], "JavaScript" if language == "TypeScript" else language
     )
     assert [one.text for one in program.equations] == ["angle_ddot = -g/l*sin(angle)"]
+
+
+def test_a_property_with_a_variable_of_its_own_has_its_value() -> None:
+    text = PROPERTY["Python"].replace("return", "k = self.g/self.l\n        return")
+    text = text.replace("-self.g/self.l*", "-k*")
+    assert equations(text, "Python") == ["angle_ddot = -g/l*sin(angle)"]
+    stored = text.replace("k = ", "self.k = ").replace("-k*", "-self.k*")
+    assert equations(stored, "Python") == ["angle_ddot = acc"]  # its call changes the object
 
 
 def test_functions_can_be_passed_by_their_names() -> None:
@@ -464,7 +494,8 @@ while True:
 
 
 @pytest.mark.parametrize(
-    ("norm", "power"), [("norm(r)", 2), ("r.hat", 2), ("r/r.mag", 2), ("r", 3)]
+    ("norm", "power"),
+    [("norm(r)", 2), ("r.hat", 2), ("r.norm()", 2), ("r/r.mag", 2), ("r", 3)],
 )
 def test_bodies_of_vpython_have_vectors(norm: str, power: int) -> None:
     text = VPYTHON.replace("norm(r)", norm).replace("**2", f"**{power}")
@@ -475,6 +506,14 @@ def test_bodies_of_vpython_have_vectors(norm: str, power: int) -> None:
                              x[1]: 2.0, x[2]: 2.0})  # fmt: skip
         assert value == pytest.approx(-5 * 7 * {x[0]: 1, x[1]: 2, x[2]: 2}[left[:5]] / 27)
     assert len(read_program(text, "Python").equations) == 3
+
+
+def test_the_square_of_the_length_of_a_vector_has_a_function() -> None:
+    text = "from vpython import *\nx, v = vector(1, 2, 3), vector(1, 1, 2)\nwhile t < 3:\n"
+    text += "    v = v - k*x*mag2(x)*dt\n    x = x + v*dt\n"
+    assert equations(text, "Python") == [
+        f"x_{i}_ddot = -k*x_{i}*(x_0**2 + x_1**2 + x_2**2)" for i in range(3)
+    ]
 
 
 def test_zeros_of_a_constant_vector_are_numbers() -> None:

@@ -443,6 +443,49 @@ def test_coefficients_of_runge_kutta_methods_are_checked() -> None:
         assert "order 4 is possible" in wrong.text
 
 
+#: The methods of Kutta of order 3, in two ways to write a stage, and of Gill of order 4.
+KUTTA = """
+def step(f, y, h):
+    k1 = f(y)
+    k2 = f(y + h/2*k1)
+    k3 = f(y + h*(2*k2 - k1))
+    return y + h/6*(k1 + 4*k2 + k3)
+"""
+GILL = """
+def step(f, y, h):
+    k1 = f(y)
+    k2 = f(y + h/2*k1)
+    k3 = f(y + h*((sqrt(2) - 1)/2*k1 + (1 - sqrt(2)/2)*k2))
+    k4 = f(y + h*(-sqrt(2)/2*k2 + (1 + sqrt(2)/2)*k3))
+    return y + h/6*(k1 + (2 - sqrt(2))*k2 + (2 + sqrt(2))*k3 + k4)
+"""
+
+
+@pytest.mark.parametrize(("text", "order"), [
+    (KUTTA, 3), (KUTTA.replace("2*k2 - k1", "-k1 + 2*k2"), 3), (GILL, 4),
+])  # fmt: skip
+def test_methods_with_negative_and_irrational_coefficients_have_their_order(
+    text: str, order: int
+) -> None:
+    found = finding(read_program(text, "Python"), "runge_kutta")
+    assert f"order {order} is written out" in found.text
+    assert not found.is_fault
+
+
+def test_wrong_weights_have_order_0_also_beside_a_wrong_stage() -> None:
+    text = """
+def step(f, x, v, h):
+    k1 = f(x, v)
+    k2 = f(x + h/2*k1, v + h/2*k1)
+    k3 = f(x + h/2*k2, v + h/2*k2)
+    k4 = f(x + h*k3, v + h*k2)
+    return v + h/6*k1 + 2*k2 + 2*k3 + k4
+"""
+    wrong = finding(read_program(text, "Python"), "runge_kutta")
+    assert wrong.is_fault
+    assert "order 0 is written out: weights 0.1667, 2, 2, 1" in wrong.text
+
+
 def test_a_method_may_return_the_state_after_a_step() -> None:
     text = "def step(f, y, h):\n    k1 = f(y)\n    k2 = f(y + h/2*k1)\n    return y + h*k2\n"
     right = finding(read_program(text, "Python"), "runge_kutta")
@@ -463,6 +506,10 @@ OF_JULIA = {
         "    return [v, -k/m*q]\n  end\nend\n",
         ["q_ddot = -k/m*q"],
     ),
+    "a minus before a bracket": (
+        "function f(y, k)\n  [y[2], c*y[2] + -(k*y[1])]\nend\n",
+        ["y_1_ddot = c*y_1_dot - k*y_1"],
+    ),
     "macros, views and signs in rows": (
         "H(p, x) = @SMatrix [\n  p.M p.m*cos(x[2])\n  p.m*cos(x[2]) p.J\n]\n"
         "function f(p, y, u)\n  C = @SMatrix [0 -p.m*y[4]*sin(y[2]); 0 0]\n  B = [1.0, 0.0]\n"
@@ -482,6 +529,98 @@ def test_forms_of_julia_are_followed(name: str) -> None:
     program = read_program(text, "Julia")
     assert [one.text for one in program.equations] == equations
     assert not program.unread
+
+
+#: Programs in the forms of Python, and their equations.
+OF_PYTHON = {
+    "a row as a column": (
+        "def f(t, y):\n    s = np.array([[a, b], [c, d]]) @ np.array([[y[0], y[1]]]).T\n"
+        "    return [y[2], y[3], s[0], s[1]]\n",
+        ["y_0_ddot = a*y_0 + b*y_1", "y_1_ddot = c*y_0 + d*y_1"],
+    ),
+    "the inverse of a matrix": (
+        "def f(t, y):\n    q, w, dq, dw = y\n    M = np.array([[m, c], [c, n]])\n"
+        "    a = np.linalg.inv(M) @ np.array([-k*q, -s*w])\n    return [dq, dw, a[0], a[1]]\n",
+        ["m*q_ddot + c*w_ddot = -k*q", "c*q_ddot + n*w_ddot = -s*w"],
+    ),
+    "the sum of an array as its method": (
+        "def f(t, y):\n    x, v = y\n    F = np.array([-k*x, -c*v])\n    return [v, F.sum()/m]\n",
+        ["x_ddot = (-k*x - c*x_dot)/m"],
+    ),
+    "the product of columns as a method": (
+        "def f(t, y):\n    x, v = y\n    F = np.array([k, c])\n"
+        "    return [v, -F.dot(np.array([x, v]))]\n",
+        ["x_ddot = -(k*x + c*x_dot)"],
+    ),
+    "a column in another shape": (
+        "def f(t, y):\n    q, w, dq, dw = y\n    a = np.array([-k*q, -s*w]).reshape(2, 1)\n"
+        "    return [dq, dw, a[0], a[1]]\n",
+        ["q_ddot = -k*q", "w_ddot = -s*w"],
+    ),
+    "rows as a column": (
+        "def f(t, y):\n    q, w, dq, dw = y\n    a = np.array([[-k*q], [-s*w]]).reshape(-1)\n"
+        "    return [dq, dw, a[0], a[1]]\n",
+        ["q_ddot = -k*q", "w_ddot = -s*w"],
+    ),
+    "the last entry": (
+        "def f(t, y):\n    x, v = y\n    a = [k*x, c*x]\n    return [v, -a[-1]]\n",
+        ["x_ddot = -c*x"],
+    ),
+    "all entries but the first": (
+        "def f(t, y):\n    x, v = y\n    a = [m, k*x, c*v]\n    b = a[1:]\n"
+        "    return [v, -b[0] - b[1]]\n",
+        ["x_ddot = -k*x - c*x_dot"],
+    ),
+    "an argument by its name": (
+        "def force(x, s=1.0):\n    return -s*x\n"
+        "def f(t, y):\n    x, v = y\n    return [v, force(x, s=k/m)]\n",
+        ["x_ddot = -k/m*x"],
+    ),
+    "one value for two names": (
+        "def f(t, y):\n    x, v = y\n    a = b = -k*x\n    return [v, a/m + b]\n",
+        ["x_ddot = -k*x/m - k*x"],
+    ),
+    "values by their names in quotes": (
+        "def step(s, dt):\n    s['v'] += -k*s['x']*dt\n    s['x'] += s['v']*dt\n",
+        ["x_ddot = -k*x"],
+    ),
+    "masses from an index on, of two bodies for any number": (
+        "def f(t, y, n, m):\n    d = np.zeros(2*n)\n    for i in range(n):\n"
+        "        d[i] = y[n+i]\n        d[n+i] = -g*np.sum(m[i:])*np.sin(y[i])\n    return d\n",
+        ["y_0_ddot = -g*(m_0 + m_1)*sin(y_0)", "y_1_ddot = -g*m_1*sin(y_1)"],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OF_PYTHON)
+def test_forms_of_python_are_followed(name: str) -> None:
+    text, equations = OF_PYTHON[name]
+    program = read_program(text, "Python")
+    assert [one.text for one in program.equations] == equations
+    assert not program.unread
+
+
+def test_a_column_as_a_row_is_not_followed() -> None:
+    text = (
+        "def f(t, y):\n    a = np.array([-k*y[0], -c*y[1]]).reshape(1, 2)\n"
+        "    return [y[2], y[3], a[0], a[1]]\n"
+    )
+    program = read_program(text, "Python")
+    assert not program.equations
+    assert [one.reason for one in program.unread] == ["another shape is not followed"]
+
+
+def test_nothing_follows_two_branches_that_return() -> None:
+    text = """
+def step(x, v, h):
+    if x > 0:
+        return x
+    else:
+        return v
+    v += -k*x*h
+    x += v*h
+"""
+    assert not read_program(text, "Python").equations
 
 
 #: Programs in the forms of other compiled languages, and their equations.
@@ -518,6 +657,60 @@ COMPILED = {
         " else { v -= h*k*x; x += h*v; } } }",
         ["x_ddot = -k*x"],
     ),
+    "a method that returns an entry": (
+        "Java",
+        "class A { double[] f(List<Double> y) {\n return new double[] {y.get(1), -k*y.get(0)}; } }",
+        ["y_0_ddot = -k*y_0"],
+    ),
+    "an index that goes back by one": (
+        "C",
+        "void f(double *y, double *d) { int i = 1; d[0] = y[i]; i--; d[1] = -k*y[i]; }",
+        ["y_0_ddot = -k*y_0"],
+    ),
+    "the difference of two numbers as an index": (
+        "C",
+        "void f(double *y, double *d) { d[0] = y[4 - 3]; d[1] = -k*y[4 - 4]; }",
+        ["y_0_ddot = -k*y_0"],
+    ),
+    "the inverse of a matrix of Eigen": (
+        "C++",
+        "void f(const double *y, double *d) {\n Matrix2d M; M << m, c, c, n;\n"
+        " Vector2d F(-k*y[0], -s*y[1]), a = M.inverse()*F;\n"
+        " d[0] = y[2]; d[1] = y[3]; d[2] = a(0); d[3] = a(1); }",
+        ["m*y_0_ddot + c*y_1_ddot = -k*y_0", "c*y_0_ddot + n*y_1_ddot = -s*y_1"],
+    ),
+    "a loop over entries in round brackets": (
+        "Fortran",
+        "subroutine f(n, x, v, h)\n integer :: n, i\n real :: x(n), v(n), a(n), h\n"
+        " do i = 1, n\n  a(i) = -k*x(i)\n end do\n v = v + h*a\n x = x + h*v\nend subroutine\n",
+        ["x_ddot = -k*x"],
+    ),
+    "statements behind a return": (
+        "Fortran",
+        "subroutine f(y, d)\n real :: y(2), d(2)\n d(1) = y(2)\n d(2) = -k*y(1)\n"
+        " return\n d(2) = 0\nend subroutine\n",
+        ["y_1_ddot = -k*y_1"],
+    ),
+    "a function with a variable for its result": (
+        "Fortran",
+        "function force(x) result(r)\n real :: x, r\n r = -k*x\n return\nend function\n"
+        "subroutine f(y, d)\n real :: y(2), d(2)\n d(1) = y(2)\n d(2) = force(y(1))\n"
+        "end subroutine\n",
+        ["y_1_ddot = -k*y_1"],
+    ),
+    "a function that is its own result": (
+        "Fortran",
+        "real function force(x)\n real :: x\n force = -k*x\n return\nend function\n"
+        "subroutine f(y, d)\n real :: y(2), d(2)\n d(1) = y(2)\n d(2) = force(y(1))\n"
+        "end subroutine\n",
+        ["y_1_ddot = -k*y_1"],
+    ),
+    "slices with one bound": (
+        "Go",
+        "func f(y []float64) []float64 {\n q, w := y[:2], y[2:]\n"
+        " return []float64{w[0], w[1], -k*q[0], -c*q[1]}\n}",
+        ["y_0_ddot = -k*y_0", "y_1_ddot = -c*y_1"],
+    ),
     "a copy of a slice": (
         "Go",
         "func f(y []float64) []float64 {\n z := make([]float64, 2)\n copy(z, y)\n"
@@ -550,6 +743,11 @@ COMPILED = {
         "fn g(y: &[f64; 2]) -> f64 { let (a, b) = (y[0], 2.0); a*b }\n"
         "fn f(y: &[f64; 2]) -> [f64; 2] { let [a, b] = [3.0, k]; [y[1], -a*b*g(y)] }",
         ["y_0_ddot = -a*k*(y_0*b)"],
+    ),
+    "the pattern of a reference": (
+        "Rust",
+        "fn f(&[x, v]: &[f64; 2]) -> [f64; 2] { [v, -k*x] }",
+        ["x_ddot = -k*x"],
     ),
     "functions of a type": (
         "Rust",
