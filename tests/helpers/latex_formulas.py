@@ -172,6 +172,8 @@ BRACKETS = r"""
 \left| x \right|^2  ⟶  |x|^2
 |a||b|  ⟶  |a| |b|
 |a + |b||  ⟶  |(a + |b|)|
+|\,\,\,\,\,\,\,\,\,|x| + y|  ⟶  |(|x| + y)|
+y \mathrm{x + 1}  ⟶  y (x + 1)
 \|\vec r\|^3  ⟶  |bold r|^3
 x = 2 a \cdots (3b)  ⟶  x = 2 a
 \bar r \times \bar v  ⟶  cross(<rbar, vbar>)
@@ -223,6 +225,10 @@ f(3)  ⟶  f@(3)
 
 DERIVATIVES = r"""
 \frac{d}{dt}\left(\frac{\partial L}{\partial\dot q}\right)  ⟶  d(∂(L; q.); t)
+{\frac{d}{dt}} x  ⟶  d(x; t)
+\partial_x V  ⟶  ∂(V; x)
+\partial_{\dot q} L  ⟶  ∂(L; q.)
+k = \partial^2 L/\partial x^2 y z  ⟶  k = ∂(L; x, x) y z
 \frac{d}{dt}\frac{\partial L}{\partial \dot q} - Q  ⟶  (d(∂(L; q.); t) - Q)
 \frac{\mathrm d}{\mathrm d t} \left( m r^2 \right)  ⟶  d(m r^2; t)
 \frac{\mathrm{d}x}{\mathrm{dt}}  ⟶  d(x; t)
@@ -275,6 +281,7 @@ M(q)\ddot q + C(q,\dot q)\dot q  ⟶  (M@(q) q.. + C@(q, q.) q.)
 \left|\begin{matrix} a & b \\ c & d\end{matrix}\right|  ⟶  det([a, b; c, d])
 M \begin{pmatrix} a \end{pmatrix}^{-1} x  ⟶  M [a]^(- 1) x
 \sum_{i=1}^n m_i v_i^2 - L  ⟶  (sum(m_i v_i^2; i = 1..n) - L)
+{\sum_i} a_i  ⟶  sum(a_i; i = ..)
 \sum^{2}_{i=1} a_i b  ⟶  sum(a_i b; i = 1..2)
 \sum\limits_i \left( a_i \right) b  ⟶  sum(a_i b; i = ..)
 \sum_{i,j=1}^{2} a_{ij}  ⟶  sum(sum(a_ij; j = 1..2); i = 1..2)
@@ -293,6 +300,13 @@ LAYOUT = r"""
 {\color{red} x + y} z  ⟶  (x + y) z
 x~y\,\!\;z  ⟶  x y z
 x\phantom{y}z  ⟶  x z
+x\kern2pt y  ⟶  x y
+x\kern2pt  ⟶  x
+x\mkern12mu\theta  ⟶  x theta
+x\hspace{1.2.3cm}y  ⟶  x y
+x\text{ }y  ⟶  x y
+x\mathrm{\quad}y  ⟶  x y
+{ \bf r} x  ⟶  bold r x
 \rule{0pt}{3ex} x + y  ⟶  (x + y)
 \definecolor{blue}{rgb}{0,0,1} x + y  ⟶  (x + y)
 x \label{a} \tag{1} \nonumber  ⟶  x
@@ -354,6 +368,10 @@ x = 1 \quad y = 2 \quad (12)  ⟶  x = 1 | y = 2
 x = 1 \qquad (2.3)  ⟶  x = 1
 x = 1 \text{ and } y = 2  ⟶  x = 1 | y = 2
 x = 1 \hspace{1cm} y = 2  ⟶  x = 1 | y = 2
+x = 1 \hspace*{1cm} y = 2  ⟶  x = 1 | y = 2
+x = 1 \kern1cm y = 2  ⟶  x = 1 | y = 2
+x = 1 \text{\quad} y = 2  ⟶  x = 1 | y = 2
+x = 1\text{,} y = 2  ⟶  x = 1 | y = 2
 x = 1 \implies y = 2 \Rightarrow z = 3  ⟶  x = 1 | y = 2 | z = 3
 \therefore x = 1  ⟶  x = 1
 m_1,\, m_2 r_2  ⟶  m_1 | m_2 r_2
@@ -410,6 +428,7 @@ x^23  ⟶  unreadable: a digit behind an exponent without braces
 x_12  ⟶  unreadable: a digit behind an index without braces
 x^2^3  ⟶  unreadable: '^' cannot stand here
 x_1_2  ⟶  unreadable: two indices at the letter x
+\partial_  ⟶  unreadable: an argument is missing
 2 3  ⟶  unreadable: two numbers side by side
 1e-3  ⟶  unreadable: a number with an exponent behind e
 2e5  ⟶  unreadable: a number with an exponent behind e

@@ -13,6 +13,7 @@ from shared_documents import shared
 
 from derive.reading.document import Document
 from derive.reading.document_formats import MAX_BYTES, MAX_NOTEBOOK_BYTES, read_document
+from derive.reading.formats import tex
 from solvers.io.toml_input import InputError
 
 KINDS = {"$$": "$$", "```math": "fence", ".. math::": "rst-math"}
@@ -244,6 +245,13 @@ def test_definitions_of_macros_are_kept(tmp_path: Path) -> None:
         r"\DeclareMathOperator{\sign}{sign}",
     )
     assert read(tmp_path, "a.md", r"$$\def\q{x} \q = 1$$").definitions == (r"\def\q{x}",)
+
+
+@pytest.mark.parametrize(
+    "text", ["Length of a rod", r"\title{a} \begin{document}Length of a rod\end{document} no"]
+)
+def test_the_text_of_latex_is_its_body_or_all_of_it(text: str) -> None:
+    assert tex.prose(text) == "<p>Length of a rod"
 
 
 def test_unread_parts_are_noted(tmp_path: Path) -> None:
