@@ -152,6 +152,14 @@ def test_an_unreadable_argument_has_the_exit_code_of_files(
     assert capsys.readouterr().err == "holonomic derive: mine.toml: is a folder\n"
 
 
+def test_a_reader_that_needs_no_more_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def closed(*_: object) -> int:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(command, "run", closed)
+    assert main(["single_pendulum"]) == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

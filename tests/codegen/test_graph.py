@@ -233,6 +233,24 @@ def test_a_sum_that_cancels_with_a_shared_pair_is_the_number_0() -> None:
     assert texts == ["r*(p + q)", "0.0", "r"]
 
 
+def test_products_and_quotients_of_a_sum_that_cancels_are_numbers() -> None:
+    graph = Graph()
+    p, q, r = map(graph.leaf, "pqr")
+    named = graph.let(p + q)
+    cancelling = graph.sum([(p + q, 1), (named, -1)])
+    quotient = graph.call("sin", named) / graph.call("sin", p + q)
+    lowering = Lowering([cancelling * r, quotient], ())
+    assert Assignments(lowering, (), LanguageNotation()).outputs == ["0.0", "1.0"]
+
+
+def test_a_power_with_a_whole_exponent_is_a_product() -> None:
+    graph = Graph()
+    base = graph.leaf("p") + graph.leaf("q")
+    assert graph.call("pow", base, graph.one + graph.one + graph.one) is base * base * base
+    third = graph.call("pow", base, graph.one / (graph.one + graph.one + graph.one))
+    assert Lowering([third], ()).functions == {"pow"}
+
+
 def test_opposite_terms_cancel_within_shared_sums() -> None:
     graph = Graph()
     p, q, r = map(graph.leaf, "pqr")

@@ -7,7 +7,7 @@ from matplotlib.mathtext import MathTextParser
 from derive.formulas.syntax import syntax_tree
 from derive.formulas.typeset.latex import latex
 from derive.formulas.typeset.lettering import name_latex
-from derive.formulas.typeset.line_breaks import latex_rows, width_of
+from derive.formulas.typeset.line_breaks import SIGN, latex_rows, width_of
 from derive.formulas.typeset.textbook_order import TextbookOrder
 
 m, g, length, x, y, v, a = sp.symbols("m g l x y v a", positive=True)
@@ -133,6 +133,13 @@ def test_long_formulas_are_broken_before_signs(formula: str) -> None:
     whole = " ".join(rows)
     assert whole.count("igl(") == whole.count("igr)")
     assert whole.count(r"\cos") == formula.count("cos")
+
+
+@pytest.mark.parametrize(("more", "count"), [(0.5, 1), (-0.5, 2)])
+def test_a_negative_product_is_broken_where_it_is_too_wide(more: float, count: int) -> None:
+    left, right = map(syntax_tree, ("L", "-m*(a1 + a2 + a3 + a4)"))
+    width = width_of(left) + SIGN + width_of(right) + more
+    assert len(latex_rows([left, right], width)) == count
 
 
 FORMULAS = ["x", "theta1", "123", "-(a + b)", "a + b - c", "a*b*c*d*x", "a*(b + c)", "a/(c*d*x*y)",

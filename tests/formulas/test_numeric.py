@@ -35,6 +35,10 @@ EVALUATOR = Evaluator({x: sp.Rational(-3, 7), y: sp.Rational(5, 4), m: sp.Intege
         sp.pi - 2 * sp.pi / 2,
         sp.sinh(x) - (sp.exp(x) - sp.exp(-x)) / 2,
         sp.Piecewise((-x, x < 0), (y, True)) - sp.Abs(x),
+        sp.Piecewise((y, sp.And(x < 0, y < 0)), (0, True)),
+        sp.Piecewise((0, sp.Or(x > 0, y > 0)), (y, True)),
+        sp.Piecewise((0, sp.Not(sp.And(x > 0, y > 0))), (y, True)),
+        (x * (y + 1) - x * y - x) ** sp.sqrt(2),
         # both sides of these conditions are equal
         sp.Piecewise((0, sp.sin(y) ** 2 + sp.cos(y) ** 2 <= 1), (y, True)),
         sp.Piecewise((y, sp.sin(y) ** 2 + sp.cos(y) ** 2 < 1), (0, True)),
@@ -68,6 +72,7 @@ def test_inverse_functions_may_have_complex_values() -> None:
     "expression",
     [
         1 / (x * (y + 1) - x * y - x),
+        (x * (y + 1) - x * y - x) ** -sp.sqrt(2),
         sp.log(sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1),
         sp.exp(sp.exp(sp.exp(m * 100))),
         sp.sin(sp.exp(100000 * y)),

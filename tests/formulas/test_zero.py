@@ -66,6 +66,7 @@ def test_irrational_or_too_large_expressions_are_undecided(expression: sp.Expr) 
         m * sp.log(a * (b + 1)) / n - sp.log(a + a * b) * m / n,
         sp.Abs(a) ** (b - 1) * sp.sign(a) - sp.Abs(a) ** b / a,
         sp.Heaviside(a) * sp.Max(0, a) - sp.Max(0, a),
+        sp.sign((a + b) ** 2 - a**2 - 2 * a * b - b**2 - 1) + 1,
     ],
 )
 def test_identities_of_roots_signs_and_other_functions_vanish(expression: sp.Expr) -> None:

@@ -235,6 +235,13 @@ def test_a_matrix_that_is_too_wide_is_written_by_entries(documents) -> None:
     assert "The solution is too long to read" in text
 
 
+def test_a_value_of_very_many_parts_does_not_fit_on_a_line() -> None:
+    numbering = Numbering(DerivedLetters(load("single_pendulum")))
+    theta = sp.Symbol("theta")
+    assert numbering.fits(sp.Add(*[theta] * 9, evaluate=False))
+    assert not numbering.fits(sp.Matrix([[0] * 5_000]))
+
+
 @pytest.mark.parametrize(("width", "last"), [(9, "G_29"), (10, "G_2_10")])
 def test_entries_of_wide_matrices_have_names_that_are_read_in_one_way(
     width: int, last: str

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 from constrained_systems import pinned, sleigh, swing
 
-from derive import Coordinate, Parameter, PointMass, System
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load
 from holonomic import build, equilibria, linearise
 
 BOX = {"x": (-1.0, 1.1), "y": (-1.0, 1.1)}
@@ -54,6 +54,11 @@ def test_a_sleigh_runs_straight_with_the_centre_of_mass_ahead() -> None:
         assert np.abs(values[:-1]).max() < 1e-6
         assert linear.stability == word
     assert linear.B[linear.states.index("x_dot"), 0] == pytest.approx(1 / 2.0, rel=1e-12)
+
+
+def test_systems_with_conditions_have_no_small_oscillations() -> None:
+    assert Derivation(load("single_pendulum")).is_linearisable
+    assert not Derivation(load("four_bar")).is_linearisable
 
 
 def test_violated_constraints_are_refused() -> None:

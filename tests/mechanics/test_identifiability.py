@@ -13,6 +13,7 @@ from derive.formulas.residues import (
     NoRootError,
     RandomResidues,
     ResidueSeries,
+    branches,
     echelon,
     null_space,
 )
@@ -149,6 +150,12 @@ def test_residues_obey_the_equations_of_functions(zero: sp.Expr) -> None:
     _, evaluate = at_random(1)
     assert not evaluate(zero).rows.any()
     assert evaluate(zero.args[0]).rows.any()
+
+
+@pytest.mark.parametrize("argument", [x - c, c - x])
+def test_both_branches_of_a_sign_are_chosen(argument: sp.Expr) -> None:
+    signs = [RandomResidues(1, one).sign(argument) for one in branches([sp.sign(argument)])]
+    assert sorted(signs) == [-1, 1]
 
 
 def test_rows_modulo_a_prime_have_the_null_space_of_rationals() -> None:

@@ -463,6 +463,13 @@ def test_a_copy_of_a_system_has_each_norm_once() -> None:
     assert [one.name for one in system.conditions] == ["rigid_1"]
 
 
+def test_conditions_of_a_matrix_that_cannot_be_decided_remain() -> None:
+    stretch = sp.sqrt(x) - sp.exp(y)
+    assert rotation_matrix([(1, 0, 0), (0, stretch, 0), (0, 0, 1)]).conditions == (
+        (stretch**2 - 1) / 2,
+    )
+
+
 @pytest.mark.long("the same bodies in the other order", keep=1)
 @pytest.mark.parametrize("is_first", [True, False])
 @pytest.mark.filterwarnings("ignore:constraints of system 'satellite'")

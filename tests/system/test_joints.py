@@ -170,6 +170,15 @@ def test_the_point_of_contact_does_not_slip(kind: str) -> None:
     assert [one.name for one in joint] == ["ground_along", "ground_across", "ground_normal"]
 
 
+def test_a_sphere_rolls_without_an_axle() -> None:
+    # upright, it turns about x, y and z of space at the rates of theta, phi and psi
+    q, axes = (x, y, z, psi, theta, phi), rotations("zxy", (psi, theta, phi))
+    joint = rolling_on_plane("ground", q, (x, y, z), R, axes)
+    upright = [one.formula.subs({psi: 0, theta: 0, phi: 0}) for one in joint]
+    across = velocity(y) + R * velocity(theta)
+    assert upright == [velocity(x) - R * velocity(phi), across, z - R]
+
+
 @pytest.mark.parametrize(("axle", "words"), [("w", "is 'w'"), ("z", "is vertical")])
 def test_wheels_without_a_horizontal_axle_are_refused(axle: str, words: str) -> None:
     with pytest.raises(SystemDefinitionError, match=words):
