@@ -82,8 +82,7 @@ def _root(number: int, degree: int) -> int:
         root = pow(number, (PRIME + 1) // 4, PRIME)
         if root * root % PRIME != number % PRIME:
             raise NoRootError("no square root")
-        # of both roots, the one that is a square has roots of its own
-        number = root if pow(root, (PRIME - 1) // 2, PRIME) == 1 else PRIME - root
+        number = root  # the one of both that is a square, and has roots of its own
         degree //= 2
     return pow(number, pow(degree, -1, PRIME - 1), PRIME)
 
