@@ -451,6 +451,13 @@ def test_no_planted_mistake_lets_a_formula_vanish(derivation) -> None:
         assert mistake.equation.value != 0
 
 
+def test_a_formula_without_values_has_no_mistake(derivation) -> None:
+    order = DerivedLetters(derivation("single_pendulum").system).order
+    theta = next(s for s in order.kinds if s.name == "theta")
+    value = theta / (sp.sin(theta) ** 2 + sp.cos(theta) ** 2 - 1)
+    assert planted(NumberedEquation(1, ("F",), value, (), order), "0") is None
+
+
 def test_a_multiple_of_zero_and_another_zero_of_energy_are_no_mistakes(derivation) -> None:
     order = DerivedLetters(derivation("rotating_hoop").system).order
     symbols = {s.name: s for s in order.kinds}

@@ -408,6 +408,17 @@ def test_parts_that_are_not_followed_are_reported_and_never_guessed() -> None:
     assert reasons["verlet"][1] == "the update of x has the acceleration a of another step"
 
 
+def test_a_member_whose_value_is_missing_is_reported() -> None:
+    text = (
+        "class A {\n k = VALUE;\n step(h) { this.v -= this.k*this.x*h; this.x += this.v*h; }\n}\n"
+    )
+    missing = read_program(text.replace("VALUE", "-"), "JavaScript")
+    assert not missing.equations
+    assert [one.reason for one in missing.unread] == ["line 2: '' is not followed"]
+    unclosed = read_program(text.replace("VALUE", "(2"), "JavaScript")
+    assert [(one.name, one.value) for one in unclosed.constants] == [("this.k", "2")]
+
+
 def test_conditions_on_the_method_give_both_methods_and_those_on_formulas_none() -> None:
     program = read_program(programs.CONDITIONAL, "Python")
     assert [one.text for one in program.equations] == ["x_ddot = (kick - k*x)/m"]
