@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 from friction import BELT, block
 
 import generated.double_pendulum as dp
 import generated.four_bar as four_bar
+from derive import Coordinate, Parameter, PointMass, System
+from solvers.app.modules import build
 from solvers.equations.forms import Form
 from solvers.equations.singularities import condition_of_constraints
 
@@ -44,3 +47,25 @@ def test_no_condition_is_found_where_the_inertia_is_no_number() -> None:
              for name, p in zip(four_bar.PARAMETERS, params, strict=True)]  # fmt: skip
     with np.errstate(invalid="ignore"):
         assert condition_of_constraints(four_bar, heavy, state, 0.0) == (0.0, "")
+
+
+def test_more_constraints_than_coordinates_depend_on_each_other_everywhere() -> None:
+    # two points, at each of which two of the constraints lock the mass
+    x, y = sp.symbols("x y", real=True)
+    m = sp.Symbol("m", positive=True)
+    q = [Coordinate(s, "m", "position") for s in (x, y)]
+    locked = build(
+        System(
+            "locked",
+            "",
+            q,
+            [Parameter(m, "kg", 1, "mass")],
+            [PointMass(m, (x, y))],
+            potential=0,
+            constraints=[x * (x - 1), y * (1 - x), x * y],
+        )
+    )
+    assert len(locked.RESIDUALS) == 2 * 3
+    condition, weakest = condition_of_constraints(locked, [1.0], [0.6, 0.8, 0.0, 0.0], 0.0)
+    assert condition == float("inf")
+    assert weakest in locked.RESIDUALS

@@ -4,6 +4,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,15 +15,17 @@ import generated.driven_pendulum as driven
 import generated.furuta_pendulum as furuta
 import generated.single_pendulum as single
 from solvers import Ensemble, Event, Held, ensemble, run_scene
-from solvers.integration.accuracy.accurate_ensemble import AccuracyWarning
+from solvers.integration.accuracy.accurate_ensemble import AccuracyWarning, accurate_ensemble
 from solvers.integration.accuracy.integration_run import (
     EndsEarlyError,
     IntegrationRun,
     NotAccurateError,
     TooLongError,
 )
+from solvers.integration.given_tolerances import many_motions
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.inputs import Controller
+from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
 from solvers.references.taylor import taylor
 from solvers.scenes.scene import Scene
@@ -214,6 +217,12 @@ def test_chaotic_motions_of_an_ensemble_are_integrated_in_longer_numbers() -> No
     assert motions.nfev[0] > motions.nfev[1] == 0
 
 
+def test_motions_in_longer_numbers_end_after_the_requested_times() -> None:
+    motions = ensemble(dp, (0, 2), np.transpose([START]), {}, accuracy=1e-14, t_eval=[1.0])
+    assert motions.nfev[0] == 0
+    check_ensemble(motions, np.transpose([START]), 1e-14)
+
+
 def test_motions_of_an_ensemble_have_their_own_ends_parameters_and_times() -> None:
     starts, lengths = {"theta": [0.5, 2.0], "theta_dot": 0.0}, np.array([0.7, 1.6])
     times = np.array([[0.3, 1.0], [0.4, 2.0]])
@@ -250,3 +259,26 @@ def test_estimates_of_ensembles_contain_the_errors_of_the_checks() -> None:
         error = np.abs(motions.samples[:, k] - exact.y).max()
         assert error <= motions.error_estimate[k] + exact.error_estimate
         assert motions.error_estimate[k] <= 1e-10
+
+
+def test_constant_inputs_are_those_of_motions_in_longer_numbers() -> None:
+    arguments = furuta, (0, 0.1), (0.1, 0.2, 0.0, 0.0), {"tau": 0.1}
+    motion = integrate(*arguments, accuracy=1e-15, t_eval=[0.02, 0.1])
+    assert "numbers" in motion.run
+    assert motion.inputs.tolist() == [[0.1, 0.1]]
+
+
+def test_motions_that_no_check_reaches_are_repeated_with_a_tenth_of_the_tolerance() -> None:
+    tolerances: list[float] = []
+
+    def run(*arguments: Any) -> Ensemble:
+        tolerances.append(arguments[-1].rtol)
+        motions = many_motions(*arguments)
+        if len(tolerances) in (2, 3):  # the checks of the first run
+            motions.status[:] = Status.STEP_LIMIT
+        return motions
+
+    start = np.array([[1.0], [0.0]])
+    motions = accurate_ensemble(single, (0, 1), start, {}, Options(), 1e-6, run)
+    assert motions.error_estimate[0] <= 1e-6
+    assert tolerances[3] == pytest.approx(tolerances[0] / 10)

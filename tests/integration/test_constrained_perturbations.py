@@ -12,7 +12,7 @@ import generated.four_bar as four_bar
 import generated.rolling_disc as rolling_disc
 import generated.single_pendulum as pendulum
 from derive import Coordinate, Parameter, RigidBody, System, quaternion
-from holonomic import build, integrate
+from holonomic import build, integrate, prepare
 from solvers import Event, lyapunov_spectrum, sensitivities, transition_matrix
 from solvers.equations.forms import Form
 from solvers.equations.module import GeneratedModule
@@ -194,3 +194,27 @@ def test_exponents_are_those_of_the_angles(rods: GeneratedModule) -> None:
     assert abs(found.exponents.sum()) < 1e-6  # no friction
     allowed = 3 * (expected.errors + found.errors)
     assert (np.abs(found.exponents - expected.exponents) < allowed).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "change"),
+    [
+        ({"delta_x": 1.0}, (1.0, np.tan(1.0))),
+        ({"delta_y": 1.0}, (1 / np.tan(1.0), 1.0)),
+        ({"delta_x": 1.0, "delta_y": 0.0}, (np.cos(1.0) ** 2, np.sin(1.0) * np.cos(1.0))),
+    ],
+)
+def test_perturbations_that_are_not_given_follow_from_the_others(
+    given: dict[str, float], change: tuple[float, float], rod: GeneratedModule
+) -> None:
+    # at an angle of 1 rad the mass moves along (cos 1, sin 1)
+    start = dict(zip(rod.STATE, START, strict=True))
+    motion = integrate(rod, (0, 0), start | given, rod.DEFAULTS, form="variational")
+    assert motion.y[4:6, 0] == pytest.approx(change, abs=1e-12)
+
+
+def test_a_prepared_function_makes_perturbations_tangent(rod: GeneratedModule) -> None:
+    run = prepare(rod, rod.DEFAULTS, form="variational")
+    tangent = (np.cos(1.0) ** 2, np.sin(1.0) * np.cos(1.0))
+    ends = [run((0, 0.1), (*START, *change, 0.0, 0.0)) for change in ((1.0, 0.0), tangent)]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-12)

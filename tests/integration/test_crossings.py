@@ -24,6 +24,7 @@ from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.integration.problem.status import Status
+from solvers.integration.results.event_location import ROUGH_NODES, may_recur
 from solvers.runge_kutta.parallel_stages import bernstein_matrix
 
 #: Degree of the motions y(t) that one step of gauss8 gives exactly.
@@ -331,3 +332,11 @@ def test_all_roots_of_polynomials_within_a_step_are_found_in_order(
         polynomials.append([fsum(one) for one in terms])
     for roots, found in zip(chosen, roots_of(polynomials), strict=True):
         assert found == pytest.approx(sorted(x for x in roots if 0 < x < 1), abs=1e-7)
+
+
+@pytest.mark.parametrize("k", range(len(ROUGH_NODES)))
+def test_an_event_that_is_no_number_within_a_step_does_not_recur(k: int) -> None:
+    values = np.cos(9.0 * ROUGH_NODES)
+    assert may_recur(values)
+    values[k] = np.nan
+    assert not may_recur(values)

@@ -16,6 +16,7 @@ import generated.elastic_pendulum as ep
 import generated.henon_heiles as hh
 import generated.single_pendulum as sp
 import generated.swinging_atwood as atwood
+from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
 
@@ -87,3 +88,12 @@ def test_a_copied_solution_states_that_it_has_no_estimate() -> None:
     assert copy.y.tolist() == run.y.tolist()
     with pytest.raises(ValueError, match=re.escape("integrate again")):
         _ = copy.global_error_estimate
+
+
+def test_a_copied_ensemble_has_its_states_but_no_equations() -> None:
+    motions = ensemble(sp, (0, 1), {"theta": [0.5, 1.0]}, {})
+    assert motions.motion(1).y[:, -1] == pytest.approx(motions.y[:, 1], abs=1e-8)
+    copy = pickle.loads(pickle.dumps(motions))
+    assert copy.y.tolist() == motions.y.tolist()
+    with pytest.raises(ValueError, match="a copied ensemble has no equations"):
+        copy.motion(1)

@@ -393,6 +393,25 @@ def test_solve_ivp_runs_our_methods_over_no_time() -> None:
     assert still.y[0].tolist() == [2.0] * len(still.t)
 
 
+def test_our_methods_fail_in_scipys_interface_where_a_motion_grows_beyond_all_bounds() -> None:
+    # y = 1/(1 - t)
+    solver = ode_solver("dp54")(lambda t, y: y**2, 0.0, np.array([1.0]), 2.0)
+    for _ in range(1000):
+        message = solver.step()
+        if solver.status != "running":
+            break
+    assert solver.status == "failed"
+    assert "step size" in message
+    assert solver.t == pytest.approx(1.0, rel=0.01)
+
+
+def test_solve_ivp_runs_our_methods_over_a_span_of_one_rounding() -> None:
+    end = np.nextafter(1.0, 2.0)
+    brief = solve_ivp(lambda t, y: y, (1.0, end), [1.0], method=ode_solver("dp54"))
+    assert brief.success
+    assert brief.t.tolist() == [1.0, end]
+
+
 @pytest.mark.parametrize(
     ("span", "options", "message"),
     [

@@ -12,6 +12,7 @@ from scipy.linalg import eigh
 import generated.double_pendulum as dp
 import generated.duffing as duffing
 import generated.elastic_pendulum as elastic
+import generated.foucault_pendulum as foucault
 import generated.henon_heiles as henon
 import generated.single_pendulum as single
 from solvers.equations.linearisation.equilibria import equilibria
@@ -223,3 +224,30 @@ def test_a_family_that_breaks_the_symmetry_branches_off() -> None:
         assert np.abs(family.y[2:, -1]).max() > 0.1  # not at rest
         found.append([special.orbit.energy for special in family.special])
     assert found[0] == pytest.approx(found[1], rel=1e-8)
+
+
+def test_a_family_ends_at_the_longest_period() -> None:
+    start = periodic_orbit(single, {"theta": 0.4}, 2.0, {"l": 1.0}, symmetry=("theta_dot",))
+    family = orbit_family(single, start, direction=1, max_period=2.1)
+    assert family.ends == ("start", "longest period")
+    assert family.period[-1] == pytest.approx(2.1, rel=1e-12)
+
+
+def test_normal_modes_of_foucaults_pendulum_are_conical_motions() -> None:
+    amplitude, length = 0.1, 1.0
+    rest = linearise(foucault, {"x": 0.0, "y": 0.0}, {"l": length})
+    height = np.sqrt(length**2 - amplitude**2)
+    for mode in rest.modes:  # the rotation of the Earth separates both senses
+        orbit = normal_mode_orbit(foucault, rest, mode, amplitude)
+        exact = 2 * np.pi / mode.eigenvalue.imag * np.sqrt(height / length)
+        assert orbit.period == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize("quantity", ["period", "energy"])
+def test_the_figure_of_a_family_shows_the_chosen_quantity(quantity: str) -> None:
+    start = periodic_orbit(single, {"theta": 0.4}, 2.0, {"l": 1.0}, symmetry=("theta_dot",))
+    family = orbit_family(single, start, direction=1, max_period=2.1)
+    (line,) = family.figure(quantity).axes[0].lines
+    shown = {"period": family.period, "energy": family.energy}
+    assert np.asarray(line.get_xdata()).tolist() == family.values.tolist()
+    assert np.asarray(line.get_ydata()).tolist() == shown[quantity].tolist()

@@ -367,3 +367,13 @@ def test_multipliers_decide_on_special_orbits() -> None:
     assert inside * outside < 0
     others = np.prod([abs(value * 1.1 * np.exp(0.7j) - 1) ** 2 for value in (0.3, -0.2)])
     assert outside == pytest.approx((1.21 - 1) * (-0.06 - 1) * others)
+
+
+@pytest.mark.parametrize(("beta", "largest"), [(0.0, 0.1), (0.5, 0.05), (2.0, 0.2)])
+def test_steps_in_a_parameter_without_bounds_are_relative_to_its_start_or_to_one(
+    beta: float, largest: float
+) -> None:
+    params = {"beta": beta, "F": 0.01, "Omega": 4.0, "c": 0.1}  # a response that hardly changes
+    start = periodic_orbit(duffing, {"x": 0.0}, np.pi / 2, params)
+    family = orbit_family(duffing, start, "beta", direction=1, max_orbits=6, max_step=0.1)
+    assert np.diff(family.values).max() == pytest.approx(largest, rel=1e-3)

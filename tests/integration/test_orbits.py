@@ -328,3 +328,12 @@ def test_motions_of_very_many_steps_are_no_way_to_an_orbit(monkeypatch: pytest.M
     monkeypatch.setattr(orbit_shooting, "MOST_STEPS", 5)
     with pytest.raises(NotFinishedError, match="the maximum number of steps was reached"):
         periodic_orbit(single, {"theta": 1.0}, 2.0, {})
+
+
+def test_a_guess_need_not_be_on_the_section() -> None:
+    section = Event(henon, "x", 0.0, direction=1)
+    guess = [0.02, -0.08, 0.1, 0.05]
+    orbit = periodic_orbit(henon, guess, section, {})
+    assert orbit.y[0] == 0.0
+    assert orbit.y[2] > 0.0
+    assert orbit.energy == pytest.approx(energy_of(henon, guess), rel=1e-8)

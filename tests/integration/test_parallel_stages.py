@@ -184,6 +184,15 @@ def test_the_early_estimate_is_that_of_converged_stages() -> None:
     assert early.error[0, 0] == pytest.approx(stages.error_norm(z, increments), rel=0.2)
 
 
+@pytest.mark.parametrize("method", PARALLEL)
+def test_the_iteration_of_a_motion_at_rest_contracts_fast(method: str) -> None:
+    tableau, rest = load(method), np.zeros(2)
+    last = Polynomial.constant(0.1, rest, len(tableau.c))
+    solved = ParallelStages(tableau, 1e-6, 1e-9).solve(np.zeros_like, np.ones(2), 0.1, last)
+    assert not solved.increments.any()
+    assert solved.contraction < 0.1
+
+
 def test_the_error_is_estimated_again_where_the_iteration_is_slow() -> None:
     def oscillation(t: float, y: np.ndarray) -> np.ndarray:
         return np.array([y[1], -y[0]])

@@ -210,6 +210,16 @@ def test_a_parallelogram_remains_one(method: str) -> None:
     assert np.abs(run.energy - run.energy[0]).max() < 1e-8
 
 
+def test_a_parallelogram_remains_one_by_a_method_of_scipy() -> None:
+    start = consistent_start(four_bar, {"phi": 1.0, "phi_dot": -8.0}, EQUAL,
+        guess={"psi": 0.0, "chi": 1.0})  # fmt: skip
+    run = integrate(four_bar, (0, 0.5), start.y, EQUAL, method="DOP853", rtol=1e-8, atol=1e-8)
+    assert run.status is Status.FINISHED
+    assert run.y[0, -1] < -np.pi
+    assert np.abs(run.y[1]).max() < 1e-9
+    assert np.abs(run.y[2] - run.y[0]).max() < 1e-9
+
+
 @pytest.mark.long("compiles three loops", keep=1)
 @pytest.mark.parametrize("precision", ["double-double", "long double", "quadruple"])
 def test_longer_numbers_end_before_a_singular_configuration(precision: str) -> None:

@@ -3,6 +3,7 @@
 import re
 from functools import partial
 from math import pi, sqrt
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,13 @@ import generated.double_pendulum as dp
 import generated.elastic_pendulum as ep
 import generated.henon_heiles as hh
 import generated.single_pendulum as sp
+from solvers.integration.checks import predictability
 from solvers.integration.checks.predictability import PredictabilityWarning, ignore_predictability
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
+from solvers.integration.problem import validation
 from solvers.integration.problem.events import Event
+from solvers.integration.problem.problem import Options
 from solvers.integration.problem.status import Status
 from solvers.references.taylor import taylor
 
@@ -154,3 +158,27 @@ def test_a_regular_run_does_not_warn_however_long() -> None:
     # and at once where a mode is fast, here ten-thousandfold; it gains energy at larger tolerances
     stiff = (1.0, 1e8, 1.0, 9.81)
     integrate(ep, (0, 6), (*ep.equilibrium(stiff), 0.0, 0.5), stiff, rtol=1e-5, atol=1e-5)
+
+
+def test_the_growth_of_the_examined_steps_is_continued_to_the_predictable_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    limits, run = [], partial(integrate, dp, (0, 500), REPORT, {}, rtol=1e-9, t_eval=[500.0])
+    for most in (predictability.MOST_STEPS, 150):
+        monkeypatch.setattr(predictability, "MOST_STEPS", most)
+        with pytest.warns(PredictabilityWarning) as caught:
+            run()
+        limits.append(reported_time(caught[0].message))
+    assert limits[0] == pytest.approx(limits[1], rel=0.3)
+    assert limits[0] != limits[1]
+
+
+def test_an_error_that_cannot_be_measured_counts_as_that_of_a_wrong_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # the error of Euler's method is that of a wrong run, too: the size of the motion
+    euler = validation.problem(dp, (0, 60), REPORT, {}, Options("rk1", h=0.05))
+    measured = predictability.predictable_until(euler, 60.0)
+    failed = SimpleNamespace(status=Status.STEP_LIMIT)
+    monkeypatch.setattr(predictability, "rerun", lambda _: failed)
+    assert predictability.predictable_until(euler, 60.0) == measured < 10

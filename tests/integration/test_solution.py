@@ -219,3 +219,10 @@ def test_a_sweep_that_fails_stops_no_other_motions(
     thread.join()
     assert results["other"].success.all()
     assert np.isfinite(sweep(definition, tmp_path / "other").maps["end"]).all()
+
+
+def test_a_motion_over_no_time_stays_at_its_start() -> None:
+    solution = integrate(sp, (1, 1), (0.3, 2.0), {})
+    assert solution.equations.states(np.ones(3)).tolist() == [[0.3, 2.0]] * 3
+    (shown,) = solution.sampled_motions()
+    assert (shown.y.T == [0.3, 2.0]).all()

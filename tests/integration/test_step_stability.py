@@ -1,6 +1,7 @@
 """Fixed steps that are too long are named by every function, with the last good time."""
 
 import re
+from functools import partial
 from math import inf, pi
 from types import ModuleType
 from typing import Any
@@ -117,3 +118,13 @@ def test_other_failures_keep_their_status() -> None:
     assert solution.status is Status.NOT_FINITE
     pivot = integrate(ep, (0, 1), (1.0, 0.0, -30.0, 0.0), ep.DEFAULTS, method="rk4", h=1e-3)
     assert pivot.status is Status.OUTSIDE_DOMAIN
+
+
+@pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
+def test_a_sufficient_step_is_found_where_no_energy_is_constant() -> None:
+    run = partial(integrate, driven, (0, 10), (0.6, 0.0), {"g": 9.81e4}, method="rk4")
+    broken = run(h=0.1)
+    assert broken.status is Status.UNSTABLE
+    _, stable, sufficient = numbers(broken.message)
+    assert stable / 4 < sufficient < stable
+    assert run(h=sufficient).status is Status.FINISHED

@@ -200,6 +200,16 @@ def test_kinks_of_time_and_of_nested_functions_are_switches(backend: str) -> Non
     assert abs(ends[0] - ends[1]).max() < 1e-10
 
 
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_switch_that_moves_another_kink_beyond_the_state_switches_this_too(backend: str) -> None:
+    force = x + sp.sign(x - 3 * sp.sign(TIME - 1))  # 1 up to t = 1, then -1 before x = 3
+    module = oscillator("moved_kink", force=force)
+    motion = integrate(module, (0, 2), (0.0, 0.0), {}, backend=backend, t_eval=[1.0, 2.0])
+    assert motion.status is Status.FINISHED
+    assert motion.y[0] == pytest.approx([0.5, 1.0], abs=1e-9)
+    assert motion.y[1] == pytest.approx([1.0, 0.0], abs=1e-9)
+
+
 @pytest.mark.parametrize("relation", [sp.Gt, sp.Ge, sp.Lt, sp.Le, sp.Eq, sp.Ne])
 def test_a_force_acts_on_its_side_of_a_jump(relation: type[sp.Rel]) -> None:
     force = sp.Piecewise((2, relation(x, a)), (3, True))

@@ -21,6 +21,7 @@ from solvers.integration.loops import compiled_loop
 from solvers.integration.problem import validation
 from solvers.integration.problem.problem import Options, shortest_step
 from solvers.integration.problem.status import Status
+from solvers.integration.results.solution import Interrupted
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -304,6 +305,19 @@ def test_inputs_that_become_nan_end_the_motions_of_their_columns(backend: str) -
     motions = ensemble(cart, (0, 1), starts, {}, inputs=Held(0.02, controller), backend=backend)
     assert motions.status.tolist() == [Status.NOT_FINITE, Status.FINISHED]
     assert motions.t == pytest.approx([0.52, 1.0])
+
+
+def test_a_run_that_is_interrupted_at_its_first_sample_has_no_inputs() -> None:
+    def controller(t: float, y: Array) -> dict[str, float]:
+        raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as stopped:
+        integrate(cart, (0, 1), START, {}, inputs=Held(0.1, controller), backend="compiled")
+    solution = stopped.value.solution
+    assert solution.status is Status.INTERRUPTED
+    assert solution.t.shape == (0,)
+    assert solution.inputs is not None
+    assert solution.inputs.shape == (2, 0)
 
 
 def test_inputs_need_a_system_that_has_them() -> None:

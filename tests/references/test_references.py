@@ -263,3 +263,10 @@ def test_functions_without_text_keep_their_literals() -> None:
 
 def literal(x: object) -> object:
     return 0.1000, 1e-3, 2
+
+
+def test_a_series_without_singularities_takes_steps_as_if_one_were_at_one_second() -> None:
+    # 1/e² of the distance to the nearest singularity
+    ends: list[float] = []
+    taylor(sp, sp.DEFAULTS, (0.0, 0.0), [0.0, 1.0], 20, progress=ends.append)
+    assert ends == pytest.approx(np.exp(-2) * np.arange(1, 8), rel=1e-12)

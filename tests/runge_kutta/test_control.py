@@ -52,6 +52,22 @@ def test_a_step_in_vain_leaves_no_trace_in_the_memory() -> None:
     assert tried.factor(0.3) == plain.factor(0.3)
 
 
+@pytest.mark.parametrize("method", ["dp54", "radau3"])
+def test_a_step_of_another_method_leaves_no_trace_in_the_memory(method: str) -> None:
+    new, used = (Controller.of(load(method), 1e-3, 1e-6) for _ in range(2))
+    used.factor(0.01, 0.5)
+    used.forget()
+    assert used.factor(0.3, 0.5) == new.factor(0.3, 0.5)
+
+
+def test_absolute_tolerances_above_one_relax_no_error_estimate_of_radau_methods() -> None:
+    error, y = np.array([[1e-3, 2e-3]]), np.array([1.0, 3.0])
+    unit, large = (
+        Controller.of(load("radau3"), 0.0, atol).norm(error, y, y) for atol in (1.0, 4.0)
+    )
+    assert large == pytest.approx(unit / 4, rel=1e-14)
+
+
 def test_the_first_step_is_within_the_run_and_finite() -> None:
     def first(y: float, rate: float, duration: float) -> float:
         state = np.array([y])

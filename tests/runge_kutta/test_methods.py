@@ -18,7 +18,7 @@ from mpmath import sin as mpsin
 from solvers.runge_kutta import methods
 from solvers.runge_kutta.method_catalogue import UnknownMethodError, load, names
 from solvers.runge_kutta.order_conditions import density, order, trees
-from solvers.runge_kutta.stepper import Rhs, Stepper
+from solvers.runge_kutta.stepper import Rhs, Stepper, evaluated
 from solvers.runge_kutta.surd import Surd
 from solvers.runge_kutta.tableau import Tableau
 
@@ -259,3 +259,9 @@ def test_surds_compute_exactly() -> None:
     # 26² = 676 and 15² · 3 = 675: the parts cancel to three digits, the value keeps all
     assert isclose(float(26 - 15 * r), 1 / (26 + 15 * sqrt(3)), rel_tol=1e-13)
     assert abs(1 - r) == r - 1
+
+
+@pytest.mark.parametrize("value", [[1.0, [2.0]], [[1.0], [2.0, 3.0]]])
+def test_a_derivative_with_parts_of_different_lengths_is_refused(value: list[object]) -> None:
+    with pytest.raises(ValueError, match=r"right-hand side at t = 0.5, .* of shape \(1,\)"):
+        evaluated("right-hand side", lambda t, y: value, 0.5, np.zeros(1), (1,))  # type: ignore

@@ -107,7 +107,7 @@ class Iterate:
 def solve(
     shooting: OrbitConditions,
     point: OrbitStart,
-    fixed: Array | None = None,
+    fixed: Array,
     *,
     scales: Array | None = None,
     iterations: int | None = None,
@@ -128,7 +128,6 @@ def solve(
     n, damping = len(point.y), DAMPING
     scales = np.ones(n + 2) if scales is None else scales
     sizes = np.maximum(scales[:n], 1.0)
-    fixed = np.empty((0, n + 2)) if fixed is None else fixed
     if shooting.reversal is not None:
         fixed = np.concatenate([fixed, np.eye(n, n + 2)[shooting.reversal.changed]])
     change, now, stalls = np.zeros(n + 2), Iterate.at(shooting, point, sizes), 0
