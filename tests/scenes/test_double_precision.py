@@ -83,6 +83,19 @@ def test_errors_are_estimated_at_the_times_that_are_returned() -> None:
     assert {*motion.sample_times.tolist()} <= {*double_precision.check_times(run).tolist()}
 
 
+def test_of_many_steps_some_are_compared_all_along_the_motion(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    motion = motion_of(Scene(dp, {}, {"theta1": 1.0, "theta2": 2.0}, 10.0, samples=2))
+    run = IntegrationRun(motion, MethodChoice("dp54", "rational", ""), 1e-6)
+    steps = run.integrate(None)[0]
+    monkeypatch.setattr(double_precision, "MOST_SAMPLES", 40)
+    chosen = {*double_precision.check_times(run).tolist()} & {*steps.tolist()}
+    assert 30 <= len(chosen) <= 42 < len(steps) / 2  # with both ends
+    in_thirds, _ = np.histogram([*chosen], [steps[0], *steps[len(steps) // 3 :: len(steps) // 3]])
+    assert in_thirds.min() > 8
+
+
 def test_runs_that_do_not_reach_the_end_are_no_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     motion, integrate = motion_of(replace(LONG, duration=5.0)), IntegrationRun.integrate
 
@@ -94,6 +107,18 @@ def test_runs_that_do_not_reach_the_end_are_no_checks(monkeypatch: pytest.Monkey
     monkeypatch.setattr(IntegrationRun, "integrate", failing)
     with pytest.raises(NotAccurateError, match="2 of 5 runs reach the end"):
         sufficient(motion, 1e-9)
+
+
+def test_two_checks_both_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    motion, states = motion_of(replace(LONG, duration=3.0)), IntegrationRun.states
+
+    def failing(run, *arguments):
+        if run.method_choice.method != "verner98":
+            raise NotAccurateError("it does not reach the end")
+        return states(run, *arguments) + (run.method_choice.form == "hamiltonian") * 1e-3
+
+    monkeypatch.setattr(IntegrationRun, "states", failing)
+    assert sufficient(motion, 1e-9)[1] > 1e-3
 
 
 def test_one_method_alone_is_no_majority() -> None:

@@ -24,7 +24,11 @@ from solvers.scenes.fitting import least_squares as shooting_steps
 from solvers.scenes.fitting import prediction
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.measurement import Outputs
-from solvers.scenes.fitting.multiple_shooting import MultipleShooting, segments
+from solvers.scenes.fitting.multiple_shooting import (
+    MultipleShooting,
+    NoResidualsError,
+    segments,
+)
 from solvers.scenes.fitting.statistics import leverages
 
 
@@ -276,6 +280,26 @@ def test_relaxed_gaps_close_from_nodes_that_are_far_away() -> None:
     result = shooting_steps.relaxed(linearise, *start, np.array([False]), np.array([1.0]))
     assert result.squares < 1e-9
     assert result.params == pytest.approx([1.0], abs=1e-4)
+
+
+def test_a_step_beyond_which_no_motion_exists_is_tried_at_a_quarter() -> None:
+    """Of ln p = 0 Newton's step leads from p to p - p ln p, below 0 from p = 8."""
+    trials = []
+
+    def linearise(nodes: np.ndarray, params: np.ndarray) -> shooting_steps.LinearisedResiduals:
+        trials.append(params[0])
+        if params[0] <= 0:
+            raise NoResidualsError("there is no logarithm")
+        residuals = np.array([[nodes[0, 0], np.log(params[0])]])
+        by = np.array([[[1.0, 0.0], [0.0, 1 / params[0]]]])
+        ends = np.zeros((1, 1)), np.zeros((1, 1, 2))
+        return shooting_steps.LinearisedResiduals(np.zeros(1, int), residuals, by, *ends)
+
+    start = np.array([[0.5]]), np.array([8.0])
+    result = shooting_steps.minimise(linearise, *start, np.array([False]), np.array([1.0]))
+    assert result.params == pytest.approx([1.0], abs=1e-6)
+    step = -8 * np.log(8)
+    assert trials[:3] == pytest.approx([8.0, 8.0 + step, 8.0 + step / 4])
 
 
 def test_leverages_add_up_to_the_rank_that_exceeds_rounding() -> None:

@@ -16,8 +16,14 @@ from derive import Coordinate, Input, Parameter, PointMass, System, velocity
 from solvers import Held, Measurement, build, compare, fit, integrate
 from solvers.app.cli import main
 from solvers.equations.module import GeneratedModule
-from solvers.scenes.fitting.measurement import Interpolation
-from solvers.scenes.fitting.multiple_shooting import MultipleShooting, segments
+from solvers.integration.problem.status import Status
+from solvers.scenes.fitting.measurement import Interpolation, check_inputs
+from solvers.scenes.fitting.multiple_shooting import (
+    MultipleShooting,
+    NoResidualsError,
+    failure,
+    segments,
+)
 
 UNKNOWN = ("m", "k", "c")
 T = np.linspace(0, 8, 161)
@@ -143,6 +149,31 @@ def test_compiled_and_python_loops_agree(monkeypatch: pytest.MonkeyPatch) -> Non
     assert compiled.ends[1, 0] == pytest.approx(expected[50], abs=1e-8)
 
 
+def test_motions_in_python_that_fail_have_no_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
+    t, params = T[40:60], np.array([0.0, *TRUTH[1:], 0.0])  # without a mass
+    run = Measurement(t, {"x": t}, inputs={"F": t})
+    shooting = MultipleShooting(cart(), [0], segments(0, t, [0], run.held(cart(), params)))
+    monkeypatch.setattr(shooting, "_program", None)
+    with pytest.raises(NoResidualsError, match=r"the motion ends at t = 2 s, since .* not finite"):
+        shooting(np.array([[0.4, 0.0]]), params)
+
+
+@pytest.mark.parametrize(("status", "reason"), [
+    (None, "interrupted"), (Status.STEP_LIMIT, "number of steps"),
+])  # fmt: skip
+def test_a_motion_without_residuals_states_why_it_ends(status: Status | None, reason: str) -> None:
+    text = str(failure(status, 2.5))
+    assert text.startswith("the motion ends at t = 2.5 s, since ")
+    assert reason in text
+
+
+def test_the_inputs_of_a_single_sample_act_at_its_time() -> None:
+    *_, last = segments(0, np.array([0.0, 1.0, 2.0]), [0, 2], np.array([[5.0, 6.0, 7.0]]))
+    assert (last.begin, last.end) == (2.0, 2.0)
+    assert last.changes.tolist() == [2.0]
+    assert last.inputs.tolist() == [[7.0]]
+
+
 PARAMETERS = {"m1": 2.2, "m2": 1.2, "I1": 0.05}
 
 
@@ -191,6 +222,13 @@ def test_columns_that_are_missing_or_unknown_are_named(data: list[Columns], mess
     x = exact(TRUTH, START, "held")
     with pytest.raises(ValueError, match=message):
         fit(cart(), [{"t": T, "x": x} | columns for columns in data], inputs="held")
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0), (0, 1, 1), (1, 1, 0)])
+def test_the_run_without_an_input_is_named_whatever_the_order(order: tuple[int, ...]) -> None:
+    runs = Measurement(T, {"x": T}, "one"), Measurement(T, {"x": T}, "other", {"F": FORCE})
+    with pytest.raises(ValueError, match=r"^one has no column of the input F, which other has"):
+        check_inputs([runs[k] for k in order])
 
 
 def test_a_prediction_needs_the_inputs_of_the_fit() -> None:

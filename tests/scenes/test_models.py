@@ -4,7 +4,7 @@ import json
 from collections import Counter
 from dataclasses import replace
 from functools import partial
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 import pytest
@@ -451,6 +451,15 @@ def test_a_shorter_series_is_less_accurate_and_its_estimate_shows_it(
     assert 1e-7 < largest_error(motion, rough) <= rough.error_estimate
 
 
+@pytest.mark.parametrize("duration", [5000, 20_000])
+def test_errors_of_normal_modes_grow_as_the_period_differs(duration: float) -> None:
+    # the period of a pendulum is longer by a²/16 than that of its normal mode
+    amplitude, (_, length, g) = 1e-4, sp.DEFAULTS
+    late = amplitude**2 / 16 * sqrt(g / length) * duration  # rad of the phase
+    modes = NormalModes.of(motion_from(sp, (amplitude, 0), duration))
+    assert amplitude * late < modes.error_estimate < 10 * amplitude * late
+
+
 def test_without_their_propagation_errors_would_be_underestimated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -595,6 +604,22 @@ def test_a_spring_that_bounces_is_not_at_rest(offset: float) -> None:
     start, params = (4 / 3 + offset, 1e-10, 0, 0), (1, 29.43, 1, 9.81)
     with pytest.raises(OutsideDomainError, match="leaves the initial state"):
         Equilibrium.of(motion_from(ep, start, 128 * 2 * pi / 29.43**0.5, params))
+
+
+def test_a_run_that_ends_early_is_repeated_with_a_tenth_of_the_tolerance(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settings: list[float] = []
+
+    def estimated(run: IntegrationRun, _: Motion) -> float:
+        settings.append(run.setting)
+        return np.inf if len(settings) < 3 else 0.0
+
+    monkeypatch.setattr(checked_run, "estimated_error", estimated)
+    motion = motion_from(sp, (1.0, 1.0), 5.0)
+    checked_run.checked_run(motion, MethodChoice("dp54", "rational", ""), 1e-4, motion)
+    assert len(settings) == 3
+    assert settings[1:] == pytest.approx([settings[0] / 10, settings[0] / 100])
 
 
 def test_a_run_is_compared_at_the_ends_and_in_the_middle_of_its_steps() -> None:

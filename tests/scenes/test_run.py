@@ -26,9 +26,10 @@ from solvers.io.figure_names import symbol
 from solvers.player.motion_plots import _labelled, default_pictures, figure
 from solvers.player.sampled_motion import ELEVATION, projected, tracks
 from solvers.references.taylor import taylor
-from solvers.scenes.scene_output import file_names, summary, table, together
+from solvers.scenes.scene import Scene
+from solvers.scenes.scene_output import file_names, summary, table, together, write_files
 from solvers.scenes.scene_reading import find
-from solvers.scenes.scene_run import run_scene
+from solvers.scenes.scene_run import SceneResult, run_scene
 
 KEYS = {"model", "method", "form", "final_state", "requested_accuracy", "error_estimate", "why"}
 
@@ -380,6 +381,23 @@ def test_the_cost_is_compared_with_that_of_the_full_equations_where_they_cost_mo
     assert [*summary(slower)][-1].endswith("; the full equations take about 4 ms, 4 times as long")
     faster = replace(slower, full_equations_seconds=5e-4)
     assert "full equations" not in [*summary(faster)][-1]
+
+
+def test_values_of_unknown_error_have_no_decimals() -> None:
+    result = run_scene(find("tremor", load_module))
+    model = replace(result.selection.model, error_estimate=np.inf)
+    unknown = replace(result, selection=replace(result.selection, model=model))
+    (line,) = (line for line in summary(unknown) if line.startswith("final state: "))
+    assert re.fullmatch(r"final state: theta1 = -?\d+ rad, .* \(none of these .*\)", line)
+
+
+def test_the_files_of_a_scene_with_specialised_code_include_this(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    results = [run_scene(Scene(dp, {}, {"theta1": 1e-4, "theta2": 0.0}, 1.0, samples=5))]
+    assert "code" not in write_files(results, tmp_path)
+    monkeypatch.setattr(SceneResult, "specialised_module", dp)
+    assert write_files(results, tmp_path)["code"].name == "double_pendulum.py"
 
 
 def test_progress_is_shown_on_a_terminal_only_and_erased(tmp_path: Path) -> None:

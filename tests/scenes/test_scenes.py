@@ -11,6 +11,7 @@ import pytest
 from counting import counted_calls
 
 import generated.double_pendulum as dp
+import generated.single_pendulum as sp
 from solvers.app.modules import load as load_module
 from solvers.app.scenes import load_sweep
 from solvers.equations.singularities import MassMatrixWarning
@@ -274,6 +275,13 @@ def test_a_nearly_singular_mass_matrix_is_reported_with_its_coordinate() -> None
     with pytest.raises(ValueError, match=r"condition .* theta. has hardly any inertia of its own"):
         scene_from(parameters={"m1": 1e-16})
     scene_from(parameters={"m2": 1e-12})  # light, but on its own
+
+
+def test_splittings_use_lagranges_equations_unless_the_scene_names_others() -> None:
+    scene = Scene(sp, sp.DEFAULTS, (1.0, 0.0), 1.0, method="leapfrog", step=0.01)
+    assert scene.form is None
+    with pytest.raises(ValueError, match="hamiltonian"):
+        replace(scene, form="hamiltonian")
 
 
 def test_all_shipped_scenes_are_valid() -> None:
