@@ -20,7 +20,13 @@ from solvers.runge_kutta.method_catalogue import SCIPY, load
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_reading import find
 from solvers.studies.work_precision import measured_curves, work_precision_plots
-from solvers.studies.work_precision.cost_curve import CostCurve, MeasuredRun, frontier, work_at
+from solvers.studies.work_precision.cost_curve import (
+    CostCurve,
+    MeasuredRun,
+    frontier,
+    least_pair,
+    work_at,
+)
 from solvers.studies.work_precision.measured_curves import TimedRun, combinations, curves, timed_run
 from solvers.studies.work_precision.reference import Reference
 from solvers.studies.work_precision.scene_curves import (
@@ -180,6 +186,12 @@ def test_work_is_interpolated_and_lucky_runs_do_not_count() -> None:
     # runs dearer than the two best neighbours do not count
     assert work_at(2e-6, [*errors, 2e-6, 1e-5], [*works, 1e3, 1e4]) == pytest.approx(100)
     assert isnan(work_at(1e-6, [], []))
+
+
+def test_a_single_run_has_its_own_work() -> None:
+    assert least_pair([1e-3]) == 0
+    assert work_at(1e-3, [1e-3], [5.0]) == pytest.approx(5.0)
+    assert isnan(work_at(1e-4, [1e-3], [5.0]))
 
 
 def test_the_frontier_contains_the_cheapest_and_the_cost_of_alternatives() -> None:

@@ -17,6 +17,7 @@ import generated.double_pendulum as dp
 import generated.single_pendulum as sp
 from solvers.app.modules import load
 from solvers.equations.linearisation.normal_modes import Modes
+from solvers.integration.compiled.compiler import NoCompilerError
 from solvers.io.terminal import text_table
 from solvers.runge_kutta.stability_function import StabilityFunction
 from solvers.studies.failure_modes import (
@@ -318,6 +319,16 @@ def test_the_lyapunov_exponent_of_a_linear_saddle_is_its_rate() -> None:
     assert 0 <= regular.value < 1e-3
 
 
+def test_a_lyapunov_exponent_is_found_without_a_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object, **__: object) -> None:
+        raise NoCompilerError("no cc")
+
+    monkeypatch.setattr(chaos, "prepare", missing)
+    monkeypatch.setattr(chaos, "TRANSIENT", 1)
+    # about upright at rest perturbations (1, 1) grow by e^t, exactly
+    assert lyapunov(sp, (1.0, 9.81, -9.81), (0.0, 0.0), 8).value == pytest.approx(1.0, rel=1e-7)
+
+
 def test_the_standard_error_of_a_mean_is_that_of_repeated_means() -> None:
     generator = np.random.default_rng(1)
     walk = generator.normal(size=(200, 4000))
@@ -549,6 +560,21 @@ def test_plots_of_studies_have_the_points_of_their_results(name: str) -> None:
     lines = [line for axes in study.plot(results).axes for line in axes.lines]
     drawn = np.unique(np.concatenate([line.get_xydata() for line in lines]), axis=0)
     assert drawn == pytest.approx(np.array(sorted(expected)), rel=1e-12)
+
+
+@pytest.mark.parametrize("study", [EnergyDrift(), Conservation()])
+def test_summaries_of_long_runs_state_the_longest(study: EnergyDrift | Conservation) -> None:
+    shorter = replace(DRIFT, periods=DRIFT.periods[:-1], energy_error=DRIFT.energy_error[:-1])
+    assert next(iter(study.summary([shorter, DRIFT]))).endswith(" over 3 periods")
+
+
+def test_panels_of_stiff_scenes_have_the_same_scale_of_costs() -> None:
+    costs = [replace(one, family=family, work_seconds=scale * one.work_seconds)
+             for family, scale in (("one", 1.0), ("two", 100.0), ("three", 0.01))
+             for one in COSTS]  # fmt: skip
+    limits = {panel.get_ylim() for panel in stiffness.Stiffness().plot(costs).axes}
+    ((low, high),) = limits
+    assert low < 0.02 * 0.01 < 3.0 * 100.0 < high
 
 
 def test_costs_of_stiff_scenes_are_those_of_their_methods() -> None:

@@ -3,12 +3,14 @@
 import json
 from fractions import Fraction
 from functools import partial
-from math import inf, sqrt
+from math import inf, log, sqrt
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
 from numpy.polynomial import polynomial
 
 import generated.double_pendulum as dp
@@ -166,6 +168,26 @@ def test_the_command_prints_every_method_of_the_scenes(
     assert "did you mean 'report'" in capsys.readouterr().err
 
 
+def test_only_without_scenes_the_command_runs_the_studies_of_failures(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failures = SimpleNamespace(
+        name="planted",
+        run=lambda _: 7,
+        summary=lambda n: [f"{n} failures"],
+        plot=lambda _: Figure(),
+    )
+    monkeypatch.setattr(stability, "names", lambda: ("rk4",))
+    monkeypatch.setattr(SceneStability, "plot", lambda _: Figure())
+    monkeypatch.setattr(study, "studies", lambda: [failures])
+    assert main(["stability", "single", "--json", "--output", str(tmp_path)]) == 0
+    assert json.loads(capsys.readouterr().out)["failures"] == {}
+    assert main(["stability", "--output", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert f"7 failures\nplot: {tmp_path / 'failures_planted.png'}" in text
+    assert "Longest stable steps of the report's scene" in text
+
+
 @pytest.mark.long("all studies of failures")
 @pytest.mark.slow
 def test_without_a_scene_the_command_studies_where_methods_fail(
@@ -192,6 +214,18 @@ def test_without_a_scene_the_command_studies_where_methods_fail(
     drawn = {path.name for path in tmp_path.iterdir()}
     plots = {f"failures_{name}.png" for name in ("drift", "chaos", "tolerances")}
     assert {"stability_report.png", *plots} <= drawn
+
+
+@pytest.mark.parametrize(("method", "growth"), [("rk1", log(2) / 2), ("midpoint", log(5 / 4) / 2)])
+def test_growth_is_probed_at_one_radian_a_step_where_no_step_is_stable(
+    method: str, growth: float
+) -> None:
+    # |1 + i|² = 2 of Euler's method, and |1 + i - 1/2|² = 5/4
+    found = critical_step(method, sp, sp.DEFAULTS)
+    assert found.measured == 0
+    assert found.probe == pytest.approx(sqrt(sp.DEFAULTS[1] / sp.DEFAULTS[2]))
+    assert found.growth_predicted == pytest.approx(growth, abs=1e-12)
+    assert found.growth_measured == pytest.approx(growth, abs=1e-4)
 
 
 @pytest.mark.long("critical steps of all methods")

@@ -223,3 +223,8 @@ def test_a_period_is_the_one_product_of_powers_that_is_a_time() -> None:
 
     powers = product(range(-2, 3), range(-5, 6), range(-2, 3))
     assert [one for one in powers if is_time(*one)] == [(0, 1, -1)]
+
+
+def test_a_system_without_parameters_has_one_period() -> None:
+    assert Sampling(2.5, 3).periods(hh, ()).tolist() == [2.5]
+    assert Sampling(2.5, 3).periods(sp, [*np.ones((3, 2))]).tolist() == [2.5, 2.5]

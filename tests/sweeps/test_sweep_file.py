@@ -1,5 +1,6 @@
 """Mistakes in sweep files are reported with the key, its value and the allowed values."""
 
+import json
 import tomllib
 from contextlib import suppress
 from dataclasses import MISSING, fields
@@ -10,6 +11,7 @@ from sweep_file import FILE, write_sweep
 
 from solvers.app.cli import main
 from solvers.app.modules import load as load_module
+from solvers.io import figures
 from solvers.io.toml_input import InputError
 from solvers.sweeps.definition import map_kinds
 from solvers.sweeps.definition.axes import Random
@@ -101,6 +103,22 @@ def test_the_command_reports_unknown_sweeps_and_options(capsys: pytest.CaptureFi
     assert "none.toml: there is no such file" in capsys.readouterr().err
     assert main(["sweep", "flips", "--workers", "0"]) == 2
     assert "workers = 0 must be from 1" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("steps", "code"), [(1, 3), (100_000, 0)])
+def test_the_command_ends_with_a_code_where_no_motion_succeeds(
+    steps: int,
+    code: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(figures, "save", lambda *_: None)
+    text = FILE.replace("count = 120", "count = 2").replace("duration = 30", "duration = 1")
+    path = write_sweep(tmp_path, f"max_steps = {steps}\n{text}")
+    assert main(["sweep", str(path), "--json", "--output", str(tmp_path / "out")]) == code
+    ends = json.loads(capsys.readouterr().out)["status"]
+    assert ends == {"finished" if code == 0 else "step limit": 4}
 
 
 def test_random_axes_have_the_count_and_the_seed_of_the_file(tmp_path: Path) -> None:

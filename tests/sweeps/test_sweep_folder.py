@@ -8,8 +8,9 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Iterator
-from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from multiprocessing import get_context
@@ -403,6 +404,45 @@ def test_a_connection_that_breaks_between_chunks_is_reported(
     with pytest.raises(LostWorkersError, match="the same call resumes the sweep"):
         sweep(DEFINITION, tmp_path, pool=Pool(executor, threads=threads))
     assert len(list(tmp_path.glob("chunks/*.npy"))) > 1
+
+
+class Delayed(Executor):
+    """An executor that computes nothing until it is time."""
+
+    def __init__(self) -> None:
+        self.jobs: list[tuple[Future[Any], Any]] = []
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
+        self.jobs.append((Future(), partial(fn, *args, **kwargs)))
+        return self.jobs[-1][0]
+
+    def work(self) -> None:
+        while self.jobs:
+            future, job = self.jobs.pop()
+            future.set_result(job())
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_a_sweep_that_waits_without_workers_warns(
+    count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    executor = Delayed()
+
+    def threads() -> int:
+        executor.work()
+        return count
+
+    monkeypatch.setattr(pool, "PATIENCE", 0.01)
+    definition = Sweep(
+        dp, Grid({"theta1": [0.1, 0.2], "theta2": [0.1]}), {"end": Final(("theta1",))}, 1.0
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        results = sweep(definition, tmp_path, pool=Pool(executor, 1, threads))
+    assert np.isfinite(results.maps["end"]).all()
+    texts = [str(one.message) for one in caught]
+    assert len(texts) == (2 if count == 0 else 0)
+    assert all(text.startswith("there are no workers: the sweep waits") for text in texts)
 
 
 def test_as_many_chunks_are_computed_at_once_as_there_are_threads() -> None:

@@ -15,6 +15,7 @@ from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.execution import sweep_run, worker
 from solvers.sweeps.execution.initial_states import initial_states
 from solvers.sweeps.execution.sweep_run import Convergence
+from solvers.sweeps.maps.energy_error import EnergyError
 from solvers.sweeps.maps.extremes import Extremes
 from solvers.sweeps.maps.final import Final
 from solvers.sweeps.maps.first import First
@@ -190,3 +191,10 @@ def test_colours_of_values_of_both_signs_are_symmetrical(
     found, scale = rate.colours(np.array([*values * 100, np.nan, np.inf]))
     assert found == colours
     assert (scale.vmin, scale.vmax) == pytest.approx(limits)
+
+
+def test_colours_of_errors_that_are_all_zero_begin_below_rounding(results: Results) -> None:
+    definition = replace(results.definition, maps={"error": EnergyError()})
+    quantity = Quantity(replace(results, definition=definition), "error")
+    _, scale = quantity.colours(np.zeros(4))
+    assert 0 < scale.vmin < scale.vmax < np.finfo(float).eps

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.contour import ContourSet
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
@@ -22,6 +23,7 @@ from solvers.app.modules import load as load_module
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
+from solvers.sweeps import sweep_panels
 from solvers.sweeps.definition.axes import BLOCK, Grid, Random, Table
 from solvers.sweeps.definition.sweep import Sweep
 from solvers.sweeps.definition.sweep_reading import find, names
@@ -280,6 +282,42 @@ def test_a_section_without_a_direction_has_crossings_upwards(tmp_path: Path) -> 
     assert points.get_xdata().tolist() == list(range(1, 13))
     assert_array_equal(points.get_ydata(), up.maps["s"][0, 0])
     assert panel.get_xlabel() == "number of the point"
+
+
+@pytest.mark.parametrize(("axes", "titles"), [
+    (Table({"energy": [0.08, 0.1]}), ["$E$ = 0.08 J", "$E$ = 0.1 J"]),
+    (Table({"energy": [0.08, 0.1], "y": [0.1, 0.2]}), [""]),
+    (Table({"y": [0.1, 0.2]}), [""]),
+])  # fmt: skip
+def test_a_section_of_listed_energies_has_a_panel_for_each(
+    axes: Table, titles: list[str], tmp_path: Path
+) -> None:
+    values = {"x": 0.0, "x_dot": "energy", "y": 0.1, "energy": 0.1}
+    values = {name: value for name, value in values.items() if name not in axes.values}
+    section = {"s": Section(("y", "y_dot"), 3, "x", direction=1)}
+    shown = figure(run(tmp_path, hh, axes, 30.0, section, values=values))
+    assert [panel.get_title() for panel in shown.axes if panel.axison] == titles
+
+
+def test_the_boundary_of_an_image_is_that_of_the_middle_of_other_axes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sweep_panels, "BOUNDARY", 60)
+    angles = np.linspace(-3, 3, 5)
+    axes = Grid({"theta1": angles, "theta2": angles, "theta1_dot": [0.0, 1.0, 3.0]})
+    results = run(tmp_path, dp, axes, 0.1, {"flip": First(FLIP, TOPS)})
+    (lines,) = [c for c in figure(results).axes[0].collections if isinstance(c, ContourSet)]
+    theta1, theta2 = np.vstack([path.vertices for path in lines.get_paths()]).T
+    # m = 1 kg and l = 2 m: at the lower barrier the upper rod hangs, and the other one stands
+    weight, kinetic = 2 * 9.81, 2 * 2.0**2 / 2
+    energy = kinetic - weight * (2 * np.cos(theta1) + np.cos(theta2))
+    assert_allclose(energy, -weight, atol=0.1)
+
+
+def test_coordinates_of_a_table_are_all_of_its_values() -> None:
+    table = {"theta1": [0.1, 0.2, 0.3], "theta2": [3.0, 2.0, 1.0]}
+    found = Table(table).coordinates()
+    assert {name: values.tolist() for name, values in found.items()} == table
 
 
 def test_any_span_of_random_axes_is_generated_by_itself() -> None:
