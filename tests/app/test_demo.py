@@ -411,6 +411,16 @@ def test_without_a_compiler_the_map_is_left_out_with_a_message(
     assert 'id="map"' not in page
 
 
+def test_the_command_writes_both_pages_into_the_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stage = Stage(("a line",), "<p>content</p>")
+    monkeypatch.setattr(demo_page, "stages", lambda _: {"derive": lambda: stage})
+    assert main(["demo", "--output", str(tmp_path)]) == 0
+    assert "<p>content</p>" in (tmp_path / "demo.html").read_text(encoding="utf-8")
+    assert "<canvas" in (tmp_path / "live.html").read_text(encoding="utf-8")
+
+
 def test_text_in_tables_is_escaped() -> None:
     assert "<b>" not in table(("<b>",), [("<b>",)])
 

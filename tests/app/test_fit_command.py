@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from valid_files import BEAD, SCENE
 
 import generated.single_pendulum as single
 from solvers import Measurement, integrate, run_scene
 from solvers.app.cli import main
 from solvers.app.commands.fit import _divided, _system
+from solvers.app.fitting import named_model
 
 T = np.arange(0, 5, 1 / 30)
 
@@ -167,3 +169,11 @@ def test_the_last_quarter_of_each_run_is_kept_back() -> None:
     assert ends == pytest.approx([2, 7.9, 4, 15.8])  # the rest begins at 8 and 16 s
     assert [begin for _, begin in kept] == pytest.approx([8, 16])
     assert [run for run, _ in kept] == runs
+
+
+def test_a_model_in_a_file_is_a_system_if_it_has_masses() -> None:
+    Path("bead.toml").write_text(BEAD)
+    Path("swing.toml").write_text(SCENE)
+    system, scene = named_model("bead.toml"), named_model("swing.toml")
+    assert system.STATE == ("x", "x_dot")
+    assert scene.title == "A scene"

@@ -10,6 +10,7 @@ import pytest
 from folders import ROOT
 
 from solvers.app.cli import main
+from solvers.app.modules import load
 from solvers.io.toml_input import InputError, read_table
 
 COMMANDS = [["run"], ["sweep"], ["verify"], ["derive", "--output", "out"]]
@@ -84,6 +85,22 @@ def test_a_damaged_package_is_reported_with_the_command_that_mends_it(
     message = capsys.readouterr().err
     assert "generated is damaged: SyntaxError: '(' was never closed" in message
     assert "mend it with: holonomic derive" in message
+
+
+@pytest.mark.parametrize("missing", ["generated", "numpy"])
+def test_a_system_is_built_without_the_package_and_not_beside_a_broken_import(
+    missing: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def absent(_: str) -> None:
+        raise ModuleNotFoundError(f"No module named {missing!r}", name=missing)
+
+    monkeypatch.setattr("solvers.app.modules.import_module", absent)
+    monkeypatch.setattr("solvers.app.modules.build", lambda system: system.name)
+    if missing == "generated":
+        assert load("single_pendulum") == "single_pendulum"
+    else:
+        with pytest.raises(OSError, match=r"generated is damaged: .* No module named 'numpy'"):
+            load("single_pendulum")
 
 
 @pytest.mark.parametrize("name", ["generated", "derive", "solvers", "math", "collections"])

@@ -11,6 +11,7 @@ import time
 from contextlib import suppress
 from fcntl import ioctl
 from pathlib import Path
+from shlex import quote
 
 import pytest
 
@@ -81,6 +82,14 @@ def test_a_scene_runs_without_standard_error_or_input(streams: str, tmp_path: Pa
     assert code == 0
     assert "final state" in printed
     assert {path.suffix for path in tmp_path.iterdir()} == {".csv", ".html"}
+
+
+def test_programs_that_a_command_starts_have_a_standard_input() -> None:
+    code = (
+        "import subprocess; from solvers.io.terminal import standard_streams\n"
+        "with standard_streams(): print(subprocess.run('cat').returncode)"
+    )
+    assert shell(f"{sys.executable} -c {quote(code)} <&-") == (0, "0\n")
 
 
 @pytest.mark.parametrize("streams", [">&-", ">&- <&-"])

@@ -441,3 +441,11 @@ def test_files_of_ended_processes_are_removed_even_if_others_do_so_first(
     monkeypatch.setattr(atomic_write, "is_abandoned", lambda path: path.unlink() is None)
     atomic_write.remove_abandoned(tmp_path)
     assert not [*tmp_path.iterdir()]
+
+
+def test_files_of_processes_of_other_users_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    def forbidden(process: int, signal: int) -> None:
+        raise PermissionError(errno.EPERM, "Operation not permitted")
+
+    monkeypatch.setattr(os, "kill", forbidden)
+    assert not atomic_write.is_abandoned(Path(".a.txt.1"))

@@ -1,6 +1,6 @@
 """Arguments of a wrong type are refused by name, in every function that takes texts or tables."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from inspect import signature
 
 import numpy as np
@@ -9,6 +9,7 @@ import pytest
 import generated.double_pendulum as dp
 import solvers
 from solvers import Event
+from solvers.equations.signature_checks import checked
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.scenes.scene import Scene
@@ -81,6 +82,16 @@ def test_parts_of_tables_are_checked_too() -> None:
         swept(First(("theta1",)))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"values = 3 must be a mapping"):
         Grid(3)  # type: ignore[arg-type]
+
+
+def test_parts_of_an_iterator_are_left_to_the_function() -> None:
+    @checked
+    def joined(names: Iterable[str]) -> str:
+        return "".join(names)
+
+    assert joined(iter(["a", "b"])) == joined(["a", "b"]) == "ab"
+    with pytest.raises(ValueError, match="names = "):
+        joined([1, 2])  # type: ignore[list-item]
 
 
 MODULES = {
