@@ -549,6 +549,11 @@ OF_PYTHON = {
         "    return [y[2], y[3], s[0], s[1]]\n",
         ["y_0_ddot = a*y_0 + b*y_1", "y_1_ddot = c*y_0 + d*y_1"],
     ),
+    "a matrix with rows and columns exchanged, twice": (
+        "def f(t, y):\n    A = np.array([[a, b], [c, d]])\n    x = np.array([y[0], y[1]])\n"
+        "    s, r = A.T @ x, A.transpose() @ x\n    return [y[2], y[3], s[0], r[1]]\n",
+        ["y_0_ddot = a*y_0 + c*y_1", "y_1_ddot = b*y_0 + d*y_1"],
+    ),
     "the inverse of a matrix": (
         "def f(t, y):\n    q, w, dq, dw = y\n    M = np.array([[m, c], [c, n]])\n"
         "    a = np.linalg.inv(M) @ np.array([-k*q, -s*w])\n    return [dq, dw, a[0], a[1]]\n",
@@ -619,6 +624,14 @@ def test_a_column_as_a_row_is_not_followed() -> None:
     program = read_program(text, "Python")
     assert not program.equations
     assert [one.reason for one in program.unread] == ["another shape is not followed"]
+
+
+def test_arrays_of_unknown_length_are_not_followed() -> None:
+    text = (
+        "def f(t, q, w):\n    a = np.array([-k*q[0], -c*q[1]])\n    return np.concatenate([w, a])\n"
+    )
+    program = read_program(text, "Python")
+    assert not program.equations
 
 
 def test_nothing_follows_two_branches_that_return() -> None:
@@ -712,6 +725,13 @@ COMPILED = {
     "a function that is its own result": (
         "Fortran",
         "real function force(x)\n real :: x\n force = -k*x\n return\nend function\n"
+        "subroutine f(y, d)\n real :: y(2), d(2)\n d(1) = y(2)\n d(2) = force(y(1))\n"
+        "end subroutine\n",
+        ["y_1_ddot = -k*y_1"],
+    ),
+    "a function with a statement behind its result": (
+        "Fortran",
+        "real function force(x)\n real :: x, n\n force = -k*x\n n = n + 1\nend function\n"
         "subroutine f(y, d)\n real :: y(2), d(2)\n d(1) = y(2)\n d(2) = force(y(1))\n"
         "end subroutine\n",
         ["y_1_ddot = -k*y_1"],

@@ -116,6 +116,11 @@ def transposed(tree: Expression) -> Expression:
     return tree
 
 
+def turned(tree: Expression) -> Expression:
+    """A matrix with rows and columns exchanged; rows and columns are plain arrays."""
+    return flat(transposed(tree))
+
+
 def product(line: int, left: Expression, right: Expression, language: Language) -> Expression:
     """The product of a matrix and a column, or of two columns."""
     if isinstance(left, OperatorExpression) and _is_inverse(left):
@@ -170,7 +175,7 @@ STACKED = {"concatenate", "hstack", "vcat", "block", "concat", "r_", "append", "
 FACTORED = {"ldlt", "llt", "lu", "partialPivLu", "fullPivLu", "householderQr"}
 FACTORED |= {"colPivHouseholderQr", "fullPivHouseholderQr"}
 #: Methods that return the array, perhaps in another shape or type.
-RESHAPED = {"copy", "flatten", "ravel", "tolist", "transpose", "astype", "item"}
+RESHAPED = {"copy", "flatten", "ravel", "tolist", "astype", "item"}
 RESHAPED |= {"clone", "to_vec", "iter", "into_iter", "collect", "unwrap"}
 
 
@@ -227,8 +232,12 @@ def of_arrays(
                 (OperatorExpression(0, "-", (NumberLiteral(0, "1"),)),),
             )
             return flat(base) if is_row else Opaque(call.line, "another shape is not followed")
+        case "transpose", () if is_method and base is not None:
+            return turned(base)
         case _ if is_method and base is not None and name in RESHAPED:
             return flat(base)
+        case "concatenate", (Array(items=parts), *_) if any(isinstance(x, Name) for x in parts):
+            return Opaque(call.line, "an array of unknown length is not followed")
         case _, (first, *rest) if name in STACKED and (stacked := _stacked(first, rest)):
             return stacked
         case _, (first, *rest) if name in IDENTITIES:

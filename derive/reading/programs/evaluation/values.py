@@ -2,7 +2,13 @@
 
 from collections.abc import Mapping
 
-from derive.reading.programs.evaluation.arrays import combined, entries, flat, transposed
+from derive.reading.programs.evaluation.arrays import (
+    combined,
+    entries,
+    flat,
+    transposed,
+    turned,
+)
 from derive.reading.programs.evaluation.context import OWN_OBJECTS, ProgramContext, assigned
 from derive.reading.programs.evaluation.counted_loops import BODIES, bound, integer, mentions
 from derive.reading.programs.evaluation.mathematics import constant
@@ -192,7 +198,9 @@ class Values:
             return ""
 
     def _member(self, tree: Expression, base: Expression, name: str) -> Expression:
-        if name in ("T", "transpose", "ravel", "flatten"):
+        if name in ("T", "transpose"):
+            return turned(self.value(base))
+        if name in ("ravel", "flatten"):
             return flat(self.value(base))
         if name in ("mag", "mag2", "hat") and entries(vector := self.value(base)):  # of VPython
             return self.called(FunctionCall(tree.line, Name(tree.line, name), (vector,)))

@@ -95,9 +95,6 @@ class DefinitionTranslator(ExpressionTranslator):
             self._hiding = outer | own | {*self._declared_in(nodes)}
         statements = self.statements([*first, *nodes])
         self._hiding = outer
-        is_short = self.role(nodes[0] if nodes else node) != "block"
-        if is_short or (self.language.returns_last and not any(map(self._ends, nodes[-1:]))):
-            statements = _with_return(statements)
         result = self._first(node, "results")
         results = tuple(self.word(one) for one in self._names(result)) if result else ()
         declared = node.child_by_field_name("result")  # of Go
@@ -108,6 +105,10 @@ class DefinitionTranslator(ExpressionTranslator):
             )
         if node.type == "function" and not results:
             results = (name,)  # of Fortran
+        is_short = self.role(nodes[0] if nodes else node) != "block"
+        ends_with_value = self.language.returns_last and not any(map(self._ends, nodes[-1:]))
+        if not results and (is_short or ends_with_value):
+            statements = _with_return(statements)
         if given:
             statements = (*self._unpacked(given), *statements)
         owner = self._owner_of(node) if name else self._owner
