@@ -123,10 +123,11 @@ HEADING = re.compile(
     r"|(?P<line>\S.*)\n(?:={3,}|-{3,}|~{3,}|\^{3,})[ \t]*$"
     r"|[ \t]*(?:[*_]{0,2}|\\(?:begin\{)?)(?P<word>example|problem|exercise|question|case|beispiel"
     r"|aufgabe|ejemplo|ejercicio|exemple|exercice|esempio|esercizio|problema|exemplo)\b"
+    r"|[ \t]*(?::{3,}|`{3,})\{(?P<fence>admonition|(?:prf:)?example|exercise|problem|topic)\b"
     r"|(?P<count>\d{1,2}[.)])(?!\S))",
     re.IGNORECASE | re.MULTILINE,
 )
-#: The levels of a line that starts an example and of a number: below all headings.
+#: The levels of a line or a box that starts an example and of a number: below all headings.
 EXAMPLE, NUMBERED = 7, 8
 
 

@@ -357,6 +357,10 @@ x \not= 0  ⟶  x != 0
 u \in \mathbb{R}  ⟶  u in R
 f(x) : y  ⟶  f@(x) : y
 x \stackrel{!}{=} 0  ⟶  x = 0
+x \stackrel{.}{=} 0  ⟶  x = 0
+\overset{.}{x}^2 + \overset{\cdot\cdot}{\theta }_1  ⟶  (x.^2 + theta_1..)
+\pdiff{L}{\dot{\theta}} = \deriv{x}{t}  ⟶  ∂(L; theta.) = d(x; t)
+\vect{r}  ⟶  bold r
 x \overset{\text{def}}{=} 0  ⟶  x := 0
 a = b = c  ⟶  a = b = c
 """

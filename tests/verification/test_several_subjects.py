@@ -56,6 +56,8 @@ def test_a_slip_below_a_heading_is_not_verified(
     "\\begin{question}\n@a\n1. @b\n\\end{question}\n\\begin{question}\n@c\n\\end{question}\n",
     "\\section{A}\n@a\n\\paragraph{B}\n@b\n\\section{C}\n@c\n",
     "\\section{A}\n@a\n\\problem\n@b\n\\section{C}\n@c\n",
+    ":::{admonition} A\n@a\n1. @b\n:::\n:::{admonition} C\n@c\n:::\n",
+    "# A\n@a\n```{prf:example} B\n@b\n```\n# C\n@c\n",
 ])  # fmt: skip
 def test_the_highest_headings_divide_a_text(text: str) -> None:
     def place(name: str) -> int:

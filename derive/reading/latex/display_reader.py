@@ -41,6 +41,7 @@ from derive.reading.latex.layout.spellings import (
     with_dots_on_variables,
     with_fractions_of_derivatives,
     with_new_fonts,
+    with_points_above,
     with_unicode_scripts,
 )
 from derive.reading.latex.layout.tokens import Token, UnreadError, tokenize
@@ -84,7 +85,7 @@ def formulas(latex: str, macros: Mapping[str, Macro] = {}) -> list[Statement | U
     try:
         tokens = expanded(latex, tokenize(latex), macros)
         pairs(tokens)  # refuses deep braces before anything descends into them
-        tokens = with_new_fonts(with_unicode_scripts(tokens))
+        tokens = with_points_above(with_new_fonts(with_unicode_scripts(tokens)))
         tokens = with_dots_on_variables(with_fractions_of_derivatives(tokens))
         tokens = with_words(Layout(tokens).tokens_without_layout())
         found = statements(flattened(tokens))

@@ -130,12 +130,16 @@ PHYSICS |= {
 }
 #: Matrices of that package, in the brackets that follow.
 MATRICES = ("mqty", "matrixquantity", "bmqty", "pmqty")
-DERIVATIVES = {"dv": r"\mathrm{d}", "odv": r"\mathrm{d}", "pdv": r"\partial"}
+DERIVATIVES = {
+    **dict.fromkeys(("dv", "odv", "deriv"), r"\mathrm{d}"),
+    **dict.fromkeys(("pdv", "pdiff", "pder", "pderiv"), r"\partial"),
+}
 #: Macros that many documents define in other files, and accents of older packages.
 USUAL = {
     "d": Macro("d", r"\mathrm{d}"),
     "half": Macro("half", r"\frac{1}{2}"),
     "mbf": Macro("mbf", r"\mathbf{#1}", 1),
+    "vect": Macro("vect", r"\vec{#1}", 1),
 }
 USUAL |= {
     one: Macro(one, rf"\{one.lower()}{{#1}}", 1)

@@ -21,6 +21,9 @@ OLD_FONTS = {
     "tt": "mathtt",
 }  # fmt: skip
 
+#: What stands above a letter for its rates.
+POINTS = {".": "dot", "cdot": "dot", "..": "ddot", "cdotcdot": "ddot", "...": "dddot"}
+
 
 def with_new_fonts(tokens: list[Token]) -> list[Token]:
     r"""Tokens in which ``{\bf r}`` is ``\mathbf{r}``."""
@@ -55,6 +58,25 @@ def with_fractions_of_derivatives(tokens: list[Token]) -> list[Token]:
         else:
             result.append(sign)
         at += 1
+    return result
+
+
+def with_points_above(tokens: list[Token]) -> list[Token]:
+    r"""Tokens in which ``\overset{.}{x}`` is ``\dot{x}``."""
+    result: list[Token] = []
+    at = 0
+    while at < len(tokens):
+        one = tokens[at]
+        above = argument(tokens, at + 1) if one.text in ("overset", "stackrel") else None
+        below = argument(tokens, above[1]) if above else None
+        points = [t.text for t in tokens[slice(*above[0])] if t.kind != "space"] if above else []
+        is_letter = below is not None and all(t.text != "=" for t in tokens[slice(*below[0])])
+        if above and is_letter and (name := POINTS.get("".join(points))):
+            result.append(replace(one, text=name))
+            at = above[1]
+        else:
+            result.append(one)
+            at += 1
     return result
 
 
