@@ -352,3 +352,17 @@ def test_a_wrong_factor_of_what_vanishes_along_every_motion_is_wrong(tmp_path: P
     )  # fmt: skip
     assert [one.verdict for one in results] == ["definition", "definition", "wrong"]
     assert results[2].correction == r"(J + m l^2) \ddot\phi = 0"
+
+
+@pytest.mark.parametrize(("terms", "correction"), [
+    (r"\frac{1}{2} m \dot x^2 + m l \dot x \dot\theta \cos\theta + \frac{1}{2} l^2 \dot\theta^2",
+     r"+ \frac{1}{2} m l^2 \dot\theta^2"),
+    (r"\frac{1}{2} m \dot x^2 - \dot x \dot y + m \dot y^2", r"- m \dot x \dot y"),
+    (r"\frac{1}{2} m \dot x^2 + \frac{1}{2} l^2 \dot\theta^2", ""),  # either can be the other
+    (r"\frac{1}{2} m \dot x^2 + \frac{1}{2} M \dot y^2 + \frac{1}{2} l^2 \dot\theta^2", ""),
+])  # fmt: skip
+def test_a_factor_of_all_other_terms_is_lost(terms: str, correction: str, tmp_path: Path) -> None:
+    results = judged(tmp_path, f"K_2 = {terms}", "K_2 = K - E", r"K - E = m b^2 \omega^2")
+    assert (results[0].verdict == "wrong") == bool(correction)
+    assert correction in results[0].correction
+    assert "wrong" not in [one.verdict for one in results[1:]]

@@ -232,7 +232,7 @@ $$K = \frac12 m l^2\dot\theta^2$$ $$U = -m g l\cos\theta$$ $$E = K + U$$"""
         if one.verdict == "wrong"
     ]
     assert (wrong.line, wrong.wrong_term, wrong.correction) == (1, r"m l^2\dot\theta", "")
-    assert wrong.note.endswith("but not with theta_dot**2 or theta_ddot")
+    assert wrong.note.endswith("but not with m*l**2*theta_dot**2 or m*l**2*theta_ddot")
 
 
 CARRIAGE = r"""$$L = T - V$$ $$\frac{d}{dt}\frac{\partial L}{\partial\dot x} = 0$$

@@ -41,6 +41,8 @@ STATE = re.compile(r"[a-zA-Z]+_\d+")
 FACTOR = re.compile(
     r"(?<![\w.])(?P<name>[A-Za-z_]\w*)(?![\w(])(?:\*\*(?P<power>\d)(?![\w.])|(?!\*\*))"
 )
+#: The sign and the number at the start of a term.
+NUMBER = re.compile(r"-?(?:[\d./]+\*)?")
 #: The fewest formulas with dimensions, and the most that contradict all others.
 FEWEST, MOST_ODD = 2, 3
 
@@ -56,7 +58,7 @@ class Restoration:
     side: int
     #: A correct term is empty if several are possible.
     corrections: tuple[Correction, ...]
-    #: The factors that can be correct, if several can.
+    #: The terms that can be correct, if several can.
     choices: tuple[str, ...] = ()
 
 
@@ -132,8 +134,9 @@ def _restoration(
 ) -> Restoration | None:
     """What restores the dimensions of an inhomogeneous formula, if any is known.
 
-    It changes the power or the rate of a letter in a term, if one term alone can be wrong so. If no
-    term differs from the others, it has rates in place of letters of the last side.
+    It changes the power or the rate of a letter in a term, or adds a factor of all other terms, if
+    one term alone can be wrong so. If no term differs from the others, it has rates in place of
+    letters of the last side.
     """
     if formula.index:
         return None
@@ -143,20 +146,20 @@ def _restoration(
         return _pivots([equations.row(replace(formula, sides=sides))], others) is not None
 
     moving = {*letters.coordinates, *equations.moving}
-    terms = [*_odd_terms(formula, is_homogeneous)]
-    if not terms:
+    odd = [*_odd_terms(formula, is_homogeneous)]
+    if not odd:
         return _lost_dots(letters, formula, moving, is_homogeneous)
     restorations = []
-    for side, span in terms:
+    for side, span, beside in odd:
         text = formula.sides[side].text
-        changes = _changes(text, span, letters, moving)
+        changes = (*_changes(text, span, letters, moving), *_lost_factors(text, span, beside))
         found = [one for one in changes if is_homogeneous(side, one.applied(text))]
-        if len(found) == 1:
-            restorations.append(Restoration(side, (found[0].widened(text, span),)))
-        elif found:
-            term = Correction(text[slice(*span)], "", span)
-            choices = tuple(one.correct for one in found)
-            restorations.append(Restoration(side, (term,), choices))
+        terms = [one.widened(text, span) for one in found]
+        if len(terms) == 1:
+            restorations.append(Restoration(side, (*terms,)))
+        elif terms:
+            choices = tuple(one.correct for one in terms)
+            restorations.append(Restoration(side, (replace(terms[0], correct=""),), choices))
     return restorations[0] if len(restorations) == 1 else None
 
 
@@ -190,16 +193,35 @@ def _lost_dots(
 
 def _odd_terms(
     formula: DocumentFormula, is_homogeneous: Homogeneity
-) -> Iterator[tuple[int, tuple[int, int]]]:
-    """Yield the terms of sums without which a formula is homogeneous, none with another in it."""
+) -> Iterator[tuple[int, tuple[int, int], list[str]]]:
+    """Yield the terms of sums without which a formula is homogeneous, none with another in it.
+
+    A term is the number of its side and its place, with the other terms of its sum.
+    """
     for number, side in enumerate(formula.sides):
         text = side.text
-        nodes = (one for one in ast.walk(syntax_tree(text)) if isinstance(one, ast.expr))
-        spans = {place_of(text, term) for one in nodes if is_sum(one) for term, _ in summands(one)}
-        odd = [(a, b) for a, b in spans if is_homogeneous(number, f"{text[:a]}0{text[b:]}")]
-        for a, b in sorted(odd):
-            if not any(a <= c and d <= b and (a, b) != (c, d) for c, d in odd):
-                yield number, (a, b)
+        sums: dict[tuple[int, int], list[str]] = {}
+        for node in ast.walk(syntax_tree(text)):  # from the outside
+            if isinstance(node, ast.expr) and is_sum(node):
+                spans = [place_of(text, term) for term, _ in summands(node)]
+                for a, b in spans:
+                    others = [text[slice(*one)] for one in spans if one != (a, b)]
+                    if is_homogeneous(number, f"{text[:a]}0{text[b:]}"):
+                        sums.setdefault((a, b), others)
+        for a, b in sorted(sums):
+            if not any(a <= c and d <= b and (a, b) != (c, d) for c, d in sums):
+                yield number, (a, b), sums[a, b]
+
+
+def _lost_factors(text: str, span: tuple[int, int], others: Sequence[str]) -> Iterator[Correction]:
+    """Yield a term with a letter that all others of its sum have, two at least."""
+    term = text[slice(*span)]
+    letters = [{*WORD.findall(one)} - {*FUNCTIONS} for one in others]
+    common = set.intersection(*letters) if len(letters) > 1 else set[str]()
+    number = NUMBER.match(term)
+    start = span[0] + (number.end() if number else 0)
+    for name in sorted(common.difference(WORD.findall(term))):
+        yield Correction("", f"{name}*", (start, start))
 
 
 def _changes(
