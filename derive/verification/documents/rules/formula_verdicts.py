@@ -15,12 +15,13 @@ from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
-from derive.verification.documents.rules.derived_matrices import DerivedMatrices
+from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
+from derive.verification.documents.rules.matrices import DerivedMatrices
 from derive.verification.documents.rules.other_statements import AppliedLoads, OtherStatements
 from derive.verification.documents.rules.roles import Roles
-from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
+from derive.verification.documents.rules.side_comparison import SideComparison
 from derive.verification.documents.rules.side_verdict import (
     CORRECT,
     SideVerdict,

@@ -17,9 +17,10 @@ from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.document_system import is_length
 from derive.verification.documents.letters.letters import energy_of_part
+from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
-from derive.verification.documents.rules.side_comparison import Frequencies, SideComparison
+from derive.verification.documents.rules.side_comparison import SideComparison
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import (

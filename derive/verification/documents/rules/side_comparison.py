@@ -13,12 +13,11 @@ from derive.verification.corrections.source_names import SourceNames
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.rules.consequences import SUBSTITUTED
-from derive.verification.documents.rules.derived_matrices import has_scaled_rows
 from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.rules.matrix_terms import MatrixTerms
+from derive.verification.documents.rules.matrices import MatrixTerms, has_scaled_rows
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
-from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
+from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import OWN_CONSTANT, WORD, DocumentFormula
 from derive.verification.judging.engine import UNDECIDED
 from derive.verification.judging.reference_system import depends_on
@@ -30,19 +29,6 @@ MAX_DENOMINATOR = 100
 #: The note on a mass matrix with other factors in its rows.
 SCALED = "its rows are those of equations with another factor"
 
-#: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
-FREQUENCY_LETTERS: dict[str, tuple[sp.Expr, int]] = {
-    **dict.fromkeys(("omega", "Omega", "w"), (sp.S.One, 1)),
-    **dict.fromkeys(("f", "nu"), (1 / (2 * sp.pi), 1)),
-    **dict.fromkeys(("T", "P", "tau"), (2 * sp.pi, -1)),
-}
-#: Words of sentences about them.
-ABOUT_FREQUENCIES = re.compile(
-    "fre[qc]uen|fréquen|frequenz|pulsa|p[eé]riod|oscill|schwing|eigen|harmoni|natural|周期|频率"
-    "|頻率|振動数",
-    re.IGNORECASE,
-)
-OF_SMALL_MOTIONS = "it is that of small motions"
 
 #: The rate of a name, such as that of a momentum.
 RATE = re.compile(r"ddt\(\w+\)")
@@ -338,57 +324,6 @@ class SideComparison:
         is_zero = not isinstance(value, sp.MatrixBase) and value == 0
         is_equation = depends_on(other, self._namespace.derivation.system.qddot)
         return sp.zeros(*other.shape) if is_zero and is_equation else value
-
-
-class Frequencies:
-    """Verdicts on frequencies by the linearised equations of motion about an equilibrium."""
-
-    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions, roles: Roles) -> None:
-        self._namespace, self._linear, self._roles = namespace, linear, roles
-
-    def verdict(
-        self, formula: DocumentFormula, name: str, side: FormulaText, power: int
-    ) -> SideVerdict | None:
-        """The verdict on a power of a frequency or period; None if it can be another quantity."""
-        system = self._namespace.derivation.system
-        letter, _, index = name.partition("_")
-        value = self._namespace.value(side.text)
-        is_named = letter in FREQUENCY_LETTERS and not isinstance(value, sp.MatrixBase)
-        has_place = 0 < len(system.q) <= MAX_INVERSE and not system.constraints
-        if not is_named or not has_place or self._linear.place is None:
-            return None
-        if value == 0 or not value.free_symbols <= {*system.params}:
-            return None
-        M, D, K, _ = self._linear.matrices
-        factor, sign = FREQUENCY_LETTERS[letter]
-        square = (value ** sp.Rational(1, power) / factor) ** (2 * sign)
-        is_zero = self._namespace.model.context.is_zero
-        if is_zero((K - square * M).det()):
-            return plain("verified", formula, OF_SMALL_MOTIONS)
-        if len(system.q) > 1:
-            return None
-        required = K[0] / M[0]
-        if is_zero(square - required + (D[0] / M[0]) ** 2 / 4):
-            return plain("verified", formula, f"{OF_SMALL_MOTIONS} with friction")
-        is_about = index in ("", "0", "n") and ABOUT_FREQUENCIES.search(formula.occurrence.prose)
-        if not is_about or not self._is_only_one(required) or any(D):
-            return None
-        if sp.cancel(square).free_symbols != sp.cancel(required).free_symbols:
-            return None  # that of another motion
-        correct = factor * sp.sqrt(required) ** sign
-        result = self._roles.value(side, name, correct**power)
-        return result if result.verdict.verdict == "wrong" else None
-
-    def _is_only_one(self, square: sp.Expr) -> bool:
-        """Whether motions about the origin are stable, and forces have no other equilibrium.
-
-        These are forces that depend on the coordinate alone but for a factor, as g sin(θ)/l does.
-        """
-        d = self._namespace.derivation
-        (q,), (v,) = d.system.q, d.system.qdot
-        force = -d.lagrangian.subs(v, 0).diff(q)
-        is_known = bool(force) and sp.simplify(force / force.diff(q).subs(q, 0)) in (q, sp.sin(q))
-        return self._linear.is_origin and is_known and not square.could_extract_minus_sign()
 
 
 def _number(value: Value) -> Value:

@@ -9,7 +9,7 @@ from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate
 from derive.verification.documents.rules.consequences import WithVerdict, opposed
 from derive.verification.documents.rules.evidence.support import OF_ENERGIES, Support
-from derive.verification.documents.rules.side_comparison import OF_SMALL_MOTIONS
+from derive.verification.documents.rules.frequencies import OF_SMALL_MOTIONS
 from derive.verification.documents.rules.side_verdict import HOLDING, SideVerdict
 from derive.verification.documents.statements import WORD, DocumentFormula
 

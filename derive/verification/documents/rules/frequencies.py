@@ -1,0 +1,77 @@
+"""Frequencies and periods of small motions, and the equations that determine them."""
+
+import re
+
+import sympy as sp
+
+from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.rules.known_values import DocumentNamespace
+from derive.verification.documents.rules.roles import Roles
+from derive.verification.documents.rules.side_verdict import SideVerdict, plain
+from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
+from derive.verification.documents.statements import DocumentFormula
+
+#: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
+FREQUENCY_LETTERS: dict[str, tuple[sp.Expr, int]] = {
+    **dict.fromkeys(("omega", "Omega", "w"), (sp.S.One, 1)),
+    **dict.fromkeys(("f", "nu"), (1 / (2 * sp.pi), 1)),
+    **dict.fromkeys(("T", "P", "tau"), (2 * sp.pi, -1)),
+}
+#: Words of sentences about them.
+ABOUT_FREQUENCIES = re.compile(
+    "fre[qc]uen|fréquen|frequenz|pulsa|p[eé]riod|oscill|schwing|eigen|harmoni|natural|周期|频率"
+    "|頻率|振動数",
+    re.IGNORECASE,
+)
+OF_SMALL_MOTIONS = "it is that of small motions"
+
+
+class Frequencies:
+    """Verdicts on frequencies by the linearised equations of motion about an equilibrium."""
+
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions, roles: Roles) -> None:
+        self._namespace, self._linear, self._roles = namespace, linear, roles
+
+    def verdict(
+        self, formula: DocumentFormula, name: str, side: FormulaText, power: int
+    ) -> SideVerdict | None:
+        """The verdict on a power of a frequency or period; None if it can be another quantity."""
+        system = self._namespace.derivation.system
+        letter, _, index = name.partition("_")
+        value = self._namespace.value(side.text)
+        is_named = letter in FREQUENCY_LETTERS and not isinstance(value, sp.MatrixBase)
+        has_place = 0 < len(system.q) <= MAX_INVERSE and not system.constraints
+        if not is_named or not has_place or self._linear.place is None:
+            return None
+        if value == 0 or not value.free_symbols <= {*system.params}:
+            return None
+        M, D, K, _ = self._linear.matrices
+        factor, sign = FREQUENCY_LETTERS[letter]
+        square = (value ** sp.Rational(1, power) / factor) ** (2 * sign)
+        is_zero = self._namespace.model.context.is_zero
+        if is_zero((K - square * M).det()):
+            return plain("verified", formula, OF_SMALL_MOTIONS)
+        if len(system.q) > 1:
+            return None
+        required = K[0] / M[0]
+        if is_zero(square - required + (D[0] / M[0]) ** 2 / 4):
+            return plain("verified", formula, f"{OF_SMALL_MOTIONS} with friction")
+        is_about = index in ("", "0", "n") and ABOUT_FREQUENCIES.search(formula.occurrence.prose)
+        if not is_about or not self._is_only_one(required) or any(D):
+            return None
+        if sp.cancel(square).free_symbols != sp.cancel(required).free_symbols:
+            return None  # that of another motion
+        correct = factor * sp.sqrt(required) ** sign
+        result = self._roles.value(side, name, correct**power)
+        return result if result.verdict.verdict == "wrong" else None
+
+    def _is_only_one(self, square: sp.Expr) -> bool:
+        """Whether motions about the origin are stable, and forces have no other equilibrium.
+
+        These are forces that depend on the coordinate alone but for a factor, as g sin(θ)/l does.
+        """
+        d = self._namespace.derivation
+        (q,), (v,) = d.system.q, d.system.qdot
+        force = -d.lagrangian.subs(v, 0).diff(q)
+        is_known = bool(force) and sp.simplify(force / force.diff(q).subs(q, 0)) in (q, sp.sin(q))
+        return self._linear.is_origin and is_known and not square.could_extract_minus_sign()
