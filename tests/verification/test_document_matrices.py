@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.rules.frequencies import OF_DETERMINANT
 from derive.verification.source_files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
@@ -94,3 +95,44 @@ $$\begin{bmatrix} \dot x\\ \ddot x \end{bmatrix} = \begin{bmatrix} 0 & 1\\
   -\frac km & -\frac bm \end{bmatrix}\begin{bmatrix} x\\ \dot x \end{bmatrix}$$"""
     assert [one.verdict for one in judged(tmp_path, text)] == ["verified"] * 2
     assert judged(tmp_path, text.replace(r"-\frac km", r"\frac km"))[1].verdict != "verified"
+
+
+COUPLED = r"""
+$$T = \frac12 m\dot x_1^2 + \frac12 m\dot x_2^2$$
+$$V = \frac12 k x_1^2 + \frac12 k (x_2 - x_1)^2 + \frac12 k x_2^2$$
+$$m\ddot x_1 = -2 k x_1 + k x_2$$
+"""
+OSCILLATOR = r"""
+$$T = \frac12 m\dot x^2$$ $$V = \frac12 k x^2$$ $$m\ddot x + b\dot x + k x = 0$$
+"""
+
+
+@pytest.mark.parametrize(("system", "right", "slip", "term"), [
+    (COUPLED, r"(2 k - m\omega^2)^2 - (-k)^2 = 0", r"(2 k - m\omega^2)^2 + (-k)^2 = 0", "(-k)^2"),
+    (COUPLED, r"(2 k - m\omega^2 - k)(2 k - m\omega^2 + k) = 0",
+     r"(2 k - m\omega^2 - k)(k - m\omega^2 + k) = 0", r"(k - m\omega^2 + k)"),
+    (COUPLED, r"(k - m\omega^2)(3 k - m\omega^2) = 0",
+     r"(k - m\omega^2)(2 k - m\omega^2) = 0", "2 k"),
+    (COUPLED, r"m^2\lambda^2 - 4 k m\lambda + 3 k^2 = 0",
+     r"m^2\lambda^2 - 2 k m\lambda + 3 k^2 = 0", r"- 2 k m\lambda"),
+    (COUPLED, r"3 k - m\omega^2 = 0", "", ""),  # a factor
+    (OSCILLATOR, r"m s^2 + b s + k = 0", "m s^2 - b s + k = 0", "- b s"),
+    (OSCILLATOR, r"\lambda^2 + \frac bm\lambda + \frac km = 0",
+     r"\lambda^2 + \frac{2 b}m\lambda + \frac km = 0", r"\frac{2 b}m\lambda"),
+])  # fmt: skip
+def test_equations_of_frequencies_are_determinants_of_small_motions(
+    system: str, right: str, slip: str, term: str, tmp_path: Path
+) -> None:
+    result = judged(tmp_path, f"{system}$${right}$$")[-1]
+    assert (result.verdict, result.note) == ("verified", OF_DETERMINANT)
+    if slip:
+        result = judged(tmp_path, f"{system}$${slip}$$")[-1]
+        assert (result.verdict, result.wrong_term) == ("wrong", term)
+
+
+@pytest.mark.parametrize("other", [
+    r"2 k - m\omega^2 = 0", r"k x_1 - m\omega^2 = 0", r"\omega^2 - \kappa = 0",
+    r"\omega - 1 = 0", r"\mu k - 3 m\mu^2 = 0",
+])  # fmt: skip
+def test_other_equations_of_a_frequency_are_not_wrong(other: str, tmp_path: Path) -> None:
+    assert judged(tmp_path, f"{COUPLED}$${other}$$")[-1].verdict in ("definition", "context")

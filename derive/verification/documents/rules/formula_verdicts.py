@@ -137,6 +137,8 @@ class Judge:
             return plain("verified", formula, "with the stated functions of time")
         if loads and self._is_stated and (result := self._loads.beside(formula, loads)) is not None:
             return result
+        if unknown and (result := self._frequencies.determining(formula, unknown)) is not None:
+            return result
         if unknown and self._others.relates_parameters(formula):
             return plain("definition", formula, "")
         if self._unknown(formula.sides[:1]):

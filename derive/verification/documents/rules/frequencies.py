@@ -1,9 +1,12 @@
 """Frequencies and periods of small motions, and the equations that determine them."""
 
 import re
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
+from derive.formulas.expression import parse
+from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
@@ -24,6 +27,9 @@ ABOUT_FREQUENCIES = re.compile(
     re.IGNORECASE,
 )
 OF_SMALL_MOTIONS = "it is that of small motions"
+#: Letters of which the determinant of the equations of small motions is a function.
+ROOTS = ("omega", "Omega", "w", "lambda", "lamda", "s")
+OF_DETERMINANT = "it determines the frequencies of small motions"
 
 
 class Frequencies:
@@ -65,6 +71,54 @@ class Frequencies:
         result = self._roles.value(side, name, correct**power)
         return result if result.verdict.verdict == "wrong" else None
 
+    def determining(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
+        """The verdict on an equation for frequencies, such as (2*k - m*omega**2)**2 - k**2 = 0.
+
+        Each side is a factor of the determinant of the equations of small motions. None if it can
+        be another equation: it must have the same powers, and one slip must explain it.
+        """
+        sides = [one for one in formula.sides if one.text != "0"]
+        letter, system = unknown[0].partition("_")[0], self._namespace.derivation.system
+        has_place = 0 < len(system.q) <= MAX_INVERSE and not system.constraints
+        if letter not in ROOTS or len(unknown) > 1 or not has_place or self._linear.place is None:
+            return None
+        if not 0 < len(sides) < len(formula.sides):
+            return None
+        x = system.qdot[0]  # for any number: no side contains velocities
+        names = {**self._namespace.all_names, unknown[0]: x}
+        try:
+            values = [sp.expand(parse(side.text, names)) for side in sides]
+            polynomials = [
+                sp.Poly(value, x) for value in values if value.free_symbols & {*system.params}
+            ]
+        except (ExpressionError, NotImplementedError, TypeError, ValueError, sp.PolynomialError):
+            return None
+        if len(polynomials) < len(sides) or any(
+            one.free_symbols_in_domain - {*system.params} for one in polynomials
+        ):
+            return None
+        for determinant in self._determinants(letter, x):
+            wrong = [k for k, one in enumerate(polynomials) if not _divides(one, determinant)]
+            if not wrong:
+                return plain("verified", formula, OF_DETERMINANT)
+            side, own = sides[wrong[0]], polynomials[wrong[0]]
+            if own.monoms() == determinant.monoms():
+                for first, second in ((own.LC(), determinant.LC()), (own.TC(), determinant.TC())):
+                    required = sp.expand(determinant.as_expr() * first / second)
+                    result = self._roles.value(side, "determinant", required, {unknown[0]: x})
+                    if len(result.verdict.corrections) == 1:
+                        return result
+        return None
+
+    def _determinants(self, letter: str, x: sp.Symbol) -> Iterator[sp.Poly]:
+        """Yield the determinants of small motions as polynomials of a letter."""
+        M, D, K, _ = self._linear.matrices
+        if letter in FREQUENCY_LETTERS:
+            matrices = [] if any(D) else [K - x**2 * M]
+        else:
+            matrices = [x**2 * M + x * D + K, *([] if any(D) else [K - x * M, K + x * M])]
+        yield from (sp.Poly(sp.expand(one.det()), x) for one in matrices)
+
     def _is_only_one(self, square: sp.Expr) -> bool:
         """Whether motions about the origin are stable, and forces have no other equilibrium.
 
@@ -75,3 +129,8 @@ class Frequencies:
         force = -d.lagrangian.subs(v, 0).diff(q)
         is_known = bool(force) and sp.simplify(force / force.diff(q).subs(q, 0)) in (q, sp.sin(q))
         return self._linear.is_origin and is_known and not square.could_extract_minus_sign()
+
+
+def _divides(one: sp.Poly, other: sp.Poly) -> bool:
+    """Whether a polynomial that is no number is a factor of another one."""
+    return one.degree() > 0 and all(sp.simplify(c) == 0 for c in sp.rem(other, one).coeffs())

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -179,13 +179,22 @@ class Roles:
                 return (Correction(text, corrections[0].correct, (start, end)),)
         return corrections
 
-    def value(self, side: FormulaText, name: str, value: sp.Expr) -> SideVerdict:
-        """The verdict on a side that must have a value, to which a name is given."""
+    def value(
+        self,
+        side: FormulaText,
+        name: str,
+        value: sp.Expr,
+        letters: Mapping[str, sp.Symbol] | None = None,
+    ) -> SideVerdict:
+        """The verdict on a side that must have a value, to which a name is given.
+
+        Some letters of the side can stand for symbols of the system.
+        """
         name = name if name.isidentifier() else "left_side"
         texts: tuple[Sequence[str], ...] = ((), [*self._partners(side)])  # a slip of an index
         for others in texts:
             model = self._model_of(side, *others)
-            model = replace(model, names={**model.names, name: value})
+            model = replace(model, names={**model.names, **(letters or {}), name: value})
             verdict = judge_formula(model, "", side.text, "value", name)
             if verdict.verdict != "wrong" or verdict.corrections:
                 break
