@@ -211,3 +211,22 @@ def test_a_partial_derivative_by_the_time_is_that_of_a_letter_that_depends_on_it
 $$ \frac{dH}{dt} = \frac{\partial H}{\partial t}
 = \frac{\partial}{\partial t}\left(\frac12 m\omega(t)^2 q^2\right) = m\omega\dot\omega q^2 $$"""
     assert verdicts(tmp_path, text) == ["context", "verified"]
+
+
+@pytest.mark.parametrize(("chain", "expected"), [
+    (r"v_a = \frac12 r^2\dot\phi = \frac12\frac lm = \frac lm", "wrong"),
+    (r"v_a = \frac12 r^2\dot\phi = \frac12\frac lm = \frac{l}{2 m}", "context"),
+    (r"v_a = \frac lm = -\frac lm", "wrong"),
+    (r"a_1 = -a_1 = 0", "context"),  # a_1 vanishes
+    (r"\frac12\frac lm = \frac lm", "context"),
+    # by another frequency of the document
+    (r"T = \frac{2\pi}{\omega} = \pi\sqrt{\frac mk}", "context"),
+    (r"n = 2 = 3", "context"),
+])  # fmt: skip
+def test_a_chain_with_a_side_and_its_multiple_is_wrong(
+    chain: str, expected: str, tmp_path: Path
+) -> None:
+    text = (
+        rf"$${chain}$$ with $\omega = \sqrt{{\frac km}}$ or $\omega = \sqrt{{\frac{{4 k}}{{m}}}}$"
+    )
+    assert verdicts(tmp_path, text)[0] == expected

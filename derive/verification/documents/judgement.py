@@ -63,7 +63,7 @@ from derive.verification.documents.rules.evidence.weighing import (
     weighed,
 )
 from derive.verification.documents.rules.identities import Identities
-from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
+from derive.verification.documents.rules.side_verdict import CORRECT, HOLDING, SideVerdict, plain
 from derive.verification.documents.statements import (
     IMPLIED,
     POINT,
@@ -220,6 +220,10 @@ def _judge(
     identities = Identities(statements.formulas, statements.derivatives, left)
     follow = *general_verdicts(statements), *identities.verdicts()
     results |= {one.occurrence: (one, result) for one, result in follow if one in left}
+    for one, result in identities.multiples():
+        before = results.get(one.occurrence)
+        if before is None or before[1].verdict.verdict not in (*HOLDING, "wrong"):
+            results[one.occurrence] = one, result
     note = without_meaning(hints)
     if work.left < 0:
         note = (

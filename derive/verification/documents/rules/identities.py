@@ -118,6 +118,25 @@ class Identities:
                 note = f"it contradicts the definition of {', '.join(sorted(defined))}"
                 yield formula, self._wrong(formula, number, note)
 
+    def multiples(self) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
+        """Yield chains of three sides or more of which one is the side before it times a number."""
+        for formula in self._formulas:
+            if (number := self._multiple(formula)) is not None:
+                yield formula, self._wrong(formula, number, "two of its sides differ by a factor")
+
+    def _multiple(self, formula: DocumentFormula) -> int | None:
+        """The number of a side in a chain of which the next one is a multiple by a number."""
+        if len(formula.sides) < 3 or formula.index or any(one.text == "0" for one in formula.sides):
+            return None
+        letters = {word: self._symbol(word) for word in formula.words}  # whatever defines them
+        for number, sides in enumerate(zip(formula.sides, formula.sides[1:], strict=False)):
+            with suppress(*ERRORS):
+                left, right = (parse(side.text, {**FUNCTIONS, **letters}) for side in sides)
+                ratio = sp.simplify(left / right) if left.free_symbols else sp.S.One
+                if ratio.is_Rational and ratio not in (0, 1):
+                    return number
+        return None
+
     def _wrong(self, formula: DocumentFormula, number: int, note: str) -> SideVerdict:
         """The verdict on a formula whose sides with this number and the next are not equal.
 
