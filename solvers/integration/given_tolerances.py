@@ -140,7 +140,8 @@ def _inputs(problem: Problem, outcome: Outcome, t: Array, y: Array) -> Array | N
     if not count:
         return None
     if problem.schedule:
-        return outcome.history.at(t) if outcome.history.times else np.empty((count, 0))
+        unknown = np.full((count, len(t)), np.nan)  # interrupted at the first sample
+        return outcome.history.at(t) if outcome.history.times else unknown
     if problem.form.feedback:
         values = np.full((len(t), count), np.nan)
         for k, point in enumerate(zip(t.tolist(), y.T, strict=True)):

@@ -307,17 +307,21 @@ def test_inputs_that_become_nan_end_the_motions_of_their_columns(backend: str) -
     assert motions.t == pytest.approx([0.52, 1.0])
 
 
-def test_a_run_that_is_interrupted_at_its_first_sample_has_no_inputs() -> None:
+@pytest.mark.parametrize(("backend", "count"), [("python", 1), ("compiled", 0)])
+def test_a_run_that_is_interrupted_at_its_first_sample_has_no_inputs(
+    backend: str, count: int
+) -> None:
     def controller(t: float, y: Array) -> dict[str, float]:
         raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as stopped:
-        integrate(cart, (0, 1), START, {}, inputs=Held(0.1, controller), backend="compiled")
+        integrate(cart, (0, 1), START, {}, inputs=Held(0.1, controller), backend=backend)
     solution = stopped.value.solution
     assert solution.status is Status.INTERRUPTED
-    assert solution.t.shape == (0,)
+    assert solution.t.shape == (count,)
     assert solution.inputs is not None
-    assert solution.inputs.shape == (2, 0)
+    assert solution.inputs.shape == (2, count)
+    assert np.isnan(solution.inputs).all()
 
 
 def test_inputs_need_a_system_that_has_them() -> None:
