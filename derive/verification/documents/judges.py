@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, product
+from itertools import chain, islice, product
 from typing import TypeAlias
 
 from derive.formulas.syntax import ExpressionError
@@ -162,6 +162,18 @@ class Judges:
     def count_wrong(self, candidate: SystemCandidate) -> int:
         """The number of formulas that are wrong."""
         return len(self.wrong(candidate))
+
+    def has_several_wrong(self, candidate: SystemCandidate) -> bool:
+        """Whether more than one formula is wrong; those after the second are not judged."""
+        if candidate.constraints:  # with which wrong formulas can follow from others
+            return self.count_wrong(candidate) > 1
+        judge = self.judge(candidate)
+        results = (
+            self._unless_meant_otherwise(candidate, formula, judge.verdict(formula))
+            for formula in self.statements.formulas
+        )
+        wrong = (one for one in results if one.verdict.verdict == "wrong")
+        return len([*islice(wrong, 2)]) > 1
 
     def count_holding(self, candidate: SystemCandidate) -> int:
         """The number of formulas that hold."""

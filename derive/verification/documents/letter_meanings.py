@@ -262,6 +262,8 @@ def _least_support(matches: Sequence[Match], least: float) -> float:
 
 def _fits(judges: Judges, candidate: SystemCandidate) -> bool:
     """Whether a formula is verified by a system and none is wrong, or two beside a wrong one."""
+    if judges.has_several_wrong(candidate):
+        return False
     kinds = Counter(one.verdict.verdict for _, one in judges.verdicts(candidate))
     return kinds["wrong"] <= 1 and kinds["verified"] > kinds["wrong"]
 

@@ -79,6 +79,7 @@ class Judge:
         self._frequencies = Frequencies(namespace, linear, self._roles)
         self._others = OtherStatements(namespace, self._frequencies)
         self._loads = AppliedLoads(namespace, linear, self._comparison)
+        self._judged: dict[DocumentFormula, SideVerdict] = {}
 
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
@@ -89,6 +90,11 @@ class Judge:
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
+        if formula not in self._judged:
+            self._judged[formula] = self._new_verdict(formula)
+        return self._judged[formula]
+
+    def _new_verdict(self, formula: DocumentFormula) -> SideVerdict:
         try:
             result = self._verdict(formula)
         except (ExpressionError, NotImplementedError) as error:  # it has no value at a state

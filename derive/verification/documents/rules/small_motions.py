@@ -124,7 +124,7 @@ class SmallMotions:
         return [one.xreplace(still) for one in self._derivation.euler_lagrange]
 
     def _is_equilibrium(self, place: Mapping[sp.Symbol, sp.Expr]) -> bool:
-        return all(sp.simplify(one.xreplace(place)) == 0 for one in self._forces_at_rest)
+        return all(is_small(one.xreplace(place)) for one in self._forces_at_rest)
 
     @property
     def is_origin(self) -> bool:
