@@ -103,6 +103,16 @@ def test_model_exchange_has_the_derivatives_of_the_system(path: Path) -> None:
         assert unit.values(*names) == [*result]
 
 
+def test_states_can_be_set_and_have_nominal_values_of_one(path: Path) -> None:
+    unit, values = Unit(path, "ModelExchange"), (ctypes.c_double * 4)()
+    for name, value in zip(dp.STATE, (0.1, -0.2, 0.3, 0.4), strict=True):
+        unit.set(**{name: value})
+    unit.call("GetContinuousStates", values, ctypes.c_size_t(4))
+    assert [*values] == [0.1, -0.2, 0.3, 0.4]
+    unit.call("GetNominalsOfContinuousStates", values, ctypes.c_size_t(4))
+    assert [*values] == [1.0] * 4
+
+
 def test_states_are_saved_and_restored(path: Path) -> None:
     unit, state = Unit(path), ctypes.c_void_p()
     unit.step(0.0, 0.5)
