@@ -1,4 +1,4 @@
-"""Dimensions of the letters of a document, and the formula that contradicts those of all others.
+"""Dimensions of the letters of a document, and formulas that contradict those of all others.
 
 Terms of a sum have the same dimension, and so have the sides of an equation; arguments of sines
 have none. These are linear equations for the exponents of mass, length and time of each letter.
@@ -45,8 +45,6 @@ FACTOR = re.compile(
 NUMBER = re.compile(r"-?(?:[\d./]+\*)?")
 #: The fewest formulas with dimensions, and the most that contradict all others.
 FEWEST, MOST_ODD = 2, 3
-
-
 #: Whether a formula has no contradictory dimensions with another text of one of its sides.
 Homogeneity = Callable[[int, str], bool]
 
