@@ -458,3 +458,19 @@ def test_an_energy_among_accelerations_is_another_quantity(tmp_path: Path) -> No
     assert results[-1].note == "T is no energy beside accelerations"
     rate = judged(tmp_path, text + r"$$\frac{d T}{dt} = m\dot y\ddot y$$".replace("{}", "0"))
     assert rate[-1].verdict != "context"
+
+
+WIRE = r"""$$X = x\cos\omega t$$ $$Y = a x^2$$ $$Z = x\sin\omega t$$
+$$T = \frac12 m (\dot X^2 + \dot Y^2 + \dot Z^2)$$ $$V = m g Y$$
+$$L = \frac12 m ((1 + 4 a^2 x^2)\dot x^2 + \omega^2 x^2) - m g a x^2$$
+$$p = \frac{\partial L}{\partial\dot x} = m (1 + 4 a^2 x^2)\dot x$$
+$$H = \frac{p^2}{2 m (1 + 4 a^2 x^2)} + m (g a - \frac{\omega^2}{2}) x^2$$
+$$\dot x = \frac{p}{m (1 + 4 a^2 x^2)}$$"""
+
+
+def test_a_hamiltonian_is_wrong_whatever_formula_states_its_momentum(tmp_path: Path) -> None:
+    assert wrong_terms(tmp_path, WIRE) == {}
+    slips = WIRE.replace(r"a^2 x^2)\dot x$$", r"a x^2)\dot x$$").replace("g a -", "g a +")
+    terms = wrong_terms(tmp_path, slips)
+    assert [*terms.values()][-1] == r"\frac{\omega^2}{2}"
+    assert len(terms) == 2

@@ -44,7 +44,8 @@ class ContraryStatements:
     def _wrong_part(self, number: int) -> int | None:
         """The line of a wrong formula that states a name in this one.
 
-        Or of any that states the wrong part of a sum of energies.
+        Or of any that states the wrong part of a sum of energies. A momentum is a variable of a
+        Hamiltonian, whatever formula states it.
         """
         formula, own = self._results[number]
         words = {*formula.words} - {formula.subject}
@@ -59,6 +60,7 @@ class ContraryStatements:
                 if one.subject in words - self._candidate.letters
                 and one.subject not in self._candidate.coordinates
                 and not order(one.subject)
+                and (own.kind, result.kind) != ("hamiltonian", "momenta")
             ),
             None,
         )
