@@ -10,6 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+import sympy
 from benchmarks.precision import FINAL
 from handwritten import handwritten
 from mpmath import mp, mpf, workdps
@@ -21,6 +22,9 @@ import generated.foucault_pendulum as foucault
 import generated.henon_heiles as hh
 import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
+from derive import Coordinate, Parameter, PointMass, System
+from derive.system.symbols import TIME
+from solvers.app.modules import build
 from solvers.app.modules import load as load_module
 from solvers.integration.compiled import compiler, extended
 from solvers.integration.compiled.compiler import NoCompilerError
@@ -89,6 +93,19 @@ def test_states_are_those_of_taylor_series(
         module, module.DEFAULTS, start, -times[::11], precision, FINE[precision]
     )
     assert np.abs(back - taylor(module, module.DEFAULTS, start, -times[::11], 26)).max() < 1e-14
+
+
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_a_force_that_grows_with_time_acts_at_the_times_of_stages(precision: str) -> None:
+    x, m = sympy.Symbol("x", real=True), sympy.Symbol("m", positive=True)
+    system = System(
+        "pulled", "Pulled", [Coordinate(x, "m", "position")], [Parameter(m, "kg", 1, "mass")],
+        [PointMass(m, (x, sympy.S.Zero))], potential=x**2 / 2, forces=[TIME**3],
+    )  # fmt: skip
+    times = np.linspace(0, 8, 9)
+    y = integrate_extended(build(system), (1.0,), (0.5, 0.25), times, precision, FINE[precision])
+    exact = times**3 - 6 * times + 0.5 * np.cos(times) + 6.25 * np.sin(times)
+    assert np.abs(y[:, 0] - exact).max() < 1e-12
 
 
 @pytest.mark.long("other tests reach its code")
