@@ -40,6 +40,17 @@ def test_three_pendulums_on_a_cart_have_eight_for_every_position() -> None:
     assert all(equilibrium[position] == position for equilibrium in found)
 
 
+@pytest.mark.parametrize(("sign", "count"), [(1, 0), (-1, 1)])
+def test_a_positive_coordinate_has_positive_values_alone(sign: int, count: int) -> None:
+    r, s, m = sp.symbols("r s m", positive=True)
+    coordinates = [Coordinate(one, "m", "distance") for one in (r, s)]
+    system = System(
+        "radial", "Radial", coordinates, [Parameter(m, "kg", 1, "mass")],
+        [PointMass(m, (r, s))], potential=(r + sign * s) ** 2, gravity=(0, 0),
+    )  # fmt: skip
+    assert len(Derivation(system).equilibria()) == count
+
+
 @pytest.mark.parametrize("ratio", [0.5, 0.999, 1.001, 1.5, 10.0])
 def test_a_pitchfork_on_a_rotating_hoop_is_found(ratio: float) -> None:
     Omega = ratio * CRITICAL
