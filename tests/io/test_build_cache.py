@@ -129,6 +129,13 @@ def test_a_folder_under_the_name_of_another_is_built_again() -> None:
     assert (built_folder("one", write) / "file").read_text() == TEXT
 
 
+def test_a_folder_of_another_user_is_not_intact(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder, user = built_folder("one", write), os.getuid()
+    assert build_cache.is_intact(folder)
+    monkeypatch.setattr(os, "getuid", lambda: user + 1)
+    assert not build_cache.is_intact(folder)
+
+
 def test_a_folder_without_its_mark_is_built_again() -> None:
     built_folder("one", lambda folder: (folder / "file").write_text("other"))
     assert (built_folder("one", write, mark=b"text") / "file").read_text() == TEXT
