@@ -224,6 +224,13 @@ def test_columns_that_are_missing_or_unknown_are_named(data: list[Columns], mess
         fit(cart(), [{"t": T, "x": x} | columns for columns in data], inputs="held")
 
 
+def test_inputs_between_values_are_their_means_and_the_last_one_holds() -> None:
+    t, gap = np.array([0.0, 1.0, 2.0, 4.0]), np.nan
+    run = Measurement(t, {"x": t, "F": np.array([1.0, 3.0, gap, 9.0])})
+    assert run.with_inputs(["F"], "linear").inputs["F"].tolist() == [2.0, 4.0, 7.0, 9.0]
+    assert run.with_inputs(["F"], "held").inputs["F"].tolist() == [1.0, 3.0, 3.0, 9.0]
+
+
 @pytest.mark.parametrize("order", [(0, 1), (1, 0), (0, 1, 1), (1, 1, 0)])
 def test_the_run_without_an_input_is_named_whatever_the_order(order: tuple[int, ...]) -> None:
     runs = Measurement(T, {"x": T}, "one"), Measurement(T, {"x": T}, "other", {"F": FORCE})
