@@ -89,7 +89,7 @@ def test_programs_that_a_command_starts_have_a_standard_input() -> None:
         "import subprocess; from solvers.io.terminal import standard_streams\n"
         "with standard_streams(): print(subprocess.run('cat').returncode)"
     )
-    assert shell(f"{sys.executable} -c {quote(code)} <&-") == (0, "0\n")
+    assert shell(f"{quote(sys.executable)} -c {quote(code)} <&-") == (0, "0\n")
 
 
 @pytest.mark.parametrize("streams", [">&-", ">&- <&-"])
