@@ -43,6 +43,8 @@ MAX_FITTED, MAX_CHANGES, MAX_CHECKED = 40, 10, 3
 MAX_LENGTH = 5000
 #: The number of operations in a formula whose terms are compared, or that is simplified.
 MAX_OPERATIONS = 500
+#: The same for formulas with fractions by sums, which take much longer to cancel.
+MAX_OF_FRACTIONS = 100
 
 
 def advised(
@@ -153,7 +155,7 @@ def _all_terms(
     """Yield corrections of all wrong terms of a sum."""
     pieces, namespace = search.terms, model.context.namespace
     terms = [Term(p.sign * side * parse(p.source, namespace), side) for p, side in pieces]
-    if correct.count_ops() > MAX_OPERATIONS:
+    if correct.count_ops() > _most_operations(correct):
         return
     corrected, missing = corrected_terms(terms, correct, variables(model.derivation.system))
     wrong = [(pieces[index][0], value) for index, value in corrected.items()]
@@ -189,13 +191,20 @@ def _state(
     return ", ".join(f"{name} = {number}" for name, number in numbers.items())
 
 
+def _most_operations(expression: sp.Expr) -> int:
+    """The number of operations up to which the terms of an expression are compared."""
+    powers = expression.atoms(sp.Pow)
+    by_sums = any(one.base.is_Add and one.exp.could_extract_minus_sign() for one in powers)
+    return MAX_OF_FRACTIONS if by_sums else MAX_OPERATIONS
+
+
 def _closest_equation(value: sp.Expr, model: ReferenceSystem) -> sp.Expr | None:
     """The derived equation of motion, times a factor, from which a wrong one differs least.
 
     Long equations, of which fractions take minutes to cancel, are left out.
     """
     system, every = model.derivation.system, model.derivation.euler_lagrange
-    equations = [one for one in every if one.count_ops() <= MAX_OPERATIONS]
+    equations = [one for one in every if one.count_ops() <= _most_operations(one)]
     if not equations:
         return None
     state = variables(system)
