@@ -13,7 +13,7 @@ from advice_campaign import Outcome, document, outcome
 from formula_mutants import mutants
 from formula_truth import formulas, is_right
 
-from derive import Derivation, load
+from derive import Coordinate, Derivation, Parameter, PointMass, System, load
 from derive.reading.document_formats import read_document
 from derive.verification.corrections import advice
 from derive.verification.corrections.advice import MAX_LENGTH
@@ -378,3 +378,22 @@ def test_long_equations_of_motion_are_no_correct_form(monkeypatch: pytest.Monkey
     monkeypatch.setattr(advice, "coefficients", lambda one, _: cancelled.append(one) or {})
     assert judged("single_pendulum", "euler_lagrange", "", text).verdict == "wrong"
     assert len(cancelled) == 0
+
+
+@pytest.mark.parametrize(("most", "is_compared"), [(100, True), (5, False)])
+def test_terms_of_long_fractions_by_sums_are_not_compared(
+    most: int, is_compared: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """137 operations with a few such fractions take minutes to cancel."""
+    x, m, a = sp.Symbol("x", real=True), *sp.symbols("m a", positive=True)
+    parameters = [Parameter(m, "kg", 1, "mass"), Parameter(a, "m", 1, "distance")]
+    system = System(
+        "pole", "Pole", [Coordinate(x, "m", "position")], parameters,
+        [PointMass(m, (x, sp.S.Zero))], potential=m * a**2 / (x + a), gravity=(0, 0),
+    )  # fmt: skip
+    monkeypatch.setattr(advice, "MAX_OF_FRACTIONS", most)
+    model = ReferenceSystem(Derivation(system), {})
+    text = "m*x_ddot + m*a**2/(x + a)**2 = 0"
+    verdict = judge_formula(model, "printed", text, "euler_lagrange", "")
+    assert verdict.verdict == "wrong"
+    assert bool(verdict.correction or verdict.difference) == is_compared

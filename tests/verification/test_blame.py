@@ -426,12 +426,14 @@ $$m l^2\ddot\theta_1 + m g l\theta_1 - k\frac{l^2}{4}(\theta_2 - \theta_1) = 0$$
 
 
 SPRING = r"""$$\ddot x = (l_0 + x)\dot\theta^2 - \frac{k}{m} x + g\cos\theta$$
+$$\ddot\theta = \frac{-g\sin\theta - 2\dot x\dot\theta}{l_0 + x}$$
+$$L = \frac12 m\dot x^2 + \frac12 m (l_0 + x)^2\dot\theta^2 + m g (l_0 + x)\cos\theta
+- \frac12 k x^2$$
 $$\ddot\theta = \frac{-g\sin\theta - \dot x\dot\theta}{l_0 + x}$$
 $$T = \frac12 m(\dot x^2 + (l_0 + x)^2\dot\theta^2)$$ $$V_g = -m g (l_0 + x)\cos\theta$$
 $$L[\theta,\dot\theta,x,\dot x] = \frac12 m(\dot x^2 + (l_0 + x)^2\dot\theta^2)
 + m g (l_0 + x)\cos\theta - \frac12 k x^2 = \frac12 m\dot x^2 + \frac12 m (l_0 + x)^2\dot\theta^2
-+ m g (l_0 + x)\cos\theta - k x^2$$
-$$\ddot\theta = \frac{-g\sin\theta - 2\dot x\dot\theta}{l_0 + x}$$"""
++ m g (l_0 + x)\cos\theta - k x^2$$"""
 
 
 def test_a_chain_that_contradicts_itself_is_not_of_another_case(tmp_path: Path) -> None:

@@ -22,16 +22,18 @@ from derive.verification.documents.statements import Occurrence, translated
 NO_SYSTEM = without_meaning(None)
 
 
-def inhomogeneous(*formulas: str, are_of_program: bool = False) -> list[int]:
+def inhomogeneous(*formulas: str, are_of_program: bool = False, elsewhere: int = 0) -> list[int]:
+    """The numbers of inhomogeneous formulas, of which the first ones can be elsewhere."""
     places = [
         Occurrence(number, number, 1, 0, 0, latex, tree)
         for number, latex in enumerate(formulas)
         for tree in statements_of(latex)
     ]
     read = translated(places)
-    letters = letters_of(read.formulas, read.derivatives)
+    others, own = read.formulas[:elsewhere], read.formulas[elsewhere:]
+    letters = letters_of(own, read.derivatives)
     letters = replace(letters, are_of_program=are_of_program)
-    return [*inhomogeneous_formulas(letters, read.formulas, read.derivatives)]
+    return [*inhomogeneous_formulas(letters, own, read.derivatives, others)]
 
 
 def judged(folder: Path, *formulas: str) -> list[FormulaVerdict]:
@@ -314,6 +316,13 @@ def test_the_only_other_power_that_restores_the_dimensions_is_the_correction(
     assert wrong.note.startswith(INHOMOGENEOUS)
     formulas[number] = wrong.correction
     assert "wrong" not in [one.verdict for one in judged(tmp_path, *formulas)]
+
+
+def test_a_formula_that_agrees_with_others_elsewhere_is_not_the_odd_one() -> None:
+    slips = CENTRAL[1].replace("2 m r^2", "2 m r^3"), r"m \ddot r - \frac{p^2}{m r^4} + k r = 0"
+    part = slips[0], CENTRAL[2], slips[1]
+    assert inhomogeneous(*part) == [1]
+    assert inhomogeneous(CENTRAL[0], *part, elsewhere=1) == []
 
 
 def test_two_formulas_that_agree_with_two_others_each_are_not_wrong(tmp_path: Path) -> None:

@@ -132,7 +132,7 @@ def test_equations_of_frequencies_are_determinants_of_small_motions(
 
 @pytest.mark.parametrize("other", [
     r"2 k - m\omega^2 = 0", r"k x_1 - m\omega^2 = 0", r"\omega^2 - \kappa = 0",
-    r"\omega - 1 = 0", r"\mu k - 3 m\mu^2 = 0",
+    r"\omega - 1 = 0", r"k - m\omega^2 = k = 0", r"\mu k - 3 m\mu^2 = 0",
 ])  # fmt: skip
 def test_other_equations_of_a_frequency_are_not_wrong(other: str, tmp_path: Path) -> None:
     assert judged(tmp_path, f"{COUPLED}$${other}$$")[-1].verdict in ("definition", "context")

@@ -12,8 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from derive.formulas.syntax import ExpressionError, is_sum, summands, syntax_tree
-from derive.formulas.syntax import place as place_of
+from derive.formulas.syntax import ExpressionError, is_sum, place, summands, syntax_tree
 from derive.verification.documents.formula_translation import (
     RATES,
     FormulaText,
@@ -76,7 +75,10 @@ def inhomogeneous_formulas(
     parameters have no dimension, or if they alone agree with formulas `elsewhere` in the document.
     Of several, each has corrections.
     """
-    equations = _Equations(letters, formulas, derivatives)
+    outside = {stem(word) for one in elsewhere for word in one.words if order(word)}
+    outside -= {stem(word) for one in formulas for word in one.words}
+    whole = replace(letters, coordinates=(*letters.coordinates, *sorted(outside)))
+    equations = _Equations(whole, formulas, derivatives)
     rows = equations.rows()
     if len(rows) < FEWEST or _pivots(rows.values()) is not None:
         return {}
@@ -174,14 +176,14 @@ def _lost_dots(
     last = formula.sides[-1]
     if formula.subject in letters.quantities and any(map(order, WORD.findall(last.text))):
         return None
-    places = [one for one in WORD.finditer(last.text) if stem(one[0]) in moving]
+    words = [one for one in WORD.finditer(last.text) if stem(one[0]) in moving]
     found: dict[str, tuple[Correction, ...]] = {}
-    for chosen in ([one for one in places if not order(one[0])], *([one] for one in places)):
+    for chosen in ([one for one in words if not order(one[0])], *([one] for one in words)):
         text, pieces = last.text, list[Correction]()
-        for place in reversed(chosen):
-            rate = stem(place[0]) + RATES[min(2, order(place[0]) + 1)]
-            text = text[: place.start()] + rate + text[place.end() :]
-            pieces.append(Correction(place[0], rate, place.span()))
+        for word in reversed(chosen):
+            rate = stem(word[0]) + RATES[min(2, order(word[0]) + 1)]
+            pieces.append(Correction(word[0], rate, word.span()))
+            text = pieces[-1].applied(text)
         if is_homogeneous(len(formula.sides) - 1, text):
             found[text] = tuple(pieces[::-1])
     if len(found) != 1:
@@ -201,7 +203,7 @@ def _odd_terms(
         sums: dict[tuple[int, int], list[str]] = {}
         for node in ast.walk(syntax_tree(text)):  # from the outside
             if isinstance(node, ast.expr) and is_sum(node):
-                spans = [place_of(text, term) for term, _ in summands(node)]
+                spans = [place(text, term) for term, _ in summands(node)]
                 for a, b in spans:
                     others = [text[slice(*one)] for one in spans if one != (a, b)]
                     if is_homogeneous(number, f"{text[:a]}0{text[b:]}"):
