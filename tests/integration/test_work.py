@@ -1,0 +1,122 @@
+"""The work of every compiled loop: steps, rejected steps, evaluations, iterations."""
+
+import ctypes
+import re
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+from friction import BELT, block
+from recording import Record
+
+import generated.double_pendulum as dp
+import generated.duffing as duffing
+import generated.elastic_pendulum as elastic
+import generated.four_bar as four_bar
+import generated.henon_heiles as hh
+import generated.single_pendulum as sp
+import generated.spherical_pendulum as spherical
+from solvers.integration.compiled import extended, extended_source
+from solvers.integration.compiled.extended import PRECISIONS, ExtendedKernel, integrate_extended
+from solvers.integration.ensemble import ensemble
+from solvers.integration.integrate import integrate
+from solvers.integration.problem.events import Event
+from solvers.integration.results.ensemble_solution import Ensemble
+from solvers.integration.results.solution import Solution
+
+REPORT = (pi / 2, pi, 0.0, 0.0)
+REGULAR = np.array([[0.1, 0.2, 0.05, 0.0], [0.2, 0.0, -0.1, 0.3], [0.3, 0.1, 0.2, 0.0], [0.1] * 4])
+MANY = np.linspace(0, 10, 2001)
+#: An elastic pendulum with a stiff spring.
+SWING, STIFF = (1.2, 0.4, 0.0, 0.0), {"k": 1e5}
+#: Motions with steps of each kind, and their options.
+MOTIONS: dict[str, tuple[Any, ...]] = {
+    "explicit": (dp, (0, 9), REPORT, {}, {"method": "verner853"}),
+    "first same as last": (dp, (0, 10), REPORT, {}, {"method": "dp54", "form": "lagrangian"}),
+    "canonical": (dp, (0, 10), REPORT, {}, {"method": "tsit54", "form": "hamiltonian"}),
+    "fixed": (dp, (0, 10), REPORT, {}, {"method": "rk4", "h": 0.0031}),
+    "compensated": (sp, (0, 30), (3.1, 0.0), {}, {"method": "dop853", "compensated": True}),
+    "splitting": (hh, (0, 40), (0.1, 0.2, 0.3, 0.2), {}, {"method": "leapfrog8", "h": 0.3}),
+    "implicit": (elastic, (0, 0.4), SWING, STIFF, {"method": "radau5"}),
+    "variable order": (elastic, (0, 0.4), SWING, STIFF, {"method": "radau", "rtol": 1e-6}),
+    "implicit, fixed": (elastic, (0, 3), SWING, STIFF, {"method": "gauss2", "h": 0.1}),
+    "parallel": (dp, (0, 9), REPORT, {}, {"method": "gauss8"}),
+    "parallel, loose": (dp, (0, 9), REPORT, {}, {"method": "gauss4", "rtol": 1e-4, "atol": 1e-4}),
+    "samples": (dp, (0, 10), REPORT, {}, {"method": "radau3", "t_eval": MANY}),
+    "parallel, samples": (dp, (0, 10), REPORT, {}, {"method": "gauss8", "t_eval": MANY}),
+    "constraints": (four_bar, (0, 5), {"phi": 1.0}, {}, {"method": "verner98"}),
+    "events": (
+        *(duffing, (0, 100), (1.0, 0.0), {}),
+        {"method": "verner98", "events": [Event(duffing, "x", 0.0), Event(duffing, "x_dot", 0.2)]},
+    ),
+    "friction": (block(), (0, 20), (0.5, 0.0), BELT, {"method": "verner853"}),
+    "turns near a pole": (spherical, (0, 10), (1e-3, 0.0, 2.0, 1e-3), {}, {"method": "dp54"}),
+    "backwards": (dp, (5, 0), REPORT, {}, {"method": "bs32", "rtol": 1e-5}),
+    "lanes": (hh, (0, 40), REGULAR, {}, {"method": "verner853"}),
+    "lanes, samples and events": (
+        *(hh, (0, 40), REGULAR, {}),
+        {"method": "dp54", "t_eval": MANY, "events": [Event(hh, "y", 0.1)]},
+    ),
+}
+#: Statements of the loops in longer numbers, and the counter that each increases.
+COUNTED = {
+    r"motion->steps\+\+;": 0,
+    r"const double factor = step\(motion": 1,
+    r"(?<=\s)LOWER_RHS\(": 2,
+    r"(?<=\s)RHS\(": 3,
+}
+LONGER = {
+    "double-double": (dp, REPORT, 1e-24),
+    "long double": (elastic, SWING, 1e-16),
+    "quadruple": (hh, (0.1, 0.2, 0.3, 0.2), 1e-22),
+}
+
+
+def row(name: str, counts: Sequence[int], digits: int = 3) -> str:
+    """A line of the record; with all digits, counts would depend on the compiler's rounding."""
+    return f"{name}: {' '.join(f'{count:.{digits - 1}e}' for count in counts)}"
+
+
+def work(motion: Solution | Ensemble) -> list[int]:
+    """Steps, rejected steps, evaluations of derivatives and of their Jacobian."""
+    counts = motion.steps, motion.rejected, motion.nfev, getattr(motion, "njev", ())
+    return [int(count) for one in counts for count in np.ravel(one)]
+
+
+def in_longer_numbers(precision: str, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Steps, attempts, and evaluations in shorter and in longer numbers, by statements added."""
+    source, counted = extended_source.source, list[str]()
+
+    def counting(file: str) -> str:
+        text = source(file)
+        for statement, k in COUNTED.items():
+            counted.extend([statement] * len(re.findall(statement, text)))
+            text = re.sub(statement, rf"work[{k}]++; \g<0>", text)
+        return (
+            text.replace("typedef struct {", "int64_t work[4];\ntypedef struct {", 1)
+            if (file == "extended_motion.h")
+            else text
+        )
+
+    module, start, rtol = LONGER[precision]
+    with monkeypatch.context() as patch:
+        patch.setattr(extended_source, "source", counting)
+        patch.setattr("solvers.integration.compiled.double_double.source", counting)
+        kernel = ExtendedKernel(module, precision)
+    assert {*counted} == {*COUNTED}
+    monkeypatch.setattr(extended, "kernel", lambda *_: kernel)
+    integrate_extended(module, module.DEFAULTS, start, [0.0, 1.3, 2.9, 6.0], precision, rtol)
+    return [*(ctypes.c_int64 * 4).in_dll(kernel.library.functions, "work")]
+
+
+def test_the_work_of_motions_is_as_recorded(
+    record: Record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = []
+    for name, (module, span, start, params, options) in MOTIONS.items():
+        function = ensemble if name.startswith("lanes") else integrate
+        rows.append(row(name, work(function(module, span, start, params, **options))))
+    rows += [row(name, in_longer_numbers(name, monkeypatch), 2) for name in PRECISIONS]
+    record.check("\n".join(rows))
