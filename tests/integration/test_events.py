@@ -12,7 +12,9 @@ from numpy.testing import assert_allclose
 from scipy.special import ellipk
 
 import generated.double_pendulum as dp
+import generated.elastic_pendulum as elastic
 import generated.single_pendulum as sp
+from solvers.equations.module import GeneratedModule
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event, Extremum
@@ -83,13 +85,20 @@ def test_flat_and_discontinuous_events_are_located() -> None:
         assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
 
 
-def test_events_of_several_angles_occur_in_an_ensemble_as_each_alone() -> None:
-    events = [Event(dp, "theta1", 3.0), Event(dp, "theta2", 7.0)]
-    starts = np.array([[0.5, 0.6], [0.0, 0.1], [0.0, 0.0], [16.0, 17.0]])
+@pytest.mark.parametrize(("module", "start", "values", "method"), [
+    (dp, (0.5, 0.0, 0.0, 16.0), {"theta1": 3.0, "theta2": 7.0}, "gauss4"),
+    # r is the first component of the rational form, and theta its first angle
+    (elastic, (1.4, 0.4, 0.0, 1.0), {"r": 1.3, "theta": 0.1}, "rk4"),
+])  # fmt: skip
+def test_events_occur_in_an_ensemble_as_each_alone(
+    module: GeneratedModule, start: tuple, values: dict[str, float], method: str
+) -> None:
+    events = [Event(module, name, value) for name, value in values.items()]
+    starts = np.transpose([start, np.add(start, [0.1, 0.1, 0.0, 1.0])])
 
     def occurrences(*chosen: Event) -> tuple[Array, Array]:
-        options = {"h": 0.02, "occurrences": 8, "method": "gauss4"}
-        found = ensemble(dp, (0, 4), starts, dp.DEFAULTS, events=list(chosen), **options)
+        options = {"h": 0.02, "occurrences": 8, "method": method}
+        found = ensemble(module, (0, 4), starts, module.DEFAULTS, events=list(chosen), **options)
         return found.occurred, found.t_events
 
     occurred, times = occurrences(*events)

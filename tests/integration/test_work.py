@@ -3,11 +3,13 @@
 import ctypes
 import re
 from collections.abc import Sequence
+from functools import cache
 from math import pi
 from typing import Any
 
 import numpy as np
 import pytest
+import sympy
 from friction import BELT, block
 from recording import Record
 
@@ -18,13 +20,29 @@ import generated.four_bar as four_bar
 import generated.henon_heiles as hh
 import generated.single_pendulum as sp
 import generated.spherical_pendulum as spherical
+from derive import TIME, Coordinate, Parameter, PointMass, System
+from solvers.app.modules import build
+from solvers.equations.module import GeneratedModule
 from solvers.integration.compiled import extended, extended_source
-from solvers.integration.compiled.extended import PRECISIONS, ExtendedKernel, integrate_extended
+from solvers.integration.compiled.extended import ExtendedKernel, integrate_extended
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.integration.problem.events import Event
 from solvers.integration.results.ensemble_solution import Ensemble
 from solvers.integration.results.solution import Solution
+
+
+@cache
+def driven_oscillator() -> GeneratedModule:
+    """A system whose equations contain the time, without functions."""
+    x, m = sympy.Symbol("x", real=True), sympy.Symbol("m", positive=True)
+    return build(
+        System(
+            "driven_oscillator", "", [Coordinate(x, "m", "position")],
+            [Parameter(m, "kg", 1, "mass")], [PointMass(m, (x, 0))], x**4, forces=[TIME**3],
+        )
+    )  # fmt: skip
+
 
 REPORT = (pi / 2, pi, 0.0, 0.0)
 REGULAR = np.array([[0.1, 0.2, 0.05, 0.0], [0.2, 0.0, -0.1, 0.3], [0.3, 0.1, 0.2, 0.0], [0.1] * 4])
@@ -51,6 +69,10 @@ MOTIONS: dict[str, tuple[Any, ...]] = {
         *(duffing, (0, 100), (1.0, 0.0), {}),
         {"method": "verner98", "events": [Event(duffing, "x", 0.0), Event(duffing, "x_dot", 0.2)]},
     ),
+    "events near an extremum": (
+        *(sp, (0, 100), (1.0, 0.0), {}),
+        {"method": "verner98", "rtol": 1e-4, "events": [Event(sp, "theta", 0.9999)]},
+    ),
     "friction": (block(), (0, 20), (0.5, 0.0), BELT, {"method": "verner853"}),
     "turns near a pole": (spherical, (0, 10), (1e-3, 0.0, 2.0, 1e-3), {}, {"method": "dp54"}),
     "backwards": (dp, (5, 0), REPORT, {}, {"method": "bs32", "rtol": 1e-5}),
@@ -67,10 +89,13 @@ COUNTED = {
     r"(?<=\s)LOWER_RHS\(": 2,
     r"(?<=\s)RHS\(": 3,
 }
+#: Motions in longer numbers, to an end and a tolerance.
 LONGER = {
-    "double-double": (dp, REPORT, 1e-24),
-    "long double": (elastic, SWING, 1e-16),
-    "quadruple": (hh, (0.1, 0.2, 0.3, 0.2), 1e-22),
+    "double-double": (dp, REPORT, 6.0, 1e-24),
+    "double-double, tight": (dp, REPORT, 1.0, 1e-33),
+    "double-double, driven": (driven_oscillator(), (1.0, 0.5), 6.0, 1e-24),
+    "long double": (elastic, SWING, 6.0, 1e-16),
+    "quadruple": (hh, (0.1, 0.2, 0.3, 0.2), 6.0, 1e-22),
 }
 
 
@@ -85,7 +110,7 @@ def work(motion: Solution | Ensemble) -> list[int]:
     return [int(count) for one in counts for count in np.ravel(one)]
 
 
-def in_longer_numbers(precision: str, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+def in_longer_numbers(name: str, monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Steps, attempts, and evaluations in shorter and in longer numbers, by statements added."""
     source, counted = extended_source.source, list[str]()
 
@@ -100,14 +125,15 @@ def in_longer_numbers(precision: str, monkeypatch: pytest.MonkeyPatch) -> list[i
             else text
         )
 
-    module, start, rtol = LONGER[precision]
+    module, start, end, rtol = LONGER[name]
+    precision, times = name.partition(",")[0], np.linspace(0, end, 4)
     with monkeypatch.context() as patch:
         patch.setattr(extended_source, "source", counting)
         patch.setattr("solvers.integration.compiled.double_double.source", counting)
         kernel = ExtendedKernel(module, precision)
     assert {*counted} == {*COUNTED}
     monkeypatch.setattr(extended, "kernel", lambda *_: kernel)
-    integrate_extended(module, module.DEFAULTS, start, [0.0, 1.3, 2.9, 6.0], precision, rtol)
+    integrate_extended(module, module.DEFAULTS, start, times, precision, rtol)
     return [*(ctypes.c_int64 * 4).in_dll(kernel.library.functions, "work")]
 
 
@@ -118,5 +144,5 @@ def test_the_work_of_motions_is_as_recorded(
     for name, (module, span, start, params, options) in MOTIONS.items():
         function = ensemble if name.startswith("lanes") else integrate
         rows.append(row(name, work(function(module, span, start, params, **options))))
-    rows += [row(name, in_longer_numbers(name, monkeypatch), 2) for name in PRECISIONS]
+    rows += [row(name, in_longer_numbers(name, monkeypatch), 2) for name in LONGER]
     record.check("\n".join(rows))
