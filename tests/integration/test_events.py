@@ -88,7 +88,7 @@ def test_flat_and_discontinuous_events_are_located() -> None:
 @pytest.mark.parametrize(("module", "start", "values", "method"), [
     (dp, (0.5, 0.0, 0.0, 16.0), {"theta1": 3.0, "theta2": 7.0}, "gauss4"),
     # r is the first component of the rational form, and theta its first angle
-    (elastic, (1.4, 0.4, 0.0, 1.0), {"r": 1.3, "theta": 0.1}, "rk4"),
+    (elastic, (1.4, 3.0, 0.0, 1.5), {"r": 1.3, "theta": 3.5}, "rk4"),
 ])  # fmt: skip
 def test_events_occur_in_an_ensemble_as_each_alone(
     module: GeneratedModule, start: tuple, values: dict[str, float], method: str
