@@ -85,6 +85,23 @@ def test_flat_and_discontinuous_events_are_located() -> None:
         assert found.t_events[0] == pytest.approx([0.35], abs=1e-3)
 
 
+@pytest.mark.parametrize("backend", ["python", "compiled"])
+def test_both_crossings_near_an_extremum_are_located_to_rounding(backend: str) -> None:
+    # a pendulum that starts at 1 rad from rest passes 0.9999 rad twice within a step
+    motion = integrate(
+        *(sp, (0, 20), (1.0, 0.0), {}), method="verner98", rtol=1e-13, backend=backend,
+        events=Event(sp, "theta", 0.9999),
+    )  # fmt: skip
+    period = 4 * ellipk(np.sin(0.5) ** 2) * sqrt(2 / 9.81)
+    first, *pairs = motion.t_events[0]
+    before, after = np.reshape(pairs[: len(pairs) // 2 * 2], (-1, 2)).T
+    turning = period * np.arange(1, len(before) + 1)
+    assert len(before) == 6
+    assert_allclose(before, turning - first, atol=1e-11)
+    assert_allclose(after, turning + first, atol=1e-11)
+    assert (after - before < np.diff(motion.t).min()).all()
+
+
 @pytest.mark.parametrize(("module", "start", "values", "method"), [
     (dp, (0.5, 0.0, 0.0, 16.0), {"theta1": 3.0, "theta2": 7.0}, "gauss4"),
     # r is the first component of the rational form, and theta its first angle

@@ -76,6 +76,13 @@ MOTIONS: dict[str, tuple[Any, ...]] = {
     "friction": (block(), (0, 20), (0.5, 0.0), BELT, {"method": "verner853"}),
     "turns near a pole": (spherical, (0, 10), (1e-3, 0.0, 2.0, 1e-3), {}, {"method": "dp54"}),
     "backwards": (dp, (5, 0), REPORT, {}, {"method": "bs32", "rtol": 1e-5}),
+    "backwards, samples": (
+        dp,
+        (5, 0),
+        REPORT,
+        {},
+        {"method": "verner98", "t_eval": MANY[1000::-1]},
+    ),
     "lanes": (hh, (0, 40), REGULAR, {}, {"method": "verner853"}),
     "lanes, samples and events": (
         *(hh, (0, 40), REGULAR, {}),
@@ -93,6 +100,7 @@ COUNTED = {
 LONGER = {
     "double-double": (dp, REPORT, 6.0, 1e-24),
     "double-double, tight": (dp, REPORT, 1.0, 1e-33),
+    "double-double, stiff": (elastic, SWING, 0.05, 1e-33),
     "double-double, driven": (driven_oscillator(), (1.0, 0.5), 6.0, 1e-24),
     "long double": (elastic, SWING, 6.0, 1e-16),
     "quadruple": (hh, (0.1, 0.2, 0.3, 0.2), 6.0, 1e-22),
@@ -126,6 +134,7 @@ def in_longer_numbers(name: str, monkeypatch: pytest.MonkeyPatch) -> list[int]:
         )
 
     module, start, end, rtol = LONGER[name]
+    params = module.params(**STIFF if "stiff" in name else {})
     precision, times = name.partition(",")[0], np.linspace(0, end, 4)
     with monkeypatch.context() as patch:
         patch.setattr(extended_source, "source", counting)
@@ -133,7 +142,7 @@ def in_longer_numbers(name: str, monkeypatch: pytest.MonkeyPatch) -> list[int]:
         kernel = ExtendedKernel(module, precision)
     assert {*counted} == {*COUNTED}
     monkeypatch.setattr(extended, "kernel", lambda *_: kernel)
-    integrate_extended(module, module.DEFAULTS, start, times, precision, rtol)
+    integrate_extended(module, params, start, times, precision, rtol)
     return [*(ctypes.c_int64 * 4).in_dll(kernel.library.functions, "work")]
 
 
