@@ -183,7 +183,6 @@ def joined(displays: Iterable[Display], text: str) -> Iterator[Display]:
                 latex=latex,
                 extent=(before.extent[0], one.extent[1]),
                 number=max(before.number, one.number),
-                is_inline=before.is_inline and one.is_inline,
             )
             continue
         if before:

@@ -55,7 +55,7 @@ def test_an_expression_depends_only_on_its_own_variables(
 
 
 @pytest.mark.parametrize("value", [
-    1 + sp.I, sp.I * m, 2j, 1 + 2j, sp.oo, sp.nan, sp.zoo * m, float("inf"), "m", True,
+    1 + sp.I, sp.I * m, 2j, 1 + 2j, sp.oo, -sp.oo, sp.nan, sp.zoo * m, float("inf"), "m", True,
     sp.ImmutableMatrix([m, m]), sp.ImmutableMatrix([[m]]),
 ])  # fmt: skip
 def test_values_are_finite_and_real(value: object) -> None:

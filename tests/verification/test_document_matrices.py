@@ -136,3 +136,13 @@ def test_equations_of_frequencies_are_determinants_of_small_motions(
 ])  # fmt: skip
 def test_other_equations_of_a_frequency_are_not_wrong(other: str, tmp_path: Path) -> None:
     assert judged(tmp_path, f"{COUPLED}$${other}$$")[-1].verdict in ("definition", "context")
+
+
+def test_a_product_of_columns_is_a_number(tmp_path: Path) -> None:
+    verdicts = judged(tmp_path, r"""
+$$ T = \frac12 m (\dot x^2 + \dot y^2), \qquad V = \frac12 k (x^2 + y^2) $$
+$$ m \ddot x = -k x, \qquad m \ddot y = -k y $$
+$$ \mathbf{q} = \begin{pmatrix} x \\ y \end{pmatrix} $$
+$$ T = m \dot{\mathbf{q}}^T \dot{\mathbf{q}} $$
+""")  # fmt: skip
+    assert verdicts[-1].correction == r"T = \frac{1}{2} m \dot{\mathbf{q}}^T \dot{\mathbf{q}}"

@@ -457,3 +457,12 @@ def rates(t, y, g, L, mu):
 def test_a_friction_can_have_the_letter_of_a_mass() -> None:
     assert equations(judged(AIR)) == ["verified"]
     assert equations(judged(AIR.replace("mu*omega", "mu*theta"))) != ["verified"]
+
+
+def test_notes_on_what_is_not_read_name_its_function() -> None:
+    calls = [f"def g{k}(x):\n    return g{k - 1}(x)\n" for k in range(1, 9)]
+    program = (
+        f"def g0(x):\n    return -x\n{''.join(calls)}def f(t, y):\n    return [y[1], g8(y[0])]\n"
+    )
+    (note,) = judged(program).notes
+    assert note.startswith("line 20 in f is not read: line 4: calls of g0")
