@@ -37,6 +37,11 @@ def test_a_frequency_is_that_of_small_motions(formula: str, verdict: str, tmp_pa
     assert judged(tmp_path, PENDULUM % formula)[-1].verdict == verdict
 
 
+def test_simple_harmonic_motion_has_a_frequency(tmp_path: Path) -> None:
+    text = PENDULUM.replace("oscillate with the frequency and the period", "lead to SHM with")
+    assert judged(tmp_path, text % r"\omega^2 = \frac{2 g}{l}")[-1].verdict == "wrong"
+
+
 def test_an_angular_velocity_need_not_be_a_frequency(tmp_path: Path) -> None:
     text = PENDULUM.replace("Small angles oscillate with the frequency and the period",
                             "It starts below with just enough to reach the top:")  # fmt: skip

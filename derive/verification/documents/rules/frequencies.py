@@ -22,7 +22,7 @@ FREQUENCY_LETTERS: dict[str, tuple[sp.Expr, int]] = {
 }
 #: Words of sentences about them.
 ABOUT_FREQUENCIES = re.compile(
-    "fre[qc]uen|fréquen|frequenz|pulsa|p[eé]riod|oscill|schwing|eigen|harmoni|natural|周期|频率"
+    "fre[qc]uen|fréquen|frequenz|pulsa|p[eé]riod|oscill|schwing|eigen|harmoni|natural|\\bSHM\\b|周期|频率"
     "|頻率|振動数",
     re.IGNORECASE,
 )
