@@ -294,7 +294,8 @@ def with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> 
     others = dict[str, Match]()
     for match in sorted(matches, key=lambda one: -one.score):
         one = match.candidate
-        if one.basis != "energies" and not one.lacking and written <= one.letters:
+        is_likely = one.basis == "positions" or match.support >= 0
+        if one.basis != "energies" and is_likely and not one.lacking and written <= one.letters:
             others.setdefault(one.basis, match)
     is_contradicted = "positions" in others and bool(others["positions"].failed)
     abbreviations = _abbreviations(formulas, letters)

@@ -29,7 +29,7 @@ VARIANTS = (("ell", "l"), ("varphi", "phi"), ("vartheta", "theta"), ("varepsilon
 def with_own_letters(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     """The statements with a letter of its own for each meaning that a document shows."""
     labelled = [_with_sides(one, with_labels(one.sides, QUANTITIES)) for one in occurrences]
-    separate = _with_constants(_with_functions(_with_lengths(labelled)))
+    separate = _with_constants(_with_initial_rates(_with_functions(_with_lengths(labelled))))
     return _with_any_coordinate(_with_differences(separate))
 
 
@@ -170,6 +170,28 @@ def _with_constants(occurrences: Iterable[Occurrence]) -> list[Occurrence]:
         return _with_sides(place, with_letters(place.sides, partial(change, place, own)))
 
     return [changed(one) for one in occurrences]
+
+
+def _with_initial_rates(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
+    r"""The statements, with constants for rates such as ``\dot\psi_0`` beside ``\dot\psi``.
+
+    These are no rates of another coordinate, unless energies have them, or accelerations.
+    """
+    found = [one for place in occurrences for one in letters(place.sides) if one.dots]
+    moving = {(one.name, one.index) for one in found}
+    initial = {(name, "0") for name, index in moving if index == "0" and (name, "") in moving}
+    initial -= {(one.name, one.index) for one in found if one.dots > 1}
+    for place in occurrences:
+        if isinstance(place.sides[0], Letter) and place.sides[0].name in QUANTITIES:
+            initial -= {(one.name, one.index) for one in letters(place.sides)}
+
+    def change(letter: Letter) -> Letter:
+        is_initial = letter.dots == 1 and (letter.name, letter.index) in initial
+        return replace(letter, dots=0, index="dot_0") if is_initial else letter
+
+    if not initial:
+        return [*occurrences]
+    return [_with_sides(one, with_letters(one.sides, change)) for one in occurrences]
 
 
 def _is_difference_of_energies(place: Occurrence) -> bool:

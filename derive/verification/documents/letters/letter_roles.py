@@ -113,8 +113,14 @@ def letters_of(
     used = {*abbreviations, *matrices_by_entries(stems)}
     parameters = [one for one in parameters if one not in used]
     ordered, *others = _orders(formulas, coordinates, stems)
-    is_inertia = any(_is_inertial(name, formulas) for name in multipliers_of(stems))
-    multipliers = () if is_inertia else multipliers_of(stems)
+    energies = {
+        name for name, kind in quantities.items() if kind in ("kinetic_energy", "potential_energy")
+    }
+    of_energies = {word for one in formulas if one.subject in energies for word in one.words}
+    is_parameter = any(
+        name in of_energies or _is_inertial(name, formulas) for name in multipliers_of(stems)
+    )
+    multipliers = () if is_parameter else multipliers_of(stems)
     constraints = stated_constraints(formulas, coordinates, parameters, multipliers, derivatives)
     if multipliers and not constraints:  # lambda = k/m defines another quantity
         multipliers = multipliers_of(parameters)

@@ -133,11 +133,11 @@ def best_matches(
     others = {w for one in formulas if not (_is_equation(one) or one.is_value) for w in one.words}
     loads = {*letters.of_kind("force")} - others
     free = {k: _without_loads(tried, loads, one) for k, one in enumerate(formulas)}
-    linear = _linearised(formulas)
+    left_out = _linearised(formulas) | _of_other_letters(tried, letters, formulas)
     votes = [
         (index, side, vote)
         for index, formula in enumerate(formulas)
-        if index not in linear and index not in tried[0].given
+        if index not in left_out and index not in tried[0].given
         for side, vote in _comparisons(numbers, formula, *free[index])
         if (index, side) not in trivial
     ]
@@ -204,6 +204,32 @@ def _linearised(formulas: Sequence[DocumentFormula]) -> set[int]:
         and 2 in map(order, one.words)
         and angles & {*map(stem, one.words)}
         and not OF_ANGLE.search(one.text)
+    }
+
+
+def _of_other_letters(
+    tried: Sequence[SystemCandidate], letters: Letters, formulas: Sequence[DocumentFormula]
+) -> set[int]:
+    """The numbers of formulas of special motions, which stated energies do not determine.
+
+    They contain coordinates or momenta without rates, and letters that the energies do not.
+    """
+    if tried[0].basis != "energies":
+        return set()
+    known = frozenset[str]().union(*(one.letters for one in tried))
+    other, count = {*letters.parameters} - known, -1
+    moving = {*letters.coordinates, *letters.momenta}
+    while count < len(other):  # also letters that these define
+        count = len(other)
+        defined = (one.subject for one in formulas if not other.isdisjoint(one.words))
+        other |= {name for name in defined if name and not order(name)}
+        other -= {*moving, *letters.quantities, *known}
+    return {
+        number
+        for number, one in enumerate(formulas)
+        if not (other.isdisjoint(one.words) or moving.isdisjoint(one.words))
+        and one.subject not in letters.quantities
+        and not any(map(order, one.words))
     }
 
 

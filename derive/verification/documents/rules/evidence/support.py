@@ -48,7 +48,11 @@ class Support:
         """Whether a slip explains that a formula does not hold, its form, or all others hold."""
         verdict = result.verdict
         is_slip_or_form = verdict.corrections in self._slips or verdict.note.endswith(NOT_LINEAR)
-        return is_slip_or_form or self._is_rest_right
+        # of two energies that differ in several terms, either can be the wrong one
+        is_free = self._candidate.basis == "energies" and not self._candidate.constraints
+        is_energy = is_free and result.kind in OF_ENERGIES
+        is_one_term = len(verdict.corrections) < 2 or not is_energy
+        return is_slip_or_form or (is_one_term and self._is_rest_right)
 
     @cached_property
     def _is_rest_right(self) -> bool:
