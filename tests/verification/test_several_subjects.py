@@ -1,13 +1,17 @@
 """Documents with several systems below their headings, and cases of one system."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from derive.reading.document import divided
 from derive.reading.document_formats import read_document
-from derive.verification.documents.judgement import judge_document
+from derive.verification.documents import judgement
+from derive.verification.documents.judgement import OF_OTHER_SUBJECT, judge_document
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.rules.side_verdict import HOLDING
+from derive.verification.documents.statements import translated
 
 
 def judged(folder: Path, text: str) -> list[FormulaVerdict]:
@@ -261,6 +265,172 @@ $$ L = \frac{1}{2} m (\dot x^2 + \dot y^2) - m g y $$
 $$ m \ddot x = 0, \qquad m (\ddot y + g) = 0 $$
 """)  # fmt: skip
     assert {one.verdict for one in verdicts} <= {"definition", "verified"}
+
+
+SAME_ANGLE = r"""
+**Example (on a sphere).** A bob has
+$$ T = \frac12 m \ell^2 (\dot\theta^2 + \sin^2\theta \dot\phi^2), \qquad V = -m g \ell \cos\theta $$
+$$ L = \frac12 m \ell^2 (\dot\theta^2 + \sin^2\theta \dot\phi^2) + m g \ell \cos\theta $$
+$$ p_\phi = \frac{\partial L}{\partial \dot\phi} = m \ell^2 \sin^2\theta \dot\phi $$
+With $\dot\phi = p_\phi/(m \ell^2 \sin^2\theta)$ the equation of motion
+$$ m \ell^2 \ddot\theta = m \ell^2 \sin\theta \cos\theta \dot\phi^2 - m g \ell \sin\theta $$
+is
+$$ m \ell^2 \ddot\theta = \frac{p_\phi^2 \cos\theta}{m \ell^2 \sin^3\theta} - m g \ell \sin\theta $$
+**Example (in a cylinder).** A disc that rolls has
+$$ T = \frac12 m (R - r)^2 \dot\theta^2 + \frac12 I \dot\psi^2 = \frac34 m (R - r)^2 \dot\theta^2 $$
+$$ \dot\psi = \frac{R - r}{r} \dot\theta, \qquad I = \frac12 m r^2 $$
+$$ V = m g (R - r) (1 - \cos\theta) $$
+$$ \frac{\partial L}{\partial \dot\theta} = \frac32 m (R - r)^2 \dot\theta $$
+$$ \frac32 m (R - r)^2 \ddot\theta = -m g (R - r) \sin\theta $$
+$$ \ddot\theta = -\frac{2 g}{3 (R - r)} \sin\theta $$
+"""
+
+
+def test_a_slip_does_not_leave_an_example_without_its_system(tmp_path: Path) -> None:
+    verdicts = [one.verdict for one in judged(tmp_path, SAME_ANGLE)]
+    assert {*verdicts} == {"definition", "verified"}
+    slip = SAME_ANGLE.replace(r"\sin^2\theta \dot\phi $$", r"\sin\theta \dot\phi $$")
+    wrong = judged(tmp_path, slip)
+    assert [k for k, one in enumerate(wrong) if one.verdict == "wrong"] == [3]
+    assert {one.verdict for one in wrong} - {"wrong"} == {"definition", "verified"}
+
+
+CANONICAL = r"""The Lagrangian of a free particle is
+$$ L = \frac12 m (\dot x^2 + \dot y^2) - U(x, y) $$
+$$ p_x = m \dot x, \qquad p_y = m \dot y $$
+$$ \dot x = \frac{p_x}{m}, \qquad \dot y = \frac{p_y}{m} $$
+In polar coordinates it is
+$$ L = \frac12 m (\dot r^2 + r^2 \dot\phi^2) - U(r, \phi) $$
+$$ p_r = m \dot r, \qquad p_\phi = m r^2 \dot\phi $$
+$$ \dot r = \frac{p_r}{m}, \qquad \dot\phi = \frac{p_\phi}{m r^2} $$
+$$ H = \frac{p_r^2}{2 m} + \frac{p_\phi^2}{2 m r^2} + U(r, \phi) $$
+"""
+
+
+def test_lagrangians_after_canonical_velocities_have_their_own_coordinates(tmp_path: Path) -> None:
+    verdicts = [one.verdict for one in judged(tmp_path, CANONICAL)]
+    assert {*verdicts} == {"definition", "verified"}
+    wrong = judged(tmp_path, CANONICAL.replace("+ U(r", "- U(r"))[10]
+    assert (wrong.verdict, wrong.wrong_term) == ("wrong", r"- U(r, \phi)")
+
+
+def test_of_energies_that_differ_in_two_terms_none_is_wrong(tmp_path: Path) -> None:
+    text = CANONICAL.replace("U(x, y)", r"\frac12 k x^2").replace("U(r, \\phi)", r"\frac12 k r^2")
+    slips = text.replace(r"r^2 \dot\phi^2) -", r"2 r^2 \dot\phi^2) -")
+    wrong = judged(tmp_path, slips)[5]
+    assert (wrong.verdict, wrong.wrong_term) == ("wrong", r"2 r^2 \dot\phi^2")
+    slips = slips.replace(r"2 m r^2} + \frac12 k", r"2 m r^2} - \frac12 k")
+    assert judged(tmp_path, slips)[5].verdict == "context"
+
+
+TOP = r"""
+$$ T = \frac12 I_1 (\dot\theta^2 + \dot\phi^2 \sin^2\theta)
+ + \frac12 I_3 (\dot\psi + \dot\phi \cos\theta)^2 $$
+$$ V = M g l \cos\theta, \qquad L = T - V $$
+$$ p_\phi = I_1 \dot\phi \sin^2\theta + I_3 (\dot\psi + \dot\phi \cos\theta) \cos\theta $$
+$$ p_\psi = I_3 (\dot\psi + \dot\phi \cos\theta) $$
+The momentum is $p_\psi = I_3 \omega_3$. In steady precession
+$$ \dot\theta = 0, \quad \dot\phi = \Omega, \quad \dot\psi = \dot\psi_0 $$
+$$ n = \dot\psi_0 + \Omega \cos\theta $$
+$$ I_1 \Omega^2 \sin\theta \cos\theta - I_3 n \Omega \sin\theta + M g l \sin\theta = 0 $$
+$$ I_1 \Omega^2 \cos\theta - I_3 n \Omega + M g l = 0 $$
+For a ring at $\theta = \pi/2$,
+$$ I_3 = m R^2, \qquad I_1 = \frac12 m R^2 $$
+$$ \Omega = \frac{M g l}{I_3 n} = \frac{g l}{R^2 n} $$
+$$ I_1 \Omega^2 \cdot 0 - I_3 n \Omega + M g l = 0 $$
+"""
+
+
+def test_formulas_of_special_motions_are_no_evidence_against_energies(tmp_path: Path) -> None:
+    slip = TOP.replace(r"\dot\phi \sin^2", r"\dot\phi \sin")
+    for text, number in ((TOP, -1), (slip, 3)):
+        verdicts = judged(tmp_path, text)
+        wrong = [k for k, one in enumerate(verdicts) if one.verdict == "wrong"]
+        assert wrong == [number] * (number >= 0)
+        assert [one.verdict for one in verdicts[:2]] == ["definition"] * 2
+
+
+def test_a_lambda_in_a_potential_is_no_multiplier(tmp_path: Path) -> None:
+    text = r"""
+$$ L = \frac12 m (\dot x^2 + \dot y^2) - \frac12 k (x^2 + y^2) - \lambda x y $$
+$$ V = \frac12 k (x^2 + y^2) + \lambda x y $$
+$$ m \ddot x + k x + \lambda y = 0, \qquad m \ddot y + k y + \lambda x = 0 $$
+"""
+    verdicts = [one.verdict for one in judged(tmp_path, text)]
+    assert verdicts == ["definition", "verified", "verified", "verified"]
+    slip = judged(tmp_path, text.replace(r"k y + \lambda x", r"k y + \lambda y"))[3]
+    assert (slip.verdict, slip.wrong_term) == ("wrong", r"\lambda y")
+
+
+def test_initial_rates_are_no_rates_of_another_coordinate(tmp_path: Path) -> None:
+    text = r"""
+$$ L = \frac12 I \dot\psi^2 - \frac12 k \psi^2 $$
+$$ I \ddot\psi = - k \psi $$
+$$ n = \dot\psi_0 + \Omega $$
+"""
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    read, _ = judgement._read(read_document(tmp_path / "a.md"))
+    assert "psi_dot_0" in translated(read).formulas[2].words
+    (tmp_path / "a.md").write_text(text + r"$$ I \ddot\psi_0 = 0 $$", encoding="utf-8")
+    read, _ = judgement._read(read_document(tmp_path / "a.md"))
+    assert "psi_0_dot" in translated(read).formulas[2].words
+
+
+def test_what_is_wrong_for_one_division_of_a_text_and_holds_for_another_is_open(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "a.md").write_text(CASE, encoding="utf-8")
+    right = judge_document(read_document(tmp_path / "a.md"))
+    wrong = replace(right, formulas=tuple(
+        replace(one, verdict="wrong") if one.verdict in HOLDING else one
+        for one in right.formulas
+    ))  # fmt: skip
+    result = judgement._undisputed(wrong, right)
+    own = [one for one, other in zip(result.formulas, right.formulas, strict=True) if one != other]
+    assert {(one.verdict, one.note) for one in own} == {("context", OF_OTHER_SUBJECT)}
+    assert "wrong" not in {one.verdict for one in result.formulas}
+    assert judgement._undisputed(right, wrong) == right
+
+
+ANY_POTENTIAL = r"""
+$$ L = \frac12 m (\dot r^2 + r^2 \dot\phi^2) - V(r) $$
+$$ m \ddot r = m r \dot\phi^2 - \frac{dV}{dr} $$
+$$ m \ddot r = m r \dot\phi^2 - V'(r) $$
+$$ E = \frac12 m (\dot r^2 + r^2 \dot\phi^2) + V(r) $$
+"""
+
+
+@pytest.mark.parametrize(("old", "new", "number", "correction"), [
+    (r"- \frac{dV}{dr}", r"+ \frac{dV}{dr}", 1, r"m \ddot r = m r \dot\phi^2 - \frac{dV}{dr}"),
+    (r"- \frac{dV}{dr}", r"- 2 \frac{dV}{dr}", 1, r"m \ddot r = m r \dot\phi^2 - \frac{dV}{dr}"),
+    ("- V'(r)", "+ V'(r)", 2, r"m \ddot r = m r \dot\phi^2 - V'"),
+    ("+ V(r)", "- V(r)", 3, r"E = \frac12 m (\dot r^2 + r^2 \dot\phi^2) + V"),
+])  # fmt: skip
+def test_a_potential_of_which_only_the_variable_is_known_is_any_function(
+    old: str, new: str, number: int, correction: str, tmp_path: Path
+) -> None:
+    right = [one.verdict for one in judged(tmp_path, ANY_POTENTIAL)]
+    assert right == ["definition", "verified", "verified", "verified"]
+    verdicts = judged(tmp_path, ANY_POTENTIAL.replace(old, new))
+    assert [k for k, one in enumerate(verdicts) if one.verdict == "wrong"] == [number]
+    assert verdicts[number].correction == correction
+    assert "arbitrary" not in verdicts[number].state
+
+
+def test_no_part_of_any_potential_is_known(tmp_path: Path) -> None:
+    text = r"""$$ V_g = -m g r \cos\phi $$ The energy of a part of it is also that of a field."""
+    assert judged(tmp_path, ANY_POTENTIAL + text)[-1].verdict != "wrong"
+
+
+def test_a_wrong_force_without_a_correction_in_letters_of_the_document_has_none(
+    tmp_path: Path,
+) -> None:
+    wrong = judged(tmp_path, r"""
+$$ H = \frac{p^2}{2m} + V(x) $$
+$$ \dot x = \frac{p}{m}, \qquad \dot p = \frac{dV}{dx} $$
+$$ m \ddot x = - \frac{dV}{dx} $$
+""")[2]  # fmt: skip
+    assert (wrong.verdict, wrong.correction) == ("wrong", "")
 
 
 def test_a_simplified_lagrangian_with_a_slip_begins_no_other_system(tmp_path: Path) -> None:

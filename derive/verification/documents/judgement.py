@@ -41,6 +41,7 @@ from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.letters import Letters
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.letters.subjects import (
+    ARBITRARY,
     Formulas,
     implied_rates,
     of_single_coordinates,
@@ -70,6 +71,7 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
     Translated,
+    notation,
     translated,
 )
 from solvers.io.suggestion import did_you_mean
@@ -83,6 +85,8 @@ PARTIAL = (
 )
 #: Brackets around a letter, as those of a function's argument.
 BRACKETS = re.compile(r"\s*(?:\\left)?\(\s*([^()]*?)\s*(?:\\right)?\)\s*")
+#: The reason of a verdict on a formula that is wrong for one of two subjects.
+OF_OTHER_SUBJECT = "it does not hold for the system of its section, but for another of the document"
 #: Verdicts from the gravest: that of a formula with an index is the gravest of its instances.
 GRAVEST = ("wrong", "context", "definition", "equivalent", "verified")
 
@@ -134,14 +138,31 @@ def _by_subjects(
     others = restated_subjects(document.text, statements)
     if others != parts:
         other = _judge(document, hints, occurrences, unreadable, statements, others, work)
-        if _holding(other) > _holding(result) and len(_wrong(other)) <= len(_wrong(result)):
-            return other
+        accused = _wrong(other) - _wrong(result)
+        more = _holding(other) - _holding(result)
+        gain = more or _holding(other, "document") - _holding(result, "document")
+        has_few = len(_wrong(other)) <= len(_wrong(result)) or len(accused) <= gain
+        if more >= 0 and gain > 0 and has_few:
+            return _undisputed(other, result)
+        return _undisputed(result, other)
     return result
 
 
-def _holding(verdicts: DocumentVerdicts) -> int:
-    """The number of formulas that hold."""
-    return sum(one.verdict in CORRECT for one in verdicts.formulas)
+def _undisputed(verdicts: DocumentVerdicts, others: DocumentVerdicts) -> DocumentVerdicts:
+    """The verdicts, with `context` for what is wrong but holds with the other subjects."""
+    held = {one.span for one in others.formulas if one.verdict in HOLDING}
+    formulas = [
+        replace(one, verdict="context", wrong_term="", correction="", witness="", state="",
+                wrong_spans=(), basis="", note=OF_OTHER_SUBJECT)
+        if one.verdict == "wrong" and one.span in held else one
+        for one in verdicts.formulas
+    ]  # fmt: skip
+    return replace(verdicts, formulas=tuple(formulas))
+
+
+def _holding(verdicts: DocumentVerdicts, basis: str = "") -> int:
+    """The number of formulas that hold, or that do by statements of this kind."""
+    return sum(one.verdict in CORRECT and basis in ("", one.basis) for one in verdicts.formulas)
 
 
 def _wrong(verdicts: DocumentVerdicts) -> set[Span]:
@@ -233,9 +254,9 @@ def _judge(
     letters = letters_of(statements.formulas, statements.derivatives)
     if letters.multipliers or letters.constraints:
         note = f"{note}: {WAY_OUT}"
-    implied = {one.occurrence for one in statements.formulas if one.occurrence.display == IMPLIED}
-    results = {place: pair for place, pair in results.items() if place not in implied}
-    places = {one.occurrence for one in statements.formulas} - {*results, *implied}
+    results = {place: pair for place, pair in results.items() if place.display != IMPLIED}
+    stated = {one.occurrence for one in statements.formulas if one.occurrence.display != IMPLIED}
+    places = stated - {*results}
     judged += [_plain(place, "context", reasons.get(place, note)) for place in places]
     judged += [_judged(*pair, written, place in known) for place, pair in results.items()]
     partial = (PARTIAL,) if work.left < 0 and titles else ()
@@ -348,6 +369,7 @@ def _judged(
 def _state(state: str, letters: dict[str, str]) -> str:
     """The numbers of a state, with the letters as the document writes them."""
     pairs = (one.partition(" = ") for one in filter(None, state.split(", ")))
+    pairs = (one for one in pairs if not one[0].startswith(ARBITRARY))
     return ", ".join(f"{latex_of(name, letters)} = {number}" for name, _, number in pairs)
 
 
@@ -361,7 +383,7 @@ def _is_graver(one: SideVerdict, other: SideVerdict) -> bool:
 
 def _written(occurrences: Sequence[Occurrence]) -> dict[str, str]:
     """The letters' names, and the LaTeX that stands for each where it is first used."""
-    translator, result = FormulaTranslator(), dict[str, str]()
+    translator, result = FormulaTranslator(notation(occurrences)), dict[str, str]()
     for occurrence in occurrences:
         for node in nodes(occurrence.sides):
             if isinstance(node, Letter | Derivative):

@@ -32,6 +32,10 @@ from derive.verification.documents.letters.stated_positions import (
     stated_candidates,
     stated_systems,
 )
+from derive.verification.documents.letters.subjects import (
+    has_arbitrary_potential,
+    with_arbitrary_potentials,
+)
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
 from derive.verification.documents.pages.verdicts_in_place import Alternative, VerdictDifference
 from derive.verification.documents.rules.consequences import Contradictions
@@ -100,11 +104,27 @@ def interpretation(
 
     Known systems are tried unless all coordinates are those of another system, which are `known`.
     If none suits, parameters without a letter are taken for numbers: gravity for that of the
-    formulas, others for 1.
+    formulas, others for 1. Potentials that only their variables are known of are any functions.
     """
+    work = work or Work()
+    general = with_arbitrary_potentials(statements)
+    if general != statements:
+        result = _interpretation(general, hints, work, known, are_of_program)
+        if result.match and has_arbitrary_potential(result.match.candidate.letters):
+            return result
+    return _interpretation(statements, hints, work, known, are_of_program)
+
+
+def _interpretation(
+    statements: Translated,
+    hints: Hints | None,
+    work: Work,
+    known: Collection[str],
+    are_of_program: bool,
+) -> Interpretation:
     letters = letters_of(statements.formulas, statements.derivatives)
     letters = replace(letters, elsewhere=frozenset(known), are_of_program=are_of_program)
-    judges, work = Judges(statements, letters), work or Work()
+    judges = Judges(statements, letters)
     if hints:
         return _best(judges, hints.candidates(letters), work, 0)
     is_further = not {*letters.coordinates} <= {*known}

@@ -1,17 +1,17 @@
-"""The subjects of a document, and rates by letters alone: what precedes the meaning of letters.
+"""The subjects of a document, and what it implies: all that precedes the meaning of letters.
 
-Subjects are examples with energies of their own, and cases of positions. Rates without dots are v
-and a of a place, and those of Euler's equations.
+Subjects are examples with energies of their own, and cases of positions. Implied are rates without
+dots, as v and a of a place and those of Euler's equations, and potentials such as V(r).
 """
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import accumulate, chain, takewhile
+from itertools import accumulate, chain, combinations_with_replacement, takewhile
 
 from derive.reading.document import below_each
-from derive.reading.latex.tree import Statement
+from derive.reading.latex.tree import Application, Letter, Statement, nodes
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.letter_roles import equal_letters, letters_of
 from derive.verification.documents.letters.letters import ANGLES, QUANTITIES, Letters
@@ -30,6 +30,8 @@ MAX_CASES = 6
 ACCELERATION, VELOCITY = re.compile(r"a(?:_\w+)?\Z"), re.compile(r"(?:omega|w|v|u)(?:_\w+)?\Z")
 #: A load in an equation of motion.
 LOAD = re.compile(r"u|tau|F|f")
+#: Letters of the coefficients of potentials, and the degree of these.
+ARBITRARY, DEGREE = "arbitrary", 3
 #: A relation of two coordinates.
 RELATION = re.compile(r"(\w+) \+ (\w+) = (\w+)")
 SPEEDS, PLACES = ("v", "u"), ("s", "x", "y", "z", "X", "Y")
@@ -74,24 +76,33 @@ def _divided_at_energies(text: str, formulas: Formulas, letters: Letters) -> Ite
     sections = below_each(text, formulas, lambda one: one.occurrence.start)
     headings = [*accumulate(map(len, sections))]
     rates = {f"{name}_dot" for name in letters.momenta}
-    start, equation, energy, known = 0, -1, -1, dict[str, str]()
+    velocities = {f"{name}_dot" for name in letters.momenta.values()}
+    start, equation, canonical, energy, known = 0, -1, -1, -1, dict[str, str]()
     for number, formula in enumerate(formulas):
         stated = formula.sides[-1].text
         if kind := letters.quantities.get(formula.subject):
             after_energy = [k for k in headings if max(start, energy) < k <= number]
             begins = [k for k in after_energy if k > equation] or after_energy
             is_other = known.get(formula.subject, stated) != stated
-            is_after = equation >= start and (is_other or kind in STATING)
+            is_stating = kind in STATING and max(equation, canonical) >= start
+            is_after = is_stating or (equation >= start and is_other)
             if is_after or (is_other and begins):
                 before = formulas[start:number][::-1]
-                places = [*takewhile(lambda one: POINT.match(one.subject), before)]
+                places = [*takewhile(_is_position, before)]
                 first = begins[0] if begins else number - len(places)
                 yield formulas[start:first]
                 start, known = first, {}
             known[formula.subject], energy = stated, number
         if formula.subject in rates or any(order(word) == 2 for word in formula.words):
             equation = number
+        elif formula.subject in velocities:
+            canonical = number
     yield formulas[start:]
+
+
+def _is_position(formula: DocumentFormula) -> bool:
+    """Whether a formula states a component of a position."""
+    return bool(POINT.match(formula.subject)) and not order(formula.subject)
 
 
 def _before_equalities(formulas: Formulas) -> Iterator[Formulas]:
@@ -268,3 +279,64 @@ def _unnamed(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[
             yield f"{places[0]}_ddot", "a"
         if len(angles) == 1 and counts["alpha"] > 1 and not counts[f"{angles[0]}_ddot"]:
             yield f"{angles[0]}_ddot", "alpha"
+
+
+def with_arbitrary_potentials(statements: Translated) -> Translated:
+    """The statements, with polynomials for potentials of which they state the variables alone.
+
+    An equation with V(r) and its first derivatives that holds for any polynomial holds for any
+    function. These polynomials are no formulas of the document, and stand behind them.
+    """
+    formulas = statements.formulas
+    letters = letters_of(formulas, statements.derivatives)
+    of_energies = {
+        word
+        for one in formulas
+        if letters.quantities.get(one.subject) in ("lagrangian", "energy", "hamiltonian")
+        for word in one.words
+    }
+    sides = ((one.subject, side.text) for one in formulas for side in one.sides[1:])
+    of_energies -= {subject for subject, text in sides if subject != text}
+    potentials = [one for one in sorted(of_energies) if QUANTITIES.get(one) == "potential_energy"]
+    place = Occurrence(IMPLIED, 0, 0, 0, 0, "", Statement((), (), (0, 0)))
+    implied: list[DocumentFormula] = []
+    for name in potentials:
+        variables = [q for q in letters.coordinates if q in _variables(name, statements)]
+        if not variables:
+            continue
+        monomials = (
+            "*".join(one)
+            for degree in range(1, DEGREE + 1)
+            for one in combinations_with_replacement(variables, degree)
+        )
+        terms = (f"{ARBITRARY}_{name}_{k}*{one}" for k, one in enumerate(monomials, 1))
+        pairs = [(name, " + ".join(terms))]
+        if len(variables) == 1:
+            derivative = f"d{name}_d{variables[0]}"
+            pairs.append((f"{name}_prime", derivative))
+            own = {**statements.derivatives, derivative: (name, (variables[0],))}
+            statements = replace(statements, derivatives=own)
+        implied += [
+            DocumentFormula(place, (FormulaText(left), FormulaText(right)), ("=",))
+            for left, right in pairs
+        ]
+    return replace(statements, formulas=(*formulas, *implied))
+
+
+def has_arbitrary_potential(names: Collection[str]) -> bool:
+    """Whether the letters of a system are those of such a potential, too."""
+    return any(one.startswith(ARBITRARY) for one in names)
+
+
+def _variables(name: str, statements: Translated) -> set[str]:
+    """The letters of which a document writes a name as a function, or by which it derives it."""
+    result = set[str]()
+    for formula in statements.formulas:
+        for node in nodes(formula.occurrence.sides):
+            match node:
+                case Application(head=Letter(identifier=own), arguments=arguments) if own == name:
+                    result.update(one.identifier for one in arguments if isinstance(one, Letter))
+        for word in formula.words:
+            operand, variables = statements.derivatives.get(word, ("", ()))
+            result.update(variables if operand == name else ())
+    return result

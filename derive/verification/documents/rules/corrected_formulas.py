@@ -9,6 +9,7 @@ from derive.formulas.syntax import is_sum, syntax_tree
 from derive.formulas.typeset.latex import latex as latex_of
 from derive.reading.latex.tree import Span
 from derive.verification.documents.formula_translation import stem
+from derive.verification.documents.letters.subjects import ARBITRARY
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.judging.verdict import Correction
@@ -32,8 +33,9 @@ def corrected(
     """The corrections of a verdict in LaTeX; empty if none are known."""
     latex, tree = formula.occurrence.latex, formula.occurrence.tree
     verdict, is_plain = result.verdict, formula.occurrence.is_plain
-    if not verdict.corrections and verdict.correction == formula.subject:
-        return Corrected()  # nothing but the quantity itself
+    is_subject = verdict.correction == formula.subject
+    if not verdict.corrections and (is_subject or ARBITRARY in verdict.correction):
+        return Corrected()  # nothing but the quantity itself, or letters of no document
     if not verdict.corrections or formula.index:
         whole = written(verdict.correction, letters, is_plain) if verdict.correction else ""
         if whole and result.kind != "euler_lagrange" and "=" not in whole:

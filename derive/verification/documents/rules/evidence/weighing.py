@@ -18,6 +18,11 @@ from derive.reading.latex.grammar.products import AMBIGUOUS
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_POTENTIAL, SystemCandidate
 from derive.verification.documents.letters.dimensions import Restoration
+from derive.verification.documents.letters.letters import energy_of_part
+from derive.verification.documents.letters.subjects import (
+    ARBITRARY,
+    has_arbitrary_potential,
+)
 from derive.verification.documents.rules.consequences import (
     UNDECIDED,
     Contradictions,
@@ -137,7 +142,8 @@ class _Evidence:
             return plain("context", formula, opposed(line))
         if is_wrong and (doubt := self._doubt(number)):
             return plain("context", formula, doubt)
-        return _noted(result, f"given {self._given}") if is_wrong and self._given else result
+        given = _lines(self._lines[k] for k in self._candidate.stating if k != number)
+        return _noted(result, f"given {given}") if is_wrong and given else result
 
     def _of_dimensions(self, number: int) -> SideVerdict | None:
         """The verdict on a formula whose dimensions contradict those of all others."""
@@ -158,6 +164,10 @@ class _Evidence:
         if is_ambiguous(formula):
             return AMBIGUOUS
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
+        if any(ARBITRARY in one.correct for one in result.verdict.corrections):
+            return f"it contradicts {self._given}, {UNEXPLAINED}"
+        if has_arbitrary_potential(self._candidate.letters) and energy_of_part(formula.subject):
+            return other_case  # nothing is known to be a part of any function
         if odd := {*self._contradictions.inhomogeneous} & {*self._candidate.stating}:
             return opposed(self._lines[min(odd)])
         if self._further_inertia and not result.verdict.note.endswith(NOT_LINEAR):
@@ -429,8 +439,8 @@ def of_dimensions(formula: DocumentFormula, restoration: Restoration) -> SideVer
 
 
 def _lines(numbers: Iterable[int]) -> str:
-    """Lines in words."""
-    words = [*map(str, sorted({*numbers}))]
+    """Lines in words, without those of formulas that are not written."""
+    words = [str(one) for one in sorted({*numbers}) if one]
     if not words:
         return ""
     *first, last = words
