@@ -19,7 +19,11 @@ from solvers.io.figures import save
 from solvers.runge_kutta.method_catalogue import SCIPY, load
 from solvers.scenes.scene import Scene
 from solvers.scenes.scene_reading import find
-from solvers.studies.work_precision import measured_curves, work_precision_plots
+from solvers.studies.work_precision import (
+    measured_curves,
+    scene_curves,
+    work_precision_plots,
+)
 from solvers.studies.work_precision.cost_curve import (
     CostCurve,
     MeasuredRun,
@@ -267,6 +271,31 @@ def test_a_small_energy_error_can_be_misleading(
     # in small motion a small error is large
     small = find("small", load_module)
     assert wrong_above(small, Reference.of(small)) < 0.01
+
+
+def test_runs_with_the_least_energy_errors_are_integrated_again(
+    truth: Reference, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    errors = 10.0 ** -np.arange(1, 9)  # the least is the last
+    runs = curve("rk4", "lagrangian", "compiled", *(point(1.0, 1.0, float(e)) for e in errors))
+    monkeypatch.setattr(scene_curves, "CANDIDATES", 1)
+    integrated = []
+    monkeypatch.setattr(
+        scene_curves, "_largest_energy_error",
+        lambda _scene, _curve, setting: integrated.append(setting["rtol"]) or 1e-5,
+    )  # fmt: skip
+    points = [replace(one, setting={"rtol": one.energy_error}) for one in runs.points]
+    assert misleading_energy([replace(runs, points=points)], REPORT, truth)
+    assert integrated == [errors[-1]]
+
+
+def test_tolerances_of_scipy_end_where_it_refuses_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measured_curves, "TOLERANCES", 10.0 ** -np.arange(12, 16))
+    finest = {
+        backend: measured_curves._settings(method, backend, 1.0)[-1]["rtol"]
+        for method, backend in (("DOP853", "scipy"), ("dop853", "compiled"))
+    }
+    assert finest == {"scipy": 1e-13, "compiled": 1e-15}
 
 
 def test_a_large_energy_error_is_not_misleading(truth: Reference) -> None:

@@ -112,6 +112,13 @@ def test_the_frequencies_of_stiff_scenes_are_those_of_textbooks(ratio: float) ->
     assert (fast / slow) ** 2 == pytest.approx((1 + s) / (1 - s), rel=1e-12)
 
 
+@pytest.mark.parametrize("family", ["short second rod", "stiff spring"])
+def test_the_slow_angle_hardly_moves_in_the_fast_mode(family: str) -> None:
+    system, motion, slow = stiffness.FAMILIES[family]
+    fast = np.abs(Modes.at_rest(load(system), motion(300.0)[0]).shapes[:, -1])
+    assert fast[slow] < fast.max() / 100
+
+
 @pytest.mark.long("a whole study")
 def test_stiff_scenes_shorten_the_steps_of_explicit_methods_only() -> None:
     methods = ("rk4", "verner853", "gauss2", "radau3")

@@ -228,6 +228,13 @@ def test_growth_is_probed_at_one_radian_a_step_where_no_step_is_stable(
     assert found.growth_measured == pytest.approx(growth, abs=1e-4)
 
 
+def test_growth_is_probed_a_little_beyond_the_longest_stable_step() -> None:
+    found = critical_step("rk4", sp, sp.DEFAULTS)
+    assert found.measured < found.probe < 1.1 * found.measured
+    assert found.growth_predicted > 0
+    assert found.growth_measured == pytest.approx(found.growth_predicted, rel=1e-3)
+
+
 @pytest.mark.long("critical steps of all methods")
 @pytest.mark.parametrize("method", [name for name in RUNGE_KUTTA if not load(name).lower])
 def test_the_critical_step_is_what_the_interval_predicts(
