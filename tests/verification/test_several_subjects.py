@@ -417,6 +417,29 @@ def test_a_potential_of_which_only_the_variable_is_known_is_any_function(
     assert "arbitrary" not in verdicts[number].state
 
 
+def test_turning_points_are_where_the_energy_is_that_of_the_potential(tmp_path: Path) -> None:
+    verdicts = judged(tmp_path, ANY_POTENTIAL + "The motion turns where $E - V(r) = 0$.")
+    assert (verdicts[-1].verdict, verdicts[-1].note) == ("context", "it states a value")
+    slip = judged(tmp_path, ANY_POTENTIAL + r"$$ E - V(r) = m \dot r^2 $$")[-1]
+    assert slip.note != "it states a value"
+
+
+def test_a_repeated_hamiltonian_begins_no_other_system(tmp_path: Path) -> None:
+    text = r"""
+$$ T = \frac12 m \dot x^2, \qquad V = m g x \sin\alpha $$
+$$ H = \frac12 m \dot x^2 + m g x \sin\alpha = \frac{p^2}{2 m} + m g x \sin\alpha $$
+$$ H = \frac{p^2}{2 m} + m g x \sin\alpha, \qquad p = m \dot x $$
+$$ L = \frac12 m \dot x^2 - m g x \sin\alpha, \qquad m \ddot x = - m g \sin\alpha $$
+By Hamilton:
+$$ H = \frac{p^2}{2 m} + m g x \sin\alpha $$
+$$ - \frac{\partial H}{\partial x} = m g \sin\alpha, \qquad \dot p = m g \sin\alpha $$
+$$ m g \sin\alpha = m \ddot x, \qquad \ddot x = g \sin\alpha $$
+"""
+    verdicts = [one.verdict for one in judged(tmp_path, text)]
+    assert verdicts[-4:] == ["wrong"] * 4
+    assert "wrong" not in verdicts[:-4]
+
+
 def test_no_part_of_any_potential_is_known(tmp_path: Path) -> None:
     text = r"""$$ V_g = -m g r \cos\phi $$ The energy of a part of it is also that of a field."""
     assert judged(tmp_path, ANY_POTENTIAL + text)[-1].verdict != "wrong"

@@ -33,7 +33,7 @@ from derive.verification.documents.letters.stated_positions import (
     stated_systems,
 )
 from derive.verification.documents.letters.subjects import (
-    has_arbitrary_potential,
+    arbitrary_potentials,
     with_arbitrary_potentials,
 )
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
@@ -104,13 +104,13 @@ def interpretation(
 
     Known systems are tried unless all coordinates are those of another system, which are `known`.
     If none suits, parameters without a letter are taken for numbers: gravity for that of the
-    formulas, others for 1. Potentials that only their variables are known of are any functions.
+    formulas, others for 1. A potential of which the variables alone are stated is any function.
     """
     work = work or Work()
     general = with_arbitrary_potentials(statements)
     if general != statements:
         result = _interpretation(general, hints, work, known, are_of_program)
-        if result.match and has_arbitrary_potential(result.match.candidate.letters):
+        if result.match and arbitrary_potentials(result.match.candidate.letters):
             return result
     return _interpretation(statements, hints, work, known, are_of_program)
 

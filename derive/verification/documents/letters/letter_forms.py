@@ -181,9 +181,9 @@ def _with_initial_rates(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     moving = {(one.name, one.index) for one in found}
     initial = {(name, "0") for name, index in moving if index == "0" and (name, "") in moving}
     initial -= {(one.name, one.index) for one in found if one.dots > 1}
-    for place in occurrences:
-        if isinstance(place.sides[0], Letter) and place.sides[0].name in QUANTITIES:
-            initial -= {(one.name, one.index) for one in letters(place.sides)}
+    for sides in (place.sides for place in occurrences):
+        if any(isinstance(one, Letter) and one.name in QUANTITIES for one in sides[:1]):
+            initial -= {(one.name, one.index) for one in letters(sides)}
 
     def change(letter: Letter) -> Letter:
         is_initial = letter.dots == 1 and (letter.name, letter.index) in initial

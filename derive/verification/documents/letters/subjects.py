@@ -77,22 +77,23 @@ def _divided_at_energies(text: str, formulas: Formulas, letters: Letters) -> Ite
     headings = [*accumulate(map(len, sections))]
     rates = {f"{name}_dot" for name in letters.momenta}
     velocities = {f"{name}_dot" for name in letters.momenta.values()}
-    start, equation, canonical, energy, known = 0, -1, -1, -1, dict[str, str]()
+    start, equation, canonical, energy, known = 0, -1, -1, -1, dict[str, set[str]]()
     for number, formula in enumerate(formulas):
         stated = formula.sides[-1].text
         if kind := letters.quantities.get(formula.subject):
             after_energy = [k for k in headings if max(start, energy) < k <= number]
             begins = [k for k in after_energy if k > equation] or after_energy
-            is_other = known.get(formula.subject, stated) != stated
-            is_stating = kind in STATING and max(equation, canonical) >= start
-            is_after = is_stating or (equation >= start and is_other)
+            is_other = stated not in known.get(formula.subject, {stated})
+            is_after = equation >= start and (is_other or kind in STATING)
+            is_after |= canonical >= start and is_other and kind in STATING
             if is_after or (is_other and begins):
                 before = formulas[start:number][::-1]
                 places = [*takewhile(_is_position, before)]
                 first = begins[0] if begins else number - len(places)
                 yield formulas[start:first]
                 start, known = first, {}
-            known[formula.subject], energy = stated, number
+            known.setdefault(formula.subject, set()).add(stated)
+            energy = number
         if formula.subject in rates or any(order(word) == 2 for word in formula.words):
             equation = number
         elif formula.subject in velocities:
@@ -323,9 +324,10 @@ def with_arbitrary_potentials(statements: Translated) -> Translated:
     return replace(statements, formulas=(*formulas, *implied))
 
 
-def has_arbitrary_potential(names: Collection[str]) -> bool:
-    """Whether the letters of a system are those of such a potential, too."""
-    return any(one.startswith(ARBITRARY) for one in names)
+def arbitrary_potentials(names: Collection[str]) -> set[str]:
+    """The potentials of which these are coefficients, among the letters of a system."""
+    own = (one.removeprefix(f"{ARBITRARY}_") for one in names if one.startswith(ARBITRARY))
+    return {one.rpartition("_")[0] for one in own}
 
 
 def _variables(name: str, statements: Translated) -> set[str]:

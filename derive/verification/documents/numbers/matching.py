@@ -133,7 +133,7 @@ def best_matches(
     others = {w for one in formulas if not (_is_equation(one) or one.is_value) for w in one.words}
     loads = {*letters.of_kind("force")} - others
     free = {k: _without_loads(tried, loads, one) for k, one in enumerate(formulas)}
-    left_out = _linearised(formulas) | _of_other_letters(tried, letters, formulas)
+    left_out = _linearised(formulas) | _of_special_motions(tried, letters, formulas)
     votes = [
         (index, side, vote)
         for index, formula in enumerate(formulas)
@@ -207,7 +207,7 @@ def _linearised(formulas: Sequence[DocumentFormula]) -> set[int]:
     }
 
 
-def _of_other_letters(
+def _of_special_motions(
     tried: Sequence[SystemCandidate], letters: Letters, formulas: Sequence[DocumentFormula]
 ) -> set[int]:
     """The numbers of formulas of special motions, which stated energies do not determine.

@@ -16,7 +16,7 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.document_system import is_length
-from derive.verification.documents.letters.letters import energy_of_part
+from derive.verification.documents.letters.letters import QUANTITIES, energy_of_part
 from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
@@ -71,7 +71,7 @@ class OtherStatements:
             return plain("context", formula, note)
         if (other := self._with_an_energy(formula)) is not None:
             return other
-        if self._is_place(formula):
+        if self._is_place(formula) or self._is_turning_point(formula):
             return plain("context", formula, "it states a value")
         if (frequency := self._frequency(formula)) is not None:
             return frequency
@@ -244,6 +244,15 @@ class OtherStatements:
         is_relation = not all(side.text.isidentifier() for side in formula.sides)
         has_place = all(k for k, _ in values) and any(v in system.q for _, v in values)
         return is_relation and has_place and not system.conditions
+
+    @staticmethod
+    def _is_turning_point(formula: DocumentFormula) -> bool:
+        """Whether a formula states where the energy is that of the potential: E - V = 0."""
+        kinds = {one: energy_of_part(one) or QUANTITIES.get(one) for one in formula.words}
+        energies = {one for one, kind in kinds.items() if kind in ("energy", "hamiltonian")}
+        others = {kind for kind in kinds.values() if kind not in ("energy", "hamiltonian")}
+        is_relation = bool(energies) and formula.subject not in energies
+        return is_relation and others == {"potential_energy"}
 
     def _frequency(self, formula: DocumentFormula) -> SideVerdict | None:
         """The verdict on a frequency of another mode, whose letter the document uses before."""

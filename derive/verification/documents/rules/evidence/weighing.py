@@ -21,7 +21,7 @@ from derive.verification.documents.letters.dimensions import Restoration
 from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.letters.subjects import (
     ARBITRARY,
-    has_arbitrary_potential,
+    arbitrary_potentials,
 )
 from derive.verification.documents.rules.consequences import (
     UNDECIDED,
@@ -166,7 +166,8 @@ class _Evidence:
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
         if any(ARBITRARY in one.correct for one in result.verdict.corrections):
             return f"it contradicts {self._given}, {UNEXPLAINED}"
-        if has_arbitrary_potential(self._candidate.letters) and energy_of_part(formula.subject):
+        potentials = arbitrary_potentials(self._candidate.letters)
+        if potentials and energy_of_part(formula.subject) and potentials.isdisjoint(formula.words):
             return other_case  # nothing is known to be a part of any function
         if odd := {*self._contradictions.inhomogeneous} & {*self._candidate.stating}:
             return opposed(self._lines[min(odd)])
