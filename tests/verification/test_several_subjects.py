@@ -424,6 +424,38 @@ def test_turning_points_are_where_the_energy_is_that_of_the_potential(tmp_path: 
     assert slip.note != "it states a value"
 
 
+def test_values_of_energies_at_a_place_are_not_wrong(tmp_path: Path) -> None:
+    text = r"""
+$$ T = \frac12 m l^2 \dot\theta^2, \qquad V = m g l \cos\theta $$
+$$ l \ddot\theta = g \sin\theta $$
+Upright, at $\theta = 0$, $V = m g l$ is largest. The energy is conserved:
+$$ E = \frac12 m l^2 \dot\theta^2 + V(\theta) = \frac12 m v_0^2 + V(0) $$
+"""
+    verdicts = [one.verdict for one in judged(tmp_path, text)]
+    assert verdicts[:3] == ["definition", "definition", "verified"]
+    assert {*verdicts[3:]} <= {"context", "definition"}
+    assert "wrong" in [
+        one.verdict for one in judged(tmp_path, text.replace("= m g l$", "= 2 m g l$"))
+    ]
+
+
+def test_a_known_system_without_letters_of_the_energies_accuses_nothing(tmp_path: Path) -> None:
+    # a mass on a table, and one that hangs through a hole: no swinging Atwood machine
+    text = r"""
+The rope has the length $L = r - z_2$.
+$$ x_1 = r\cos\theta, \qquad y_1 = r\sin\theta, \qquad z_2 = r - L $$
+$$ \dot x_1 = \dot r\cos\theta - r\dot\theta\sin\theta $$
+$$ \dot y_1 = \dot r\sin\theta + r\dot\theta\cos\theta, \qquad \dot z_2 = \dot r $$
+$$ T = \frac12 m (\dot x_1^2 + \dot y_1^2) + \frac12 M \dot z_2^2 $$
+$$ V = M g z_2 = M g r - M g L $$
+$$ \mathcal{L} = T - V = \frac12 (m + M)\dot r^2 + \frac12 m r^2\dot\theta^2 - M g r + m g L $$
+$$ \frac{\partial\mathcal{L}}{\partial r} = - M g + m r\dot\theta^2 $$
+$$ \frac{\partial\mathcal{L}}{\partial\theta} = 0 $$
+$$ \frac{d}{dt}\frac{\partial\mathcal{L}}{\partial\dot r} = (m + M)\ddot r $$
+"""
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
+
+
 def test_a_repeated_hamiltonian_begins_no_other_system(tmp_path: Path) -> None:
     text = r"""
 $$ T = \frac12 m \dot x^2, \qquad V = m g x \sin\alpha $$

@@ -259,6 +259,8 @@ class FormulaTranslator:
             pieces = [piece for one in node.arguments for piece in (", ", self.text(one))]
             return joined_text(ATOM, f"{name}(", *pieces[1:], ")")
         if self._is_function(node):
+            if all(isinstance(one, Number) for one in node.arguments):
+                raise UntranslatableError("a value at a place")
             return FormulaText(name)
         return self._product([node.head, _in_brackets(node)])
 

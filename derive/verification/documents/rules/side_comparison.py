@@ -218,11 +218,12 @@ class SideComparison:
     def _state_of_value(
         self, formula: DocumentFormula, left: Value, right: Value
     ) -> tuple[sp.Symbol, sp.Expr] | None:
-        """A right angle, and its coordinate, at which a name with a definition has a value.
+        """A right angle, and its coordinate, at which a defined name or an energy has a value.
 
         In the text, as in "at theta = 0, D = M".
         """
-        if formula.occurrence.display or formula.subject not in self._namespace.defining:
+        names = {*self._namespace.defining, *self._namespace.letters.quantities}
+        if formula.occurrence.display or formula.subject not in names:
             return None
         for q in self._namespace.derivation.system.q:
             for k in range(4) if left.has(q) and not right.has(q) else ():

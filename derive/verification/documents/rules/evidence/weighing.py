@@ -18,7 +18,7 @@ from derive.reading.latex.grammar.products import AMBIGUOUS
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_POTENTIAL, SystemCandidate
 from derive.verification.documents.letters.dimensions import Restoration
-from derive.verification.documents.letters.letters import energy_of_part
+from derive.verification.documents.letters.letters import QUANTITIES, energy_of_part
 from derive.verification.documents.letters.subjects import (
     ARBITRARY,
     arbitrary_potentials,
@@ -189,7 +189,8 @@ class _Evidence:
         if any(index in word for index in self._other_indices for word in formula.words):
             return other_case
         if self._is_known and (
-            self._support.is_weak
+            self._has_other_energies
+            or self._support.is_weak
             or self._unsure & {*formula.words}
             or exchanges_loads(result, self._candidate)
         ):
@@ -226,6 +227,18 @@ class _Evidence:
         own = self._wrong_accelerations[number]
         others = (one for k, one in self._wrong_accelerations.items() if k != number)
         return own is not None and own in others
+
+    @cached_property
+    def _has_other_energies(self) -> bool:
+        """Whether all statements of a potential or of L have letters that the system does not have.
+
+        A letter T can be that of a tension.
+        """
+        stated = [(formula.subject, one) for formula, one in self._results]
+        held = {name for name, one in stated if one.verdict.verdict in HOLDING}
+        others = {name for name, one in stated if not one.is_understood} - held
+        kinds = {QUANTITIES.get(name) for name in others}
+        return not kinds.isdisjoint(("potential_energy", "lagrangian", "hamiltonian"))
 
     @cached_property
     def _wrong_accelerations(self) -> dict[int, sp.Expr | None]:
