@@ -472,9 +472,11 @@ $$ m g \sin\alpha = m \ddot x, \qquad \ddot x = g \sin\alpha $$
     assert "wrong" not in verdicts[:-4]
 
 
-def test_no_part_of_any_potential_is_known(tmp_path: Path) -> None:
-    text = r"""$$ V_g = -m g r \cos\phi $$ The energy of a part of it is also that of a field."""
-    assert judged(tmp_path, ANY_POTENTIAL + text)[-1].verdict != "wrong"
+def test_an_equation_with_one_potential_can_be_another_case(tmp_path: Path) -> None:
+    text = ANY_POTENTIAL + r"$$ m \ddot r = m r \dot\phi^2 - m r $$"
+    assert judged(tmp_path, text)[-1].verdict == "context"
+    part = ANY_POTENTIAL + r"$$ V_g = -m r \cos\phi $$"
+    assert judged(tmp_path, part)[-1].verdict != "wrong"
 
 
 def test_a_wrong_force_without_a_correction_in_letters_of_the_document_has_none(

@@ -33,7 +33,7 @@ from derive.verification.documents.letters.stated_positions import (
     stated_systems,
 )
 from derive.verification.documents.letters.subjects import (
-    arbitrary_potentials,
+    has_arbitrary_potential,
     with_arbitrary_potentials,
 )
 from derive.verification.documents.numbers.matching import Match, best_matches, trivial_comparisons
@@ -110,7 +110,7 @@ def interpretation(
     general = with_arbitrary_potentials(statements)
     if general != statements:
         result = _interpretation(general, hints, work, known, are_of_program)
-        if result.match and arbitrary_potentials(result.match.candidate.letters):
+        if result.match and has_arbitrary_potential(result.match.candidate.letters):
             return result
     return _interpretation(statements, hints, work, known, are_of_program)
 

@@ -324,10 +324,9 @@ def with_arbitrary_potentials(statements: Translated) -> Translated:
     return replace(statements, formulas=(*formulas, *implied))
 
 
-def arbitrary_potentials(names: Collection[str]) -> set[str]:
-    """The potentials of which these are coefficients, among the letters of a system."""
-    own = (one.removeprefix(f"{ARBITRARY}_") for one in names if one.startswith(ARBITRARY))
-    return {one.rpartition("_")[0] for one in own}
+def has_arbitrary_potential(names: Collection[str]) -> bool:
+    """Whether coefficients of such a potential are among the letters of a system."""
+    return any(one.startswith(ARBITRARY) for one in names)
 
 
 def _variables(name: str, statements: Translated) -> set[str]:

@@ -18,11 +18,8 @@ from derive.reading.latex.grammar.products import AMBIGUOUS
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_POTENTIAL, SystemCandidate
 from derive.verification.documents.letters.dimensions import Restoration
-from derive.verification.documents.letters.letters import QUANTITIES, energy_of_part
-from derive.verification.documents.letters.subjects import (
-    ARBITRARY,
-    arbitrary_potentials,
-)
+from derive.verification.documents.letters.letters import QUANTITIES
+from derive.verification.documents.letters.subjects import ARBITRARY
 from derive.verification.documents.rules.consequences import (
     UNDECIDED,
     Contradictions,
@@ -166,9 +163,6 @@ class _Evidence:
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
         if any(ARBITRARY in one.correct for one in result.verdict.corrections):
             return f"it contradicts {self._given}, {UNEXPLAINED}"
-        potentials = arbitrary_potentials(self._candidate.letters)
-        if potentials and energy_of_part(formula.subject) and potentials.isdisjoint(formula.words):
-            return other_case  # nothing is known to be a part of any function
         if odd := {*self._contradictions.inhomogeneous} & {*self._candidate.stating}:
             return opposed(self._lines[min(odd)])
         if self._further_inertia and not result.verdict.note.endswith(NOT_LINEAR):
