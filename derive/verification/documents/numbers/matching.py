@@ -22,6 +22,7 @@ from derive.verification.documents.numbers.candidate_motions import (
 )
 from derive.verification.documents.numbers.numbers import Numbers, Votes
 from derive.verification.documents.statements import (
+    POINT,
     Derivatives,
     DocumentFormula,
     without_unknown_terms,
@@ -212,11 +213,13 @@ def _of_special_motions(
 ) -> set[int]:
     """The numbers of formulas of special motions, which stated energies do not determine.
 
-    They contain coordinates or momenta without rates, and letters that the energies do not.
+    They contain coordinates or momenta without rates, and letters that neither energies contain
+    nor positions.
     """
     if tried[0].basis != "energies":
         return set()
     known = frozenset[str]().union(*(one.letters for one in tried))
+    known |= {*filter(POINT.match, letters.parameters)}
     other, count = {*letters.parameters} - known, -1
     moving = {*letters.coordinates, *letters.momenta}
     while count < len(other):  # also letters that these define
