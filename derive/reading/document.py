@@ -121,8 +121,9 @@ HEADING = re.compile(
     r"|[ \t]*\\(?P<subs>(?:sub)*)(?P<unit>section|paragraph)\b"
     r"|.*<h(?P<number>[1-6])\b"
     r"|(?P<line>\S.*)\n(?:={3,}|-{3,}|~{3,}|\^{3,})[ \t]*$"
-    r"|[ \t]*(?:[*_]{0,2}|\\(?:begin\{)?)(?P<word>example|problem|exercise|question|case|beispiel"
-    r"|aufgabe|ejemplo|ejercicio|exemple|exercice|esempio|esercizio|problema|exemplo)\b"
+    r"|[ \t]*(?:[*_]{0,2}|<(?:strong|b)>|\\(?:begin\{)?)"
+    r"(?P<word>example|problem|exercise|question|case|beispiel|aufgabe|ejemplo|ejercicio"
+    r"|exemple|exercice|esempio|esercizio|problema|exemplo)\b"
     r"|[ \t]*(?::{3,}|`{3,})\{(?P<fence>admonition|(?:prf:)?example|exercise|problem|topic)\b"
     r"|(?P<count>\d{1,2}[.)])(?!\S))",
     re.IGNORECASE | re.MULTILINE,

@@ -55,6 +55,7 @@ def test_a_slip_below_a_heading_is_not_verified(
     "\\section{A}\n@a\n\\subsection{B}\n@b\n\\section{C}\n@c\n",
     "<h1>A</h1>\n@a\n<h2>B</h2>\n@b\n<h1>C</h1>\n@c\n",
     "# A\n@a\n**Example 1.** @b\n# C\n@c\n",
+    "# A\n@a\n<strong>Example 1.</strong> @b\n# C\n@c\n",
     "A\n===\n@a\n\nProblem 1\n@b\n\nC\n===\n@c\n",
     "\\paragraph{A}\n@a\n\\subparagraph{B}\n@b\n\\paragraph{C}\n@c\n",
     "\\begin{question}\n@a\n1. @b\n\\end{question}\n\\begin{question}\n@c\n\\end{question}\n",

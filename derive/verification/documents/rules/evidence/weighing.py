@@ -229,8 +229,8 @@ class _Evidence:
         A letter T can be that of a tension.
         """
         stated = [(formula.subject, one) for formula, one in self._results]
-        held = {name for name, one in stated if one.verdict.verdict in HOLDING}
-        others = {name for name, one in stated if not one.is_understood} - held
+        understood = {name for name, one in stated if one.is_understood}
+        others = {name for name, one in stated if not one.is_understood} - understood
         kinds = {QUANTITIES.get(name) for name in others}
         return not kinds.isdisjoint(("potential_energy", "lagrangian", "hamiltonian"))
 
