@@ -302,6 +302,7 @@ CENTRAL = (
 )  # fmt: skip
 
 
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize(("number", "old", "new"), [
     (1, "2 m r^2", "2 m r"), (2, "m r^3", "m r^2"), (2, "m r^3", "m r^4"), (2, "p^2", "p"),
 ])  # fmt: skip
