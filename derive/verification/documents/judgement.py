@@ -128,7 +128,10 @@ def _by_subjects(
     occurrences: Sequence[Occurrence],
     unreadable: Sequence[FormulaVerdict],
 ) -> DocumentVerdicts:
-    """Verdicts with other subjects where energies are stated anew, if more formulas hold so."""
+    """Verdicts with other subjects where energies are stated anew, if more formulas hold so.
+
+    If as many do, more of them must hold by what the document states.
+    """
     statements = with_loads_behind(implied_rates(translated(occurrences)))
     parts = subjects(document.text, statements)
     work = Work()

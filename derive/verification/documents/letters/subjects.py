@@ -254,12 +254,14 @@ def _implied_places(
 
 
 def _with_rates(statements: Translated, pairs: Iterable[tuple[str, str]]) -> Translated:
+    return replace(statements, formulas=(*_implied(pairs), *statements.formulas))
+
+
+def _implied(pairs: Iterable[tuple[str, str]]) -> Iterator[DocumentFormula]:
+    """Yield equations that are not written, by their sides."""
     place = Occurrence(IMPLIED, 0, 0, 0, 0, "", Statement((), (), (0, 0)))
-    rates = [
-        DocumentFormula(place, (FormulaText(rate), FormulaText(letter)), ("=",))
-        for rate, letter in pairs
-    ]
-    return replace(statements, formulas=(*rates, *statements.formulas))
+    for left, right in pairs:
+        yield DocumentFormula(place, (FormulaText(left), FormulaText(right)), ("=",))
 
 
 def _unnamed(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[tuple[str, str]]:
@@ -299,8 +301,7 @@ def with_arbitrary_potentials(statements: Translated) -> Translated:
     sides = ((one.subject, side.text) for one in formulas for side in one.sides[1:])
     of_energies -= {subject for subject, text in sides if subject != text}
     potentials = [one for one in sorted(of_energies) if QUANTITIES.get(one) == "potential_energy"]
-    place = Occurrence(IMPLIED, 0, 0, 0, 0, "", Statement((), (), (0, 0)))
-    implied: list[DocumentFormula] = []
+    pairs: list[tuple[str, str]] = []
     for name in potentials:
         variables = [q for q in letters.coordinates if q in _variables(name, statements)]
         if not variables:
@@ -311,17 +312,13 @@ def with_arbitrary_potentials(statements: Translated) -> Translated:
             for one in combinations_with_replacement(variables, degree)
         )
         terms = (f"{ARBITRARY}_{name}_{k}*{one}" for k, one in enumerate(monomials, 1))
-        pairs = [(name, " + ".join(terms))]
+        pairs.append((name, " + ".join(terms)))
         if len(variables) == 1:
             derivative = f"d{name}_d{variables[0]}"
             pairs.append((f"{name}_prime", derivative))
             own = {**statements.derivatives, derivative: (name, (variables[0],))}
             statements = replace(statements, derivatives=own)
-        implied += [
-            DocumentFormula(place, (FormulaText(left), FormulaText(right)), ("=",))
-            for left, right in pairs
-        ]
-    return replace(statements, formulas=(*formulas, *implied))
+    return replace(statements, formulas=(*formulas, *_implied(pairs)))
 
 
 def has_arbitrary_potential(names: Collection[str]) -> bool:
