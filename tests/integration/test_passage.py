@@ -87,11 +87,12 @@ def test_a_single_constraint_without_gradient_is_passed(monkeypatch: pytest.Monk
 
     So the errors of the polynomials that continue the motion are known, which are estimated.
     """
-    landed, errors = singular_passage._landed, []
+    landed, errors, arguments = singular_passage._landed, [], []
 
     def recorded(problem: Any, end: float, y: np.ndarray, error: np.ndarray) -> Any:
         exact = np.array([0.3 + 4 * end, 0.3 - np.pi + 4 * end, 4.0, 4.0])
         errors.append((error.max(), np.abs(y - exact).max()))
+        arguments.append((problem, end, y, error))
         return landed(problem, end, y, error)
 
     monkeypatch.setattr(singular_passage, "_landed", recorded)
@@ -105,6 +106,10 @@ def test_a_single_constraint_without_gradient_is_passed(monkeypatch: pytest.Monk
     assert all(exact / 20 < estimated < 1e-8 for estimated, exact in errors)
     assert np.abs(run.y[0] - 0.3 - 4 * run.t).max() < 1e-7
     assert np.abs(run.y[1] - 0.3 + np.pi - 4 * run.t).max() < 1e-7
+    # a state away from the constraints by more than the error is on another branch
+    problem, end, y, error = arguments[-1]
+    assert landed(problem, end, y, error) is not None
+    assert landed(problem, end, y + [5e-6, 0, 0, 0], error) is None
 
 
 @pytest.fixture(scope="module")

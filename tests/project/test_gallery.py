@@ -51,7 +51,7 @@ def blank(figure: Figure) -> list[tuple[str, list[float]]]:
     return [(title, part) for title, part in parts if min(part) < LEAST]
 
 
-@pytest.mark.long("all figures of the gallery", keep=1)
+@pytest.mark.long("seconds for each figure of the gallery")
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_what_is_drawn_spans_the_axes(script: Path) -> None:
     figures = [x for x in runpy.run_path(str(script)).values() if isinstance(x, Figure)]

@@ -170,6 +170,7 @@ def test_formulas_before_an_energy_of_another_case_are_not_of_this_case(tmp_path
     assert found == ["definition", "verified", "wrong", "verified", "verified", "context"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_two_sides_of_a_chain_decide_about_the_third(tmp_path: Path) -> None:
     """The Lagrangian alone states the system, and nothing else of it moves."""
     text = r"""
@@ -223,6 +224,7 @@ $$\ddot l = \dot\theta^2(L+l)+g\cos\theta-\frac{k}{m}(L+l)$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_ell_and_l_are_one_letter_if_more_holds_so(tmp_path: Path) -> None:
     assert [*wrong_terms(tmp_path, ELASTIC).values()] == [
         "-mgy", r"[(L+l)^2\dot\theta^2+\dotl^2]",
@@ -348,6 +350,7 @@ $$\frac23 l\ddot\theta-g\theta=\ddot x$$ $$u+\frac34 m g\theta=(M+\frac14 m)\ddo
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_linear_equations_do_not_speak_against_energies(tmp_path: Path) -> None:
     assert "context" not in {one.verdict for one in judged(tmp_path, ROD_CART)}
     slip = ROD_CART.replace(r"\frac23 l\ddot\theta=g", r"\frac43 l\ddot\theta=g")
@@ -436,6 +439,7 @@ $$L[\theta,\dot\theta,x,\dot x] = \frac12 m(\dot x^2 + (l_0 + x)^2\dot\theta^2)
 + m g (l_0 + x)\cos\theta - k x^2$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_chain_that_contradicts_itself_is_not_of_another_case(tmp_path: Path) -> None:
     assert [*wrong_terms(tmp_path, SPRING).values()] == [
         r"-\dot x\dot\theta".replace(" ", ""),
@@ -470,6 +474,7 @@ $$H = \frac{p^2}{2 m (1 + 4 a^2 x^2)} + m (g a - \frac{\omega^2}{2}) x^2$$
 $$\dot x = \frac{p}{m (1 + 4 a^2 x^2)}$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_hamiltonian_is_wrong_whatever_formula_states_its_momentum(tmp_path: Path) -> None:
     assert wrong_terms(tmp_path, WIRE) == {}
     slips = WIRE.replace(r"a^2 x^2)\dot x$$", r"a x^2)\dot x$$").replace("g a -", "g a +")

@@ -392,6 +392,7 @@ def rates(t, s, m1, m2, l1, lc1, lc2, I1, I2, g, B, u):
     assert slip == ["verified", "wrong"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_of_which_one_letter_agrees_are_not_wrong() -> None:
     # a body with two rotors, of which a mass in space would be the nearest known system
     text = """
@@ -436,6 +437,7 @@ function draw() {
     assert equations(judged(text.replace("/r", "*r*r*r"), "JavaScript"))[:1] != ["verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_equation_with_the_step_size_is_not_wrong() -> None:
     text = """
 def rates(t, s, m, k, L, g, dt):

@@ -287,6 +287,7 @@ $$ \ddot\theta = -\frac{2 g}{3 (R - r)} \sin\theta $$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_slip_does_not_leave_an_example_without_its_system(tmp_path: Path) -> None:
     verdicts = [one.verdict for one in judged(tmp_path, SAME_ANGLE)]
     assert {*verdicts} == {"definition", "verified"}
@@ -308,6 +309,7 @@ $$ H = \frac{p_r^2}{2 m} + \frac{p_\phi^2}{2 m r^2} + U(r, \phi) $$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_lagrangians_after_canonical_velocities_have_their_own_coordinates(tmp_path: Path) -> None:
     verdicts = [one.verdict for one in judged(tmp_path, CANONICAL)]
     assert {*verdicts} == {"definition", "verified"}
@@ -315,6 +317,7 @@ def test_lagrangians_after_canonical_velocities_have_their_own_coordinates(tmp_p
     assert (wrong.verdict, wrong.wrong_term) == ("wrong", r"- U(r, \phi)")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_energies_that_differ_in_two_terms_none_is_wrong(tmp_path: Path) -> None:
     text = CANONICAL.replace("U(x, y)", r"\frac12 k x^2").replace("U(r, \\phi)", r"\frac12 k r^2")
     slips = text.replace(r"r^2 \dot\phi^2) -", r"2 r^2 \dot\phi^2) -")
@@ -342,6 +345,7 @@ $$ I_1 \Omega^2 \cdot 0 - I_3 n \Omega + M g l = 0 $$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_formulas_of_special_motions_are_no_evidence_against_energies(tmp_path: Path) -> None:
     slip = TOP.replace(r"\dot\phi \sin^2", r"\dot\phi \sin")
     for text, number in ((TOP, -1), (slip, 3)):
@@ -560,6 +564,7 @@ $$2 m a^2\ddot\theta = -2 k a^2\theta$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_section_is_judged_by_the_energies_before_it(tmp_path: Path) -> None:
     def first(text: str) -> list[str]:
         return [one.verdict for one in judged(tmp_path, text)[:4]]

@@ -750,6 +750,7 @@ def test_a_load_on_the_left_is_part_of_an_equation_of_motion(tmp_path: Path) -> 
     assert verdicts(tmp_path, text.replace("l^2 m", "l m")) != ["verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_equation_of_one_coordinate_is_judged_beside_others(tmp_path: Path) -> None:
     text = r"""$$\sum F_x = -T\sen(\theta) = m\frac{d^2x}{dt^2}$$
 $$\sum F_r = T - m g\cos(\theta) = m\frac{d^2r}{dt^2}$$
