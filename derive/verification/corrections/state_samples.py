@@ -3,10 +3,11 @@
 import math
 from collections.abc import Callable, Sequence
 from random import Random
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
+import numpy as np
 import sympy as sp
-from mpmath import fp
+from numpy.typing import NDArray
 from sympy.core.relational import Relational
 
 from derive.formulas import functions
@@ -117,14 +118,13 @@ class StateSamples:
         self, symbols: Sequence[sp.Symbol], gradients: sp.MatrixBase, residuals: sp.MatrixBase
     ) -> None:
         """Change symbols as little as removes linear residuals."""
-        rows, column = self._at(gradients, residuals)
+        J, right = self._at(gradients, residuals)
+        across = J.transpose(0, 2, 1)
+        changes = (across @ _solutions(J @ across, right)[..., np.newaxis])[..., 0]
         moved = dict(self._known)
-        moved |= {symbol: list(self._known[symbol]) for symbol in symbols}
-        for k in range(self.count):
-            J = fp.matrix([[entry[k] for entry in row] for row in rows])
-            change = J.T * _solution(J * J.T, fp.matrix([one[k] for one in column]))
-            for symbol, x in zip(symbols, change, strict=True):
-                moved[symbol][k] -= x
+        for symbol, change in zip(symbols, changes.T.tolist(), strict=True):
+            pairs = zip(self._known[symbol], change, strict=True)
+            moved[symbol] = [value - x for value, x in pairs]
         self._known = {symbol: moved[symbol] for symbol in self._independent}
 
     def _solve(self, derivation: Derivation) -> None:
@@ -133,21 +133,17 @@ class StateSamples:
         if system.conditions:
             M = equations(derivation)
             f = sp.Matrix([*f, *derivation.constraint_forcing])
-        rows, column = self._at(M, f)
-        solutions = [
-            _solution(
-                fp.matrix([[entry[k] for entry in row] for row in rows]),
-                fp.matrix([one[k] for one in column]),
-            )
-            for k in range(self.count)
-        ]
-        for i, symbol in enumerate((*system.qddot, *system.multipliers)):
-            self._known[symbol] = [solution[i] for solution in solutions]
+        solutions = _solutions(*self._at(M, f)).T.tolist()
+        self._known |= zip((*system.qddot, *system.multipliers), solutions, strict=True)
 
     def _at(
         self, matrix: sp.MatrixBase, column: sp.MatrixBase
-    ) -> tuple[list[list[Numbers]], list[Numbers]]:
-        return [[self(entry) for entry in row] for row in matrix.tolist()], [*map(self, column)]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """A matrix and a column at all states."""
+        entries = np.array([*map(self, matrix.flat()), *map(self, column)]).T
+        size = matrix.rows * matrix.cols
+        shape = self.count, matrix.rows, matrix.cols
+        return entries[:, :size].reshape(shape), entries[:, size:]
 
 
 def samples(model: ReferenceSystem, count: int, *, along_motions: bool) -> StateSamples:
@@ -156,12 +152,17 @@ def samples(model: ReferenceSystem, count: int, *, along_motions: bool) -> State
     return model.once(key, lambda: StateSamples(model, count, along_motions=along_motions))
 
 
-def _solution(matrix: Any, right: Any) -> Any:
-    """The solution of linear equations; NaN where they are singular."""
+def _solutions(
+    matrices: NDArray[np.float64], right: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The solutions of linear equations; NaN where they are singular."""
     try:
-        return fp.lu_solve(matrix, right)
-    except ZeroDivisionError:
-        return fp.matrix([math.nan] * len(right))
+        return np.asarray(np.linalg.solve(matrices, right[..., np.newaxis])[..., 0])
+    except np.linalg.LinAlgError:
+        if len(matrices) == 1:
+            return np.full_like(right, np.nan)
+    parts = zip(matrices[:, np.newaxis], right[:, np.newaxis], strict=True)
+    return np.concatenate([_solutions(*part) for part in parts])
 
 
 def _number(expression: sp.Expr) -> float:

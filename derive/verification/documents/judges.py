@@ -67,10 +67,9 @@ class Judges:
     def has_motions(self, candidate: SystemCandidate) -> bool:
         """Whether the constraints of a candidate can be satisfied, and its coordinates vary."""
         try:
-            self.judge(candidate)
+            return self.judge(candidate).has_motions
         except (ExpressionError, SystemDefinitionError):
             return False
-        return True
 
     def _judge(self, candidate: SystemCandidate) -> Judge:
         statements, formulas = self.statements, self.statements.formulas

@@ -46,7 +46,8 @@ class ReferenceSystem:
     source_lagrangian: sp.Expr | None = None
     #: A formula near whose own turning arguments there are further states, if it has any.
     printed: sp.Expr | None = None
-    #: Results that do not depend on the names, for all models that replace parts of this one.
+    #: Results that do not depend on the names, for all models that replace parts of this one,
+    #: each with the derivation and the Lagrangian on which it depends.
     _shared: dict[tuple[Hashable, ...], Any] = field(
         default_factory=dict, repr=False, compare=False
     )
@@ -54,6 +55,12 @@ class ReferenceSystem:
     def with_lagrangian(self, lagrangian: sp.Expr) -> Self:
         """The model with another Lagrangian that has the same equations of motion."""
         return replace(self, source_lagrangian=lagrangian)
+
+    def of(self, derivation: Derivation, names: Namespace) -> Self:
+        """A derivation with other names; what is known of derivations remains."""
+        return replace(
+            self, derivation=derivation, names=names, source_lagrangian=None, printed=None
+        )
 
     def about(self, printed: sp.Expr) -> Self:
         """The model with states near the turning arguments of a formula that the system has not.

@@ -1,5 +1,6 @@
 """The names of a source: formulas in the names of the system, with derivatives and momenta."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -83,6 +84,8 @@ def _is_position(system: System, value: Value) -> bool:
     return is_number and depends_on(value, system.q) and not depends_on(value, others)
 
 
+#: A name in a formula.
+WORD = re.compile(r"\w+")
 #: A source may write a constraint times one of these factors.
 FACTORS = (*map(sp.Integer, (1, -1, 2, -2)), sp.S.Half, -sp.S.Half)
 
@@ -92,13 +95,16 @@ def with_multipliers(model: ReferenceSystem, equations: Sequence[str]) -> Refere
     system = model.derivation.system
     if not system.conditions or not equations:
         return model
+    named = [*usual_names(system)]
+    deciding = [text for text in equations if not named[0].keys().isdisjoint(WORD.findall(text))]
+    if not deciding:  # which saves their motions
+        return replace(model, names={**named[0], **model.names})
     motions = model.motions
 
     def holding(names: Namespace) -> int:
-        return sum(_holds(motions, text, {**motions.namespace, **names}) for text in equations)
+        return sum(_holds(motions, text, {**motions.namespace, **names}) for text in deciding)
 
-    result = max(usual_names(system), key=holding)
-    return replace(model, names={**result, **model.names})
+    return replace(model, names={**max(named, key=holding), **model.names})
 
 
 def usual_names(system: System) -> Iterator[Namespace]:

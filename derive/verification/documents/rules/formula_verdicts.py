@@ -81,6 +81,14 @@ class Judge:
         self._loads = AppliedLoads(namespace, linear, self._comparison)
         self._judged: dict[DocumentFormula, SideVerdict] = {}
 
+    @property
+    def has_motions(self) -> bool:
+        """Whether constraints can be satisfied; where multipliers have letters, it is assumed."""
+        try:
+            return self._namespace.has_multipliers or bool(self._model.motions.evaluators)
+        except ExpressionError:
+            return False
+
     def verdicts(
         self, formulas: Sequence[DocumentFormula]
     ) -> list[tuple[DocumentFormula, SideVerdict]]:

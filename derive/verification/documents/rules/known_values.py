@@ -98,7 +98,8 @@ class DocumentNamespace:
         #: Parameters with the numbers that the document sets them to, and the formulas that do.
         self.special_values = self._special_values(formulas)
         equations = [f"{one.sides[0].text} = {one.sides[-1].text}" for one in formulas]
-        if system_letters.multipliers:
+        self.has_multipliers = bool(system_letters.multipliers)
+        if self.has_multipliers:
             self.model = ReferenceSystem(self.derivation, self.names)
             return
         others = {name: value for name, value in self.names.items() if name not in own}
@@ -119,7 +120,7 @@ class DocumentNamespace:
         self.names = dict(self.names)
         for name, value in values.items():
             self._set(name, value)
-        self.model = ReferenceSystem(self.derivation, self.names)
+        self.model = self.model.of(self.derivation, self.names)
 
     def _special_values(
         self, formulas: Sequence[DocumentFormula]

@@ -160,7 +160,7 @@ class Roles:
         """The verdict on an equation of motion, perhaps on one of another derivation."""
         text, model = f"{first.text} = {side.text}", self._model_of(first, side)
         if derivation is not None:
-            model = ReferenceSystem(derivation, model.names)
+            model = model.of(derivation, model.names)
         verdict = judge_formula(model, "", text, "euler_lagrange")
         verdict = replace(verdict, corrections=self._in_place(verdict.corrections, first))
         return SideVerdict(verdict, ((0, first), (len(first.text) + 3, side)), "euler_lagrange")
