@@ -152,9 +152,7 @@ def samples(model: ReferenceSystem, count: int, *, along_motions: bool) -> State
     return model.once(key, lambda: StateSamples(model, count, along_motions=along_motions))
 
 
-def _solutions(
-    matrices: NDArray[np.float64], right: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _solutions(matrices: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
     """The solutions of linear equations; NaN where they are singular."""
     try:
         return np.asarray(np.linalg.solve(matrices, right[..., np.newaxis])[..., 0])
