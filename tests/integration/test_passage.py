@@ -109,7 +109,7 @@ def test_a_single_constraint_without_gradient_is_passed(monkeypatch: pytest.Monk
     # a state away from the constraints by more than the error is on another branch
     problem, end, y, error = arguments[-1]
     assert landed(problem, end, y, error) is not None
-    assert landed(problem, end, y + [5e-6, 0, 0, 0], error) is None
+    assert landed(problem, end, y + np.array([5e-6, 0, 0, 0]), error) is None
 
 
 @pytest.fixture(scope="module")

@@ -546,6 +546,37 @@ def test_a_tension_for_which_equations_are_solved_decides_nothing(tmp_path: Path
     assert ";" not in document.system  # no system of the tension and the angle
 
 
+#: A particle on a thread over the edge of a plate.
+EDGE = r"""
+$$w = \ell\cos\theta - d$$
+$$m(-\ell\dot\theta^2 - w\cos\theta\,\dot\phi^2) = m g\cos\theta\cos\phi - T$$
+$$m(\ell\ddot\theta + w\sin\theta\,\dot\phi^2) = -m g\sin\theta\cos\phi$$
+$$T = m(g\cos\theta\cos\phi - \ell\dot\theta^2 + w\cos\theta\,\dot\phi^2)$$
+$$%s = \frac12 m(\ell^2\dot\theta^2 + w^2\dot\phi^2) %s m g w\cos\phi$$
+$$m(w^2\ddot\phi + 2 w\dot w\dot\phi) + m g w\sin\phi = 0$$"""
+
+
+def test_a_tension_without_accelerations_decides_nothing_either(tmp_path: Path) -> None:
+    # a sign is wrong in its value, or in the equation before: nothing shows which
+    expected = ["definition", "context", "verified", "context", "definition", "verified"]
+    assert verdicts(tmp_path, EDGE % ("L", "+")) == expected
+    # an abbreviation with velocities that is used before its definition
+    text = r"""
+$$L = \frac12 m(\dot r^2 + r^2\dot\phi^2) + \frac{\mu m}{r}$$
+$$m\ddot r = \frac{m h^2}{r^3} - \frac{\mu m}{r^2}$$ with
+$$h = r^2\dot\phi$$"""
+    assert verdicts(tmp_path, text)[1:] == ["verified", "definition"]
+
+
+@pytest.mark.parametrize(("name", "verdict"), [("T_{kin}", "definition"), ("T_k", "context")])
+def test_a_letter_that_is_defined_is_no_coordinate_of_a_known_system(
+    name: str, verdict: str, tmp_path: Path
+) -> None:
+    # T_k can also be that of one of several bodies
+    text = EDGE % (name, "$$ $$V = -")
+    assert verdicts(tmp_path, text)[-3:] == ["definition", verdict, "verified"]
+
+
 @pytest.mark.long("other tests reach its code")
 def test_a_load_that_an_equation_states_is_no_reaction(tmp_path: Path) -> None:
     text = r"""

@@ -219,7 +219,9 @@ def _judge(
                 titles.append(candidate.title)
                 conventions.append(convention(candidate))
             elsewhere = {*statements.formulas} - {*remaining}
-            verdicts = [*_without_foreign(verdicts, found.judges.letters, elsewhere)]
+            is_known = candidate.basis == "catalogue" and hints is None
+            letters = found.judges.letters
+            verdicts = [*_without_foreign(verdicts, letters, elsewhere, is_known)]
             contrary = [*alternatives(found, verdicts, written)]
             others += contrary
             verdicts = [*unopposed(verdicts, contrary)]
@@ -227,7 +229,6 @@ def _judge(
                 before = results.get(formula.occurrence)
                 if before is None or _is_graver(result, before[1]):
                     results[formula.occurrence] = formula, result
-                    is_known = candidate.basis == "catalogue" and hints is None
                     (known.add if is_known else known.discard)(formula.occurrence)
             bound = {q for one in candidate.constraints for q in one.coordinates}
             remaining = tuple(
@@ -304,21 +305,32 @@ def _reasons(found: Interpretation, formulas: Formulas) -> Iterator[tuple[int, s
 
 
 def _without_foreign(
-    verdicts: Sequence[WithVerdict], letters: Letters, others: Collection[DocumentFormula]
+    verdicts: Sequence[WithVerdict],
+    letters: Letters,
+    others: Collection[DocumentFormula],
+    is_known: bool,
 ) -> Iterator[WithVerdict]:
-    """The verdicts, with `context` for wrong formulas with letters that are no parameters.
+    """The verdicts, with `context` for wrong formulas with letters of another meaning.
 
-    Other parts of the document define these by coordinates.
+    Other parts of the document define parameters by coordinates, or coordinates of a known system
+    by those of another one.
     """
     lines = {
         one.subject: one.occurrence.line
         for one in others
         if one.subject in letters.parameters and {*one.words} & {*letters.coordinates}
     }
+    foreign = {stem(word) for one in others for word in one.words if order(word) and is_known}
+    foreign -= {*letters.coordinates}
+    lines |= {
+        one.subject: one.occurrence.line
+        for one in others
+        if one.subject in letters.coordinates and foreign.intersection(one.words)
+    }
     for formula, result in verdicts:
-        foreign = [word for word in formula.words if word in lines and word != formula.subject]
-        if foreign and result.verdict.verdict == "wrong":
-            note = f"line {lines[foreign[0]]} defines {foreign[0]} for another system"
+        defined = [word for word in formula.words if word in lines and word != formula.subject]
+        if defined and result.verdict.verdict == "wrong":
+            note = f"line {lines[defined[0]]} defines {defined[0]} for another system"
             result = plain("context", formula, note)
         yield formula, result
 

@@ -104,7 +104,8 @@ def with_multipliers(model: ReferenceSystem, equations: Sequence[str]) -> Refere
     def holding(names: Namespace) -> int:
         return sum(_holds(motions, text, {**motions.namespace, **names}) for text in deciding)
 
-    return replace(model, names={**max(named, key=holding), **model.names})
+    best = max(named, key=holding)
+    return replace(model, names={**best, **model.names})
 
 
 def usual_names(system: System) -> Iterator[Namespace]:

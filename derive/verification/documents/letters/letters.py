@@ -43,7 +43,7 @@ SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
 #: Names of an entry: a letter and one index, or two.
 ENTRY = re.compile(r"([A-Za-z]+)_(\d)(?:_?(\d))?\Z")
 #: Indices that change nothing.
-TOTAL = ("", "tot", "total", "sys")
+TOTAL = ("", "tot", "total", "sys", "kin", "pot")
 
 #: Kinds of parameters by the first letters of their names, the usual ones first.
 KINDS: dict[str, tuple[str, ...]] = {

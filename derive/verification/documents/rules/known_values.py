@@ -351,18 +351,34 @@ class DocumentNamespace:
                         self._add(component, entry)
 
     def _is_reaction(self, formula: DocumentFormula, value: Value) -> bool:
-        """Whether equations before a formula with accelerations contain its subject.
+        """Whether a formula solves an equation before it for its subject.
 
-        They are solved for a reaction, such as a tension: by its value the one would hold, and not
-        the others where one of them is wrong.
+        This is a reaction, such as a tension: by its value that equation would hold, and not the
+        others where one of them is wrong. Without accelerations, the equation has a term with it
+        and velocities; what has velocities can be an abbreviation elsewhere.
         """
-        name, qddot = formula.subject, self._system.qddot
-        if not depends_on(value, qddot):
+        name, system = formula.subject, self._system
+        if not depends_on(value, (*system.qdot, *system.qddot)):
             return False
+        has_accelerations = depends_on(value, system.qddot)
         before = takewhile(lambda one: one is not formula, self.formulas)
-        equations = (one for one in before if name in one.words and one.subject != name)
-        known = (self.names.get(word) for one in equations for word in one.words)
-        return any(isinstance(one, sp.Basic) and depends_on(one, qddot) for one in known)
+        equations = [one for one in before if name in one.words and one.subject != name]
+        if has_accelerations:
+            known = (self.names.get(word) for one in equations for word in one.words)
+            return any(isinstance(one, sp.Basic) and depends_on(one, system.qddot) for one in known)
+        return any(self._has_term(one, name) for one in equations if not one.subject)
+
+    def _has_term(self, formula: DocumentFormula, name: str) -> bool:
+        """Whether an equation with velocities has a name times a constant as a term."""
+        letter = sp.Symbol(name)
+        with suppress(ExpressionError, TypeError, ValueError):
+            first, last = (parse(one.text, {**self.all_names, name: letter})
+                           for one in (formula.sides[0], formula.sides[-1]))  # fmt: skip
+            factor = (first - last).diff(letter)
+            is_constant = factor != 0 and not depends_on(factor, (letter, *self._system.q))
+            moving = (*self._system.qdot, *self._system.qddot)
+            return is_constant and depends_on(first - last, moving)
+        return False
 
     def _add(self, name: str, value: Value) -> None:
         """Add a name, and its rates unless they are known."""
