@@ -55,8 +55,23 @@ def test_a_letter_that_another_part_defines_is_no_parameter(
     other, energy = formulas(definition, r"V = - m g h + k\phi^2 + \dot\phi")
     letters = letters_of((energy,), {})
     wrong = [with_verdict(energy, "wrong")]
-    assert verdicts([*_without_foreign(wrong, letters, {other})]) == [expected]
-    assert verdicts([*_without_foreign(wrong, letters, set())]) == [("wrong", "")]
+    assert verdicts([*_without_foreign(wrong, letters, {other}, is_known=False)]) == [expected]
+    assert verdicts([*_without_foreign(wrong, letters, set(), is_known=False)]) == [("wrong", "")]
+
+
+@pytest.mark.parametrize(("definition", "is_known", "expected"), [
+    (r"w = l\cos\theta", True, ("context", "line 1 defines w for another system")),
+    (r"w = l\cos\theta", False, ("wrong", "")),  # it has its own energies
+    (r"w = l\cos\phi", True, ("wrong", "")), ("w = 2 l", True, ("wrong", "")),
+])  # fmt: skip
+def test_a_coordinate_of_a_known_system_is_not_defined_by_those_of_others(
+    definition: str, is_known: bool, expected: tuple[str, str]
+) -> None:
+    other, rates, energy = formulas(definition, r"v = l\dot\theta", r"V = - m g w + \dot w\dot\phi")
+    letters = letters_of((energy,), {})
+    assert {*letters.coordinates} == {"w", "phi"}
+    wrong = [with_verdict(energy, "wrong")]
+    assert verdicts([*_without_foreign(wrong, letters, {other, rates}, is_known)]) == [expected]
 
 
 def stated(name: str, stating: frozenset[int] = frozenset()) -> SystemCandidate:

@@ -568,13 +568,10 @@ $$h = r^2\dot\phi$$"""
     assert verdicts(tmp_path, text)[1:] == ["verified", "definition"]
 
 
-@pytest.mark.parametrize(("name", "verdict"), [("T_{kin}", "definition"), ("T_k", "context")])
-def test_a_letter_that_is_defined_is_no_coordinate_of_a_known_system(
-    name: str, verdict: str, tmp_path: Path
-) -> None:
-    # T_k can also be that of one of several bodies
-    text = EDGE % (name, "$$ $$V = -")
-    assert verdicts(tmp_path, text)[-3:] == ["definition", verdict, "verified"]
+def test_a_kinetic_energy_beside_a_tension_has_an_index(tmp_path: Path) -> None:
+    text = EDGE % ("T_{kin}", "$$ $$V = -")
+    expected = ["definition", "context", "verified", "context"]
+    assert verdicts(tmp_path, text) == [*expected, "definition", "definition", "verified"]
 
 
 @pytest.mark.long("other tests reach its code")
