@@ -106,3 +106,39 @@ $$\frac{\partial L}{\partial\dot\theta} = m\ell^2\dot\theta$$
 $$\frac{\partial L}{\partial\theta} = -m g\ell\sin\theta$$
 $$p = \ell^3 m\dot\theta$$"""
     assert [one.verdict for one in judged(tmp_path, text)[3:]] == ["verified"] * 2 + ["context"]
+
+
+#: A pendulum with a wheel: equations of both coordinates, and solved for the accelerations.
+WHEEL = r"""
+$$T = \frac12 I\dot\alpha^2 + \frac12 J(\dot\alpha + \dot\beta)^2$$ $$V = m g l\cos\alpha$$
+$$(I + J)\ddot\alpha + J\ddot\beta - m g l\sin\alpha = -c\dot\alpha$$
+$$J(\ddot\alpha + \ddot\beta) = \tau - b\dot\beta$$
+$$\ddot\alpha = \frac{m g l\sin\alpha - \tau + b\dot\beta - c\dot\alpha}{I}$$
+$$\ddot\beta = \frac{\tau - b\dot\beta}{J}
+  - \frac{m g l\sin\alpha - \tau + b\dot\beta - c\dot\alpha}{I}$$
+"""
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    (r"\sin\alpha - \tau", r"\sin\alpha + \tau"),
+    (r"+ b\dot\beta - c", r"- b\dot\beta - c"),
+])  # fmt: skip
+def test_loads_are_those_that_other_equations_state(old: str, new: str, tmp_path: Path) -> None:
+    right = judged(tmp_path, WHEEL)[2:]
+    assert [one.verdict for one in right] == ["verified"] * 4
+    found = judged(tmp_path, WHEEL.replace(old, new, 1))[2:]
+    assert [one.verdict for one in found] == ["verified"] * 2 + ["wrong", "verified"]
+    assert found[2].correction.replace(" ", "") == right[2].latex.replace(" ", "")
+
+
+def test_of_two_equations_with_contrary_loads_none_is_wrong(tmp_path: Path) -> None:
+    text, *_ = WHEEL.partition(r"$$\ddot\beta")
+    found = judged(tmp_path, text.replace(r"\sin\alpha - \tau", r"\sin\alpha + \tau"))[2:]
+    assert "wrong" not in [one.verdict for one in found]
+
+
+def test_a_rate_is_no_applied_force(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 m\dot r^2$$ $$V = m g r$$ $$m\ddot r = - m g$$
+$$m\ddot r - m r\dot\theta^2 = - m g$$"""
+    assert [one.verdict for one in judged(tmp_path, text)[2:]] == ["verified", "context"]

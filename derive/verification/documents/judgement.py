@@ -212,7 +212,8 @@ def _judge(
                 break
             candidate = found.match.candidate
             moving.update(candidate.coordinates)
-            own = found.judges.verdicts(candidate)
+            judges = found.judges
+            own = judges.judge(candidate).with_loads(judges.verdicts(candidate))
             is_stated, is_partial = hints is not None, work.left < 0
             verdicts = [*weighed(own, candidate, found.contradictions, is_stated, is_partial)]
             if not titles or any(result.is_understood for _, result in verdicts):
@@ -220,7 +221,7 @@ def _judge(
                 conventions.append(convention(candidate))
             elsewhere = {*statements.formulas} - {*remaining}
             is_known = candidate.basis == "catalogue" and hints is None
-            letters = found.judges.letters
+            letters = judges.letters
             verdicts = [*_without_foreign(verdicts, letters, elsewhere, is_known)]
             contrary = [*alternatives(found, verdicts, written)]
             others += contrary

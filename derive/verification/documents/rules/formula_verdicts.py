@@ -13,8 +13,17 @@ from derive.formulas.zero import vanishes
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
-from derive.verification.documents.rules.consequences import UNDECIDED, Consequences, opposed
+from derive.verification.documents.rules.consequences import (
+    UNDECIDED,
+    Consequences,
+    WithVerdict,
+    opposed,
+)
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
+from derive.verification.documents.rules.evidence.stated_loads import (
+    AS_FORCES,
+    with_contrary_loads,
+)
 from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
@@ -96,6 +105,10 @@ class Judge:
         judged = [(formula, self.verdict(formula)) for formula in formulas]
         return Consequences(self._namespace).marked(judged)
 
+    def with_loads(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
+        """The verdicts, with `wrong` for an equation whose loads contradict those of others."""
+        return with_contrary_loads(self._namespace, self._linear, verdicts)
+
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
         if formula not in self._judged:
@@ -146,7 +159,7 @@ class Judge:
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         loads = unknown or self._loads.own(formula)
         if loads and self._loads.explain(formula, loads):
-            return plain("verified", formula, f"with {', '.join(loads)} as applied forces")
+            return plain("verified", formula, f"with {', '.join(loads)} {AS_FORCES}")
         if unknown and self._amplitudes.holds(formula):
             return plain("verified", formula, "with the stated functions of time")
         if loads and self._is_stated and (result := self._loads.beside(formula, loads)) is not None:

@@ -4,9 +4,10 @@ import re
 import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
+from copy import copy
 from dataclasses import replace
 from itertools import takewhile
-from typing import Any
+from typing import Any, Self
 
 import sympy as sp
 
@@ -121,6 +122,16 @@ class DocumentNamespace:
         for name, value in values.items():
             self._set(name, value)
         self.model = self.model.of(self.derivation, self.names)
+
+    def with_forces(self, forces: Sequence[sp.Expr], letters: Mapping[str, sp.Symbol]) -> Self:
+        """A copy with further applied forces, and their letters."""
+        result, system = copy(self), _with_constants(self._system, letters.values())
+        total = [own + one for own, one in zip(system.forces, forces, strict=True)]
+        result._system = replace(system, forces=tuple(total))
+        result.derivation = Derivation(result._system)
+        result.names = {**self.names, **letters}
+        result.model = self.model.of(result.derivation, result.names)
+        return result
 
     def _special_values(
         self, formulas: Sequence[DocumentFormula]
@@ -355,7 +366,7 @@ class DocumentNamespace:
 
         This is a reaction, such as a tension: by its value that equation would hold, and not the
         others where one of them is wrong. Without accelerations, the equation has a term with it
-        and velocities; what has velocities can be an abbreviation elsewhere.
+        and velocities alone; what has velocities can be an abbreviation elsewhere.
         """
         name, system = formula.subject, self._system
         if not depends_on(value, (*system.qdot, *system.qddot)):
@@ -376,8 +387,8 @@ class DocumentNamespace:
                            for one in (formula.sides[0], formula.sides[-1]))  # fmt: skip
             factor = (first - last).diff(letter)
             is_constant = factor != 0 and not depends_on(factor, (letter, *self._system.q))
-            moving = (*self._system.qdot, *self._system.qddot)
-            return is_constant and depends_on(first - last, moving)
+            has_rates = depends_on(first - last, self._system.qdot)
+            return is_constant and has_rates and not depends_on(first - last, self._system.qddot)
         return False
 
     def _add(self, name: str, value: Value) -> None:

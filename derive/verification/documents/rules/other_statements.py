@@ -284,8 +284,8 @@ class AppliedLoads:
     def explain(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
         """Whether a formula is an equation of motion but for terms with these letters."""
         system, letters = self._namespace.derivation.system, self._namespace.letters
-        if {*loads} & {*letters.multipliers}:  # all reactions would be correct
-            return False
+        if {*loads} & {*letters.multipliers} or any(map(order, loads)):
+            return False  # all reactions would be correct, and no rate is a force
         if {*map(stem, loads)} & letters.elsewhere or self._are_constants(formula, loads):
             return False
         energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
