@@ -37,6 +37,24 @@ def test_a_frequency_is_that_of_small_motions(formula: str, verdict: str, tmp_pa
     assert judged(tmp_path, PENDULUM % formula)[-1].verdict == verdict
 
 
+@pytest.mark.parametrize(("first", "second", "expected"), [
+    (r"\omega_2 = \sqrt{\frac{3 k}{m}}", r"\omega_2^2 = 3k/m", ["verified", "verified"]),
+    (r"\omega_2 = \sqrt{\frac{2 k}{m}}", r"\omega_2^2 = 3k/m", ["wrong", "verified"]),
+    (r"\omega_2 = \sqrt{\frac{2 k}{m}}", r"\omega_1^2 = k/m", ["definition", "verified"]),
+])  # fmt: skip
+def test_a_frequency_that_is_stated_twice_is_wrong_once(
+    first: str, second: str, expected: list[str], tmp_path: Path
+) -> None:
+    text = rf"""Equal masses between equal springs
+$$m\ddot x_1 = -2k x_1 + k x_2$$ $$m\ddot x_2 = k x_1 - 2k x_2$$
+have two frequencies, of which the higher one is $${first}$$ and its mode has
+$${second}$$"""
+    found = judged(tmp_path, text)
+    assert [one.verdict for one in found[2:]] == expected
+    if "wrong" in expected:
+        assert found[2].correction == r"\omega_2 = \sqrt{\frac{3 k}{m}}"
+
+
 def test_simple_harmonic_motion_has_a_frequency(tmp_path: Path) -> None:
     text = PENDULUM.replace("oscillate with the frequency and the period", "lead to SHM with")
     assert judged(tmp_path, text % r"\omega^2 = \frac{2 g}{l}")[-1].verdict == "wrong"

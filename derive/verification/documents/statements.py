@@ -245,6 +245,8 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     for _ in range(3):
         for occurrence in occurrences:
             first, *others = occurrence.sides
+            if {*occurrence.relations} - {*EQUALITIES}:
+                continue  # an interval is no row
             if isinstance(first, Letter) and any(_is_matrix(side, matrices) for side in others):
                 matrices.add(plain.name(first))
     count = max(indices, default=1)

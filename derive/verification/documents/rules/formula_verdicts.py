@@ -102,7 +102,8 @@ class Judge:
         self, formulas: Sequence[DocumentFormula]
     ) -> list[tuple[DocumentFormula, SideVerdict]]:
         """The verdicts on formulas in their order, with what follows from wrong ones."""
-        judged = [(formula, self.verdict(formula)) for formula in formulas]
+        own = [(formula, self.verdict(formula)) for formula in formulas]
+        judged = self._frequencies.contradicted(own)
         return Consequences(self._namespace).marked(judged)
 
     def with_loads(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:

@@ -2,17 +2,19 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 import sympy as sp
 
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
-from derive.verification.documents.statements import DocumentFormula
+from derive.verification.documents.statements import SQUARE, DocumentFormula
 
 #: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
 FREQUENCY_LETTERS: dict[str, tuple[sp.Expr, int]] = {
@@ -70,6 +72,27 @@ class Frequencies:
         correct = factor * sp.sqrt(required) ** sign
         result = self._roles.value(side, name, correct**power)
         return result if result.verdict.verdict == "wrong" else None
+
+    def contradicted(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
+        """The verdicts, with `wrong` for a frequency to which another formula gives its value.
+
+        One term of it must be another one.
+        """
+        result, right = [*verdicts], dict[str, tuple[DocumentFormula, int]]()
+        for formula, one in verdicts:
+            if one.verdict.verdict == "verified" and OF_SMALL_MOTIONS in one.verdict.note:
+                right.setdefault(*_named(formula))
+        for number, (formula, one) in enumerate(verdicts):
+            name, (_, power) = _named(formula)
+            if one.verdict.verdict == "definition" and name and name in right:
+                other, exponent = right[name]
+                with suppress(ExpressionError, NotImplementedError):
+                    value = self._namespace.value(other.sides[-1].text)
+                    correct = value ** sp.Rational(power, exponent)
+                    own = self._roles.value(formula.sides[-1], name, correct)
+                    if own.verdict.verdict == "wrong" and len(own.verdict.corrections) == 1:
+                        result[number] = formula, own
+        return result
 
     def determining(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
         """The verdict on an equation for frequencies, such as (2*k - m*omega**2)**2 - k**2 = 0.
@@ -129,6 +152,12 @@ class Frequencies:
         force = -d.lagrangian.subs(v, 0).diff(q)
         is_known = bool(force) and sp.simplify(force / force.diff(q).subs(q, 0)) in (q, sp.sin(q))
         return self._linear.is_origin and is_known and not square.could_extract_minus_sign()
+
+
+def _named(formula: DocumentFormula) -> tuple[str, tuple[DocumentFormula, int]]:
+    """The name to a power of which a formula gives a value, with the formula and the power."""
+    square = SQUARE.fullmatch(formula.sides[0].text)
+    return (square[1], (formula, 2)) if square else (formula.subject, (formula, 1))
 
 
 def _divides(one: sp.Poly, other: sp.Poly) -> bool:

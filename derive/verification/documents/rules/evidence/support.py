@@ -24,6 +24,8 @@ from derive.verification.judging.motion_verdicts import NOT_LINEAR
 OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
 #: Formulas that hold for each that no slip explains, so that these are wrong.
 MANY = 4
+#: Formulas that do not hold, which can be slips even if as few hold.
+FEW = 3
 #: Letters outside of wrong terms from which on a formula speaks for a system by itself.
 AGREEING = 6
 
@@ -65,6 +67,11 @@ class Support:
         is_stated = self.holding > 0 or self._candidate.basis == "positions"
         are_few = len(self.independent) == 1 or self._are_few
         return is_stated and are_few and not undecided
+
+    @property
+    def is_minor(self) -> bool:
+        """Whether many formulas do not hold, more than do: most are of another case."""
+        return len(self.independent) > max(self.holding, FEW)
 
     @cached_property
     def is_weak(self) -> bool:

@@ -189,6 +189,8 @@ class _Evidence:
             or exchanges_loads(result, self._candidate)
         ):
             return UNSUPPORTED
+        if self._candidate.basis == "energies" and self._support.is_minor:
+            return other_case
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
         if not self._is_stated and (doubt := self._contrary.doubt(number)):
