@@ -515,3 +515,21 @@ def test_potentials_of_central_forces_are_found_and_of_others_are_not() -> None:
         for q, slope in zip((x, y), gradient, strict=True):
             assert abs((V.diff(q) - slope).subs({x: 2, y: 3, a: 5, k: 7}).evalf(30)) < 1e-25
         assert potential_of([gradient[0], 2 * gradient[1]], [x, y]) is None
+
+
+#: Masses between springs, then equal ones.
+EQUAL = r"""
+$$m_1\ddot x_1 = -k_1 x_1 + k_2(x_2 - x_1)$$
+$$m_2\ddot x_2 = -k_2(x_2 - x_1) - k_3 x_2 = k_2 x_1 - (%s + k_3) x_2$$
+$$m_1\ddot x_1 + m_2\ddot x_2 = -k_1 x_1 - k_3 x_2$$
+Let %s and $k_1 = k_2 = k_3 = k$, so that
+$$m\ddot x_1 = -2 k x_1 + k x_2$$ $$m\ddot x_2 = k x_1 - 2 k x_2$$"""
+
+
+@pytest.mark.parametrize("masses", ["$m_1 = m_2 = m$", "$m_1 = m$, $m_2 = m$"])
+def test_formulas_before_equal_parameters_hold_for_any(masses: str, tmp_path: Path) -> None:
+    right = judged(tmp_path, EQUAL % ("k_2", masses)).formulas
+    assert {one.verdict for one in right} == {"definition", "verified"}
+    found = judged(tmp_path, EQUAL % ("k_1", masses)).formulas
+    assert [one.correction for one in found if one.verdict == "wrong"] == [right[1].latex]
+    assert [one.verdict for one in found].count("wrong") == 1

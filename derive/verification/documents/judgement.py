@@ -71,6 +71,7 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
     Translated,
+    general_statements,
     notation,
     translated,
 )
@@ -136,6 +137,11 @@ def _by_subjects(
     parts = subjects(document.text, statements)
     work = Work()
     result = _judge(document, hints, occurrences, unreadable, statements, parts, work)
+    if general := general_statements(statements):
+        own = statements.part(general)
+        places = subjects(document.text, own)
+        other = _judge(document, hints, occurrences, unreadable, own, places, work)
+        result = _with_general(result, other)
     if hints or all(one.verdict in CORRECT for one in result.formulas):
         return result
     others = restated_subjects(document.text, statements)
@@ -149,6 +155,16 @@ def _by_subjects(
             return _undisputed(other, result)
         return _undisputed(result, other)
     return result
+
+
+def _with_general(verdicts: DocumentVerdicts, general: DocumentVerdicts) -> DocumentVerdicts:
+    """The verdicts, with those on formulas that are wrong but for parameters that are equal."""
+    held = {one.span for one in verdicts.formulas if one.verdict in CORRECT}
+    wrong = {one.span: one for one in general.formulas if one.verdict == "wrong"}
+    if len(wrong) > _holding(general):
+        return verdicts
+    own = {span: one for span, one in wrong.items() if span in held}
+    return replace(verdicts, formulas=tuple(own.get(one.span, one) for one in verdicts.formulas))
 
 
 def _undisputed(verdicts: DocumentVerdicts, others: DocumentVerdicts) -> DocumentVerdicts:

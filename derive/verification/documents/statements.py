@@ -326,6 +326,22 @@ def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
     return sorted(formulas, key=lambda one: one.is_value)
 
 
+def general_statements(statements: Translated) -> tuple[DocumentFormula, ...]:
+    """The formulas before one that sets parameters in them equal; nothing if none does.
+
+    Such as m_1 = m_2 = m: where this holds, they cannot be told from each other.
+    """
+    formulas = statements.formulas
+    moving = {stem(word) for one in formulas for word in one.words if order(word)}
+    for number, formula in enumerate(formulas):
+        names = {side.text for side in formula.sides}
+        used = [names.intersection(one.words) for one in formulas[:number]]
+        is_equality = {*formula.relations} == {"="} and names.isdisjoint(moving)
+        if is_equality and all(map(str.isidentifier, names)) and max(map(len, used), default=0) > 1:
+            return formulas[:number]
+    return ()
+
+
 def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     """Names that a formula can define, and their formulas."""
     first, *others = formula.sides
