@@ -4,7 +4,8 @@ A mistake is a change of one operator, number or condition in a line of Python o
 random in every room. A first run of the tests on a copy of the project, in which each chosen place
 reports when it is reached, yields the tests that reach it. Each mistake is then planted in another
 copy, where these tests run, and after them those of its room. With ``--long``, mistakes that none
-of them notices are tried with the long tests of the room, and with the long cases of these tests.
+of them notices are tried with the long tests of the room, with the long cases of these tests, and
+with the long tests of their files, if few other places are reached by them.
 Reported are the mistakes that no test notices. ``make mutants`` runs this.
 """
 
@@ -30,6 +31,8 @@ ROOT = Path(__file__).parents[1]
 TIMEOUT = 100
 #: Most tests of a line, half of them those that reach few other lines, half those that reach many.
 MOST_TESTS = 120
+#: Most of these whose files are run with all their long tests.
+MOST_FILES = 10
 #: Options for the tests that are in the long part alone.
 LONG = ("--long", "-m", "long and not campaign")
 #: Exit codes of pytest: all tests passed, and there was none.
@@ -339,8 +342,11 @@ def is_noticed(mutant: Mutant, tests: Sequence[str], project: Path, options: Seq
     selected.write_text("\n".join(tests), encoding="utf-8")
     reached.mkdir(exist_ok=True)
     room = project / "tests" / mutant.folder
-    of_line = {"SELECTED": str(selected)}, sorted({test.partition("::")[0] for test in tests})
-    for chosen, files in (of_line, ({}, [str(room)] * room.is_dir())):
+    of_tests = [test.partition("::")[0] for test in tests]
+    parts = [({"SELECTED": str(selected)}, sorted({*of_tests})), ({}, [str(room)] * room.is_dir())]
+    if options:  # the long tests beside short ones that reach the line and few others
+        parts.append(({}, sorted({*of_tests[:MOST_FILES]})))
+    for chosen, files in parts:
         if not files:
             continue
         failed = reached / "failed"

@@ -305,3 +305,11 @@ def test_twice_the_kinetic_energy_is_stated(tmp_path: Path, factor: str, verdict
     text = rf"""$$2T = {factor} m l^2\dot\theta^2$$ $$V = -m g l\cos\theta$$
     $$\ddot\theta = -\frac gl\sin\theta$$"""
     assert verdicts(tmp_path, text) == [verdict, "verified", "verified"]
+
+
+def test_a_coordinate_can_have_a_reserved_name(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m l^2\dot\lambda^2 + m g l\cos\lambda$$
+$$m l^2\ddot\lambda = -m g l\sin\lambda$$ $$p = m l^2\dot\lambda$$"""
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    document = judge_document(read_document(tmp_path / "a.md"))
+    assert [one.verdict for one in document.formulas] == ["verified"] * 3
