@@ -118,7 +118,7 @@ class ExportedProgram:
                 name = called(node)
                 routine = self.routines.get(name) or routine
                 return (routine.returns or "float") if name in self.routines else "float"
-            case ast.BinOp(left=ast.List()):
+            case ast.BinOp(left=ast.List(), op=ast.Mult()):
                 return "vector"
             case ast.BinOp(left=left, right=right):
                 types = {self.type_of(left, routine), self.type_of(right, routine)}
