@@ -59,6 +59,7 @@ MOTIONS: dict[str, tuple[Any, ...]] = {
     "splitting": (hh, (0, 40), (0.1, 0.2, 0.3, 0.2), {}, {"method": "leapfrog8", "h": 0.3}),
     "implicit": (elastic, (0, 0.4), SWING, STIFF, {"method": "radau5"}),
     "variable order": (elastic, (0, 0.4), SWING, STIFF, {"method": "radau", "rtol": 1e-6}),
+    "implicit, absolute": (sp, (0, 5), (0, 20), {}, {"method": "radau5", "rtol": 0, "atol": 1.5}),
     "implicit, fixed": (elastic, (0, 3), SWING, STIFF, {"method": "gauss2", "h": 0.1}),
     "parallel": (dp, (0, 9), REPORT, {}, {"method": "gauss8"}),
     "parallel, loose": (dp, (0, 9), REPORT, {}, {"method": "gauss4", "rtol": 1e-4, "atol": 1e-4}),
