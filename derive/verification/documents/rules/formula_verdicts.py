@@ -159,7 +159,7 @@ class Judge:
         if unknown and self._is_identity(formula, unknown):
             return plain("verified", formula, f"for any {', '.join(unknown)}")
         loads = unknown or self._loads.own(formula)
-        if loads and self._loads.explain(formula, loads):
+        if loads and self._loads.complete(formula, loads):
             return plain("verified", formula, f"with {', '.join(loads)} {AS_FORCES}")
         if unknown and self._amplitudes.holds(formula):
             return plain("verified", formula, "with the stated functions of time")

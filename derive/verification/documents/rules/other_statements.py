@@ -281,7 +281,7 @@ class AppliedLoads:
         is_equation = 2 in map(order, formula.words) or formula.sides[0].text.startswith("ddt(")
         return [last] * (is_load and is_equation)
 
-    def explain(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
+    def complete(self, formula: DocumentFormula, loads: Sequence[str]) -> bool:
         """Whether a formula is an equation of motion but for terms with these letters."""
         system, letters = self._namespace.derivation.system, self._namespace.letters
         if {*loads} & {*letters.multipliers} or any(map(order, loads)):
