@@ -46,16 +46,21 @@ def test_operations_grow_linearly(name: str, *, relative: bool) -> None:
     assert ten < 750
 
 
-@pytest.mark.parametrize(("system", "last"), [
-    (trees.branching, "a1 + a2 + a3 + a4"),
-    (trees.closed, "a1 + a2 + a3 + a4"),
-    (trees.sliding, "s4"),
+@pytest.mark.parametrize(("system", "last", "updates"), [
+    (trees.branching, "a1 + a2 + a3 + a4", 7 * 2**2),
+    (trees.closed, "a1 + a2 + a3 + a4", 3 * 2**2),
+    (trees.sliding, "s4", 4 * 3**2 + 3 * 2**2),
 ])  # fmt: skip
-def test_branching_and_closed_chains_have_trees(system: System, last: str) -> None:
-    """Their values are compared with d'Alembert's principle in test_catalogue."""
+def test_branching_and_closed_chains_have_trees(system: System, last: str, updates: int) -> None:
+    """Their values are compared with d'Alembert's principle in test_catalogue.
+
+    Each elimination but that of the root changes the inertia along two directions, and the row of
+    a length that changes.
+    """
     tree = Derivation(system).tree
     assert tree is not None
     assert last in [variable.name for variable in tree.variables]
+    assert tree.updates == updates
 
 
 @pytest.mark.parametrize("relative", [False, True])
