@@ -20,6 +20,7 @@ from scipy.integrate import solve_ivp
 import generated.double_pendulum as dp
 from derive.verification.report.report_judgement import EQUATIONS
 from solvers.app.cli import main
+from solvers.app.commands.demo import _in_two_columns
 from solvers.app.demo import demo_page, equations_stage, motions_stage
 from solvers.app.demo.demo_page import write_page
 from solvers.app.demo.equations_stage import FUNCTIONS, generation
@@ -437,3 +438,12 @@ def test_the_page_is_written_atomically(demo: tuple[str, Path], tmp_path: Path) 
         write_page(tmp_path / "demo.html", {}, {})
     assert [path.name for path in tmp_path.iterdir()] == ["demo.html"]
     json.loads(re.findall(r'id="motions">(.*?)</script>', demo[1].read_text(encoding="utf-8"))[0])
+
+
+def test_columns_of_text_break_neither_names_nor_long_words() -> None:
+    words = ["Methods of", 40 * "ab", "are Euler-Lagrange's", "Dormand-Prince's"]
+    lines = [*_in_two_columns("motions", "2 s", [" ".join(words), "Another paragraph"])]
+    assert [line[13:] for line in lines] == [
+        words[0], "  " + words[1], "  " + " ".join(words[2:]), "Another paragraph"
+    ]  # fmt: skip
+    assert [line[:13].strip() for line in lines] == ["motions", "2 s", "", ""]

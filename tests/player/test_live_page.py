@@ -189,7 +189,7 @@ def test_a_motion_of_an_own_start_is_continued_from_there(
 def test_points_are_those_of_links_beside_the_masses(pages: Callable[[str], Path]) -> None:
     for scene, count in ((TOP, 4), ("report", 0)):
         text = pages(scene).read_text(encoding="utf-8")
-        assert f'"points": {count},' in text
+        assert f'"points":{count},' in text
 
 
 def test_a_step_that_is_too_large_is_reported_and_pages_are_small(
