@@ -217,13 +217,20 @@ def test_a_family_that_breaks_the_symmetry_branches_off() -> None:
     start = normal_mode_orbit(dp, rest, rest.modes[1], 0.9)
     found = []
     for orbit in (start, periodic_orbit(dp, start.y, start.period, {})):
-        (point,) = orbit_family(dp, orbit, bounds=(-60.0, -28.0)).special
+        parent = orbit_family(dp, orbit, bounds=(-60.0, -28.0))
+        (point,) = parent.special
         family = orbit_family(dp, point, bounds=(-60.0, 0.0), direction=1)
         assert family.orbits[0].energy == pytest.approx(-30.78800220, abs=1e-7)
         assert family.orbits[1].stability == "neutral"
         assert np.abs(family.y[2:, -1]).max() > 0.1  # not at rest
         found.append([special.orbit.energy for special in family.special])
     assert found[0] == pytest.approx(found[1], rel=1e-8)
+    # the figure marks the branch point, between two orbits
+    (axes,) = parent.figure("amplitude of theta1").axes
+    (marker,) = (line for line in axes.lines if len(line.get_xdata()) == 1)
+    beside = parent.amplitudes[0, [point.index, point.index + 1]]
+    assert marker.get_xdata()[0] == point.orbit.energy
+    assert beside.min() < marker.get_ydata()[0] < beside.max()
 
 
 def test_a_family_ends_at_the_longest_period() -> None:
