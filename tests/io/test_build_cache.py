@@ -52,6 +52,7 @@ def test_a_folder_is_built_once_and_holds_nothing_else(own_cache: Path) -> None:
     assert built_folder("one", unexpected) == folder == own_cache / "one"
     assert {path.name for path in folder.iterdir()} == {"file", DIGESTS}
     assert [path.name for path in own_cache.iterdir()] == ["one"]
+    assert folder.stat().st_mode & 0o777 == 0o700  # no other user may enter it
 
 
 def replace_by_pipe(path: Path) -> None:

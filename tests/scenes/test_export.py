@@ -19,7 +19,7 @@ from PIL import Image
 from solvers import SceneResult, load_scene, run_scene
 from solvers.app.cli import main
 from solvers.player import film
-from solvers.player.film import at, frame_times
+from solvers.player.film import at, check_export, frame_times
 
 BLUE = (0x00, 0x72, 0xB2)
 
@@ -64,6 +64,12 @@ def test_a_film_has_exact_times_and_the_right_speed(swing: SceneResult, tmp_path
     later = np.roll(rows, 1, axis=0)  # a frame too late
     assert np.abs(later @ np.linalg.lstsq(later, wanted, rcond=None)[0] - wanted).max() > 3
     assert [file.name for file in path.parent.iterdir()] == ["swing.gif"]
+
+
+def test_films_alone_have_a_largest_number_of_frames() -> None:
+    check_export(Path("motion.svg"), 1e6, 1.0)
+    with pytest.raises(ValueError, match="frames, up to"):
+        check_export(Path("motion.GIF"), 1e6, 1.0)
 
 
 @pytest.mark.parametrize(("duration", "speed", "count"), [
