@@ -22,6 +22,7 @@ from solvers.app.fitting import _model
 from solvers.equations.module import GeneratedModule
 from solvers.scenes.fitting import least_squares as shooting_steps
 from solvers.scenes.fitting import prediction
+from solvers.scenes.fitting.estimate import _parabolas
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.measurement import Outputs
 from solvers.scenes.fitting.multiple_shooting import (
@@ -311,10 +312,14 @@ def test_leverages_add_up_to_the_rank_that_exceeds_rounding() -> None:
     assert leverages(jacobian, triangle).sum() == pytest.approx(1.0)
 
 
+BETTER = (
+    "best, with 3 unknown parameters, predicts best; simpler models predict significantly worse"
+)
+
+
 @pytest.mark.parametrize(("close", "selected", "reason"), [
     (0.02, "close", "close, with 2 unknown parameters, predicts as well as best, within the error"),
-    (0.4, "best", "best, with 3 unknown parameters, predicts best; simpler models predict "
-     "significantly worse"),
+    (0.16, "best", BETTER), (0.4, "best", BETTER),
 ])  # fmt: skip
 def test_the_simplest_model_that_predicts_within_two_standard_errors_is_selected(
     close: float, selected: str, reason: str, monkeypatch: pytest.MonkeyPatch
@@ -344,3 +349,18 @@ def test_the_simplest_model_that_predicts_within_two_standard_errors_is_selected
     assert found.reason == reason
     alone = prediction.compared({"best": fits["best"]}, [(run, 100.0)])
     assert alone.reason == "best, with 3 unknown parameters, predicts best"
+
+
+def test_first_guesses_are_those_of_parabolas_through_seven_samples() -> None:
+    t = np.linspace(0.0, 3.0, 31)
+    values, slopes = _parabolas(t, t**3, np.array([0.0, 1.52, 3.0]))
+    for k, (first, begin) in enumerate(((0, 0.0), (12, 1.52), (24, 3.0))):
+        near = t[first : first + 7] - begin
+        quadratic = np.polyfit(near, (near + begin) ** 3, 2)  # by another program
+        assert (values[k], slopes[k]) == pytest.approx((quadratic[2], quadratic[1]), rel=1e-9)
+        assert abs(slopes[k] - 3 * begin**2) > 1e-3  # which is no cubic
+
+
+def test_gaps_are_measured_in_the_scales_of_the_states() -> None:
+    linear: Any = SimpleNamespace(gaps=np.array([[2.0, -6.0], [0.0, 3.0]]))
+    assert shooting_steps._gaps(linear, np.array([2.0, 3.0])) == pytest.approx(1 + 2 + 1)
