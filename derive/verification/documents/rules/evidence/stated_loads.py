@@ -28,6 +28,11 @@ from derive.verification.documents.statements import WORD, DocumentFormula
 AS_FORCES = "as applied forces"
 #: The largest difference of values of order 1 that counts as none.
 CLOSE = 1e-9
+#: Why an equation has no values: what is not understood, or a mass matrix that is singular.
+FAILURES = (
+    ExpressionError, NotImplementedError, TypeError, ValueError, ArithmeticError,
+    np.linalg.LinAlgError,
+)  # fmt: skip
 #: The fewest equations of which one can contradict the others.
 FEWEST = 3
 
@@ -112,7 +117,7 @@ def _equations(
         is_equation = is_exact and 2 in map(order, formula.words)
         if not (has_loads or is_equation):
             continue
-        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+        with suppress(*FAILURES):
             left, right = (
                 parse(side.text, names) for side in (formula.sides[0], formula.sides[-1])
             )
@@ -180,7 +185,7 @@ def _verdict(
     """The verdict by stated forces, if one term of the equation is wrong."""
     own = namespace.with_forces(forces, loads)
     comparison = SideComparison(own, linear, Roles(own, linear))
-    with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+    with suppress(*FAILURES):
         left, right = (own.value(one.text) for one in (formula.sides[0], formula.sides[-1]))
         result = comparison.compared(formula, formula.sides[0], formula.sides[-1], left, right)
         terms = result.verdict.corrections
