@@ -21,7 +21,7 @@ from derive.verification.judging.verdict import Correction
 
 def formulas(*latex: str) -> tuple[DocumentFormula, ...]:
     places = [
-        Occurrence(line, line, 1, 0, 0, one, tree)
+        Occurrence(line, line, 1, 0, 100 * line, one, tree)
         for line, one in enumerate(latex, 1)
         for tree in statements_of(one)
     ]
@@ -72,6 +72,10 @@ def test_a_coordinate_of_a_known_system_is_not_defined_by_those_of_others(
     assert {*letters.coordinates} == {"w", "phi"}
     wrong = [with_verdict(energy, "wrong")]
     assert verdicts([*_without_foreign(wrong, letters, {other, rates}, is_known)]) == [expected]
+    behind = replace(other, occurrence=replace(other.occurrence, start=1000))  # another section
+    assert verdicts([*_without_foreign(wrong, letters, {behind, rates}, is_known)]) == [
+        ("wrong", "")
+    ]
 
 
 def stated(name: str, stating: frozenset[int] = frozenset()) -> SystemCandidate:

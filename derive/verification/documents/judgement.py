@@ -329,25 +329,27 @@ def _without_foreign(
 ) -> Iterator[WithVerdict]:
     """The verdicts, with `context` for wrong formulas with letters of another meaning.
 
-    Other parts of the document define parameters by coordinates, or coordinates of a known system
-    by those of another one.
+    Other parts of the document define parameters by coordinates, or before the formula coordinates
+    of a known system by those of another one.
     """
-    lines = {
-        one.subject: one.occurrence.line
+    definitions = {
+        one.subject: one.occurrence
         for one in others
         if one.subject in letters.parameters and {*one.words} & {*letters.coordinates}
     }
     foreign = {stem(word) for one in others for word in one.words if order(word) and is_known}
     foreign -= {*letters.coordinates}
-    lines |= {
-        one.subject: one.occurrence.line
+    before = {
+        one.subject: one.occurrence
         for one in others
         if one.subject in letters.coordinates and foreign.intersection(one.words)
     }
     for formula, result in verdicts:
-        defined = [word for word in formula.words if word in lines and word != formula.subject]
-        if defined and result.verdict.verdict == "wrong":
-            note = f"line {lines[defined[0]]} defines {defined[0]} for another system"
+        start = formula.occurrence.start
+        own = {name: one for name, one in before.items() if one.start < start} | definitions
+        words = [word for word in formula.words if word in own and word != formula.subject]
+        if words and result.verdict.verdict == "wrong":
+            note = f"line {own[words[0]].line} defines {words[0]} for another system"
             result = plain("context", formula, note)
         yield formula, result
 
