@@ -137,6 +137,16 @@ def test_of_two_equations_with_contrary_loads_none_is_wrong(tmp_path: Path) -> N
     assert "wrong" not in [one.verdict for one in found]
 
 
+@pytest.mark.parametrize("load", ["R", "F_r"])  # the former can be a length
+def test_a_load_with_another_sign_can_be_of_another_case(load: str, tmp_path: Path) -> None:
+    text = rf"""
+$$T = \frac12 m\dot s^2$$ $$V = m g s\sin\alpha$$
+Upwards, $$m\ddot s = -m g\sin\alpha - {load}$$
+and thus $$\ddot s = -g\sin\alpha - \frac{{{load}}}{{m}}$$
+Downwards, $$m\ddot s = -m g\sin\alpha + {load}$$"""
+    assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
+
+
 def test_a_rate_is_no_applied_force(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 m\dot r^2$$ $$V = m g r$$ $$m\ddot r = - m g$$

@@ -97,6 +97,20 @@ def test_equations_of_a_further_coordinate_refute_no_energy(energy: str, expecte
     assert judged[-1][1].verdict.verdict == expected
 
 
+@pytest.mark.parametrize(("holding", "expected"), [(3, "context"), (4, "wrong")])
+def test_energies_of_which_most_formulas_are_another_case_refute_none(
+    holding: int, expected: str
+) -> None:
+    latex = (rf"{n} m\ddot s = - {n} k s" for n in range(2, 6 + holding))
+    energy, *equations = formulas(r"T = m\dot s^2", *latex)
+    results = [with_verdict(energy, "definition")]
+    results += [with_correction(one, "k", "2*k") for one in equations[:4]]
+    results += [with_verdict(one, "verified") for one in equations[4:]]
+    candidate = stated("stated_energies", frozenset({0}))
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert {one.verdict.verdict for _, one in judged[1:5]} == {expected}
+
+
 def known(name: str, coordinates: tuple[str, ...], **letters: str) -> SystemCandidate:
     """A candidate of a known system in its usual form."""
     count = range(len(coordinates))

@@ -1,12 +1,13 @@
 """Values and relations that documents state beside a motion, and terms of their Lagrangians."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import sympy as sp
 
 from derive.reading.document_formats import read_document
-from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.judgement import _with_general, judge_document
 from derive.verification.documents.letters.implied_energies import potential_of
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts, FormulaVerdict
 
@@ -533,3 +534,20 @@ def test_formulas_before_equal_parameters_hold_for_any(masses: str, tmp_path: Pa
     found = judged(tmp_path, EQUAL % ("k_1", masses)).formulas
     assert [one.correction for one in found if one.verdict == "wrong"] == [right[1].latex]
     assert [one.verdict for one in found].count("wrong") == 1
+
+
+def test_a_part_before_equal_parameters_of_which_less_holds_refutes_nothing(
+    tmp_path: Path,
+) -> None:
+    document = judged(tmp_path, EQUAL % ("k_2", "$m_1 = m_2 = m$"))
+    kinds = ("wrong", "verified", "wrong")
+    pairs = zip(document.formulas[:3], kinds, strict=True)
+    parts = tuple(replace(one, verdict=kind) for one, kind in pairs)
+    assert _with_general(document, replace(document, formulas=parts)) == document
+    held = replace(document, formulas=parts[:2])
+    assert _with_general(document, held).formulas == (parts[0], *document.formulas[1:])
+
+
+def test_an_interval_is_no_row(tmp_path: Path) -> None:
+    text = r"""For $r \in [a, 2a]$ $$E = \frac12 m\dot r^2 + \frac12 k r^2$$ $$m\ddot r = -k r$$"""
+    assert verdicts(tmp_path, text)[-1] == "verified"

@@ -82,6 +82,22 @@ def added(formula: DocumentFormula, result: SideVerdict) -> set[str]:
     return names - {*formula.words, *FUNCTIONS}
 
 
+def adds_constant_force(
+    formula: DocumentFormula, result: SideVerdict, candidate: SystemCandidate
+) -> bool:
+    """Whether an energy lacks the potential of a letter that equations have as a force, R s.
+
+    Such a letter stands alone in equations, with a sign of the direction of the motion perhaps.
+    """
+    terms = result.verdict.corrections
+    if not candidate.is_of_equations or len(terms) != 1 or terms[0].wrong:
+        return False
+    words = WORD.findall(terms[0].correct)
+    letters = added(formula, result)
+    is_linear = len(words) == 2 and "**" not in terms[0].correct
+    return is_linear and len(letters) == 1 and not {*words} - letters - {*candidate.coordinates}
+
+
 def _of_drives(candidate: SystemCandidate) -> Iterator[str]:
     """The letters of friction and of given functions of time in a system."""
     system = candidate.system

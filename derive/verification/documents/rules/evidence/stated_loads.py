@@ -62,7 +62,8 @@ def with_contrary_loads(
 ) -> list[WithVerdict]:
     """The verdicts, with `wrong` for an equation whose loads contradict those of all others.
 
-    One term of it must be another one by the forces that the others state. The equation of a
+    One term of it must be another one by the forces that the others state, and it combines those of
+    several coordinates: with other forces, that of one can be of another case. The equation of a
     coordinate has no load if it holds without one, and no other has one.
     """
     result = [*verdicts]
@@ -89,10 +90,9 @@ def with_contrary_loads(
     contrary = [
         one for k, one in enumerate(equations)
         if one.has_loads
-        and _agree(rest := [*equations[:k], *equations[k + 1 :]])
-        and _determine(rest, one)
+        and _agree([*equations[:k], *equations[k + 1 :]])
     ]  # fmt: skip
-    if len(contrary) == 1:
+    if len(contrary) == 1 and contrary[0].coordinate is None:
         (wrong,) = contrary
         forces = _forces(namespace, [one for one in equations if one is not wrong])
         formula, _ = verdicts[wrong.number]
@@ -154,13 +154,6 @@ def _residual(factors: Array, values: Array) -> float:
     factors, values = factors / sizes[:, np.newaxis], values / sizes
     solution = np.linalg.lstsq(factors, values, rcond=None)[0]
     return float(np.abs(factors @ solution - values).max())
-
-
-def _determine(equations: Sequence[_LoadEquation], other: _LoadEquation) -> bool:
-    """Whether equations determine the loads of another one."""
-    rows = np.array([one.factors[0] for one in equations])
-    with_other = np.array([*rows, other.factors[0]])
-    return bool(np.linalg.matrix_rank(rows) == np.linalg.matrix_rank(with_other))
 
 
 def _forces(namespace: DocumentNamespace, equations: Sequence[_LoadEquation]) -> list[sp.Expr]:

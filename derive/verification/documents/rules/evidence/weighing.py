@@ -28,6 +28,7 @@ from derive.verification.documents.rules.consequences import (
 )
 from derive.verification.documents.rules.evidence.contrary_statements import ContraryStatements
 from derive.verification.documents.rules.evidence.loads import (
+    adds_constant_force,
     adds_letters,
     exchanges_loads,
     is_driven,
@@ -213,7 +214,8 @@ class _Evidence:
         ):
             return other_case
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
-            return other_case if is_driven(self._candidate) else ""
+            has_load = adds_constant_force(formula, result, self._candidate)
+            return other_case if has_load or is_driven(self._candidate) else ""
         if self._is_tie(result) or adds_letters(formula, result, self._candidate):
             return other_case
         return ""
