@@ -345,7 +345,6 @@ $$ I_1 \Omega^2 \cdot 0 - I_3 n \Omega + M g l = 0 $$
 """
 
 
-@pytest.mark.long("other tests reach its code")
 def test_formulas_of_special_motions_are_no_evidence_against_energies(tmp_path: Path) -> None:
     slip = TOP.replace(r"\dot\phi \sin^2", r"\dot\phi \sin")
     for text, number in ((TOP, -1), (slip, 3)):

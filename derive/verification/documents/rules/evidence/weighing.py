@@ -190,7 +190,8 @@ class _Evidence:
             or exchanges_loads(result, self._candidate)
         ):
             return UNSUPPORTED
-        if self._candidate.basis == "energies" and self._support.is_minor:
+        is_by_one = self._candidate.basis == "energies" and len(self._candidate.stating) == 1
+        if is_by_one and self._support.is_minor:  # of a total energy, L or H alone
             return other_case
         if not (self._is_stated or self._support.is_explained(result)):
             return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
