@@ -329,7 +329,7 @@ def values_last(formulas: Iterable[DocumentFormula]) -> list[DocumentFormula]:
 def general_statements(statements: Translated) -> tuple[DocumentFormula, ...]:
     """The formulas before one that sets parameters in them equal; nothing if none does.
 
-    Such as m_1 = m_2 = m: where this holds, they cannot be told from each other.
+    Such as m_1 = m_2 = m, with which an exchange of their indices changes no value.
     """
     formulas = statements.formulas
     moving = {stem(word) for one in formulas for word in one.words if order(word)}
