@@ -147,6 +147,17 @@ Downwards, $$m\ddot s = -m g\sin\alpha + {load}$$"""
     assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
 
 
+@pytest.mark.parametrize(("force", "term"), [("m g", "g m x"), ("k x^2", r"\frac{k x^3}{3}")])
+def test_equations_refute_an_energy_that_lacks_another_force(
+    force: str, term: str, tmp_path: Path
+) -> None:
+    text = rf"""
+$$T = \frac12 m\dot x^2$$ $$V = \frac12 c x^2$$ $$m\ddot x = -c x - {force}$$
+$$\ddot x = -\frac{{c}}{{m}} x - \frac{{{force}}}{{m}}$$ $$m\ddot x + c x + {force} = 0$$"""
+    _, energy, *_ = judged(tmp_path, text)
+    assert (energy.verdict, energy.correction.endswith(term)) == ("wrong", True)
+
+
 def test_a_rate_is_no_applied_force(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 m\dot r^2$$ $$V = m g r$$ $$m\ddot r = - m g$$
