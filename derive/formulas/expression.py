@@ -92,6 +92,9 @@ class _Evaluator:
                 return self._power(self.value(base), self.value(exponent))
             case ast.BinOp(op=ast.Add() | ast.Sub()):
                 terms = [sign * self.value(term) for term, sign in summands(node)]
+                if not all(isinstance(term, sp.MatrixBase) for term in terms):
+                    # a quadratic form beside numbers is one
+                    terms = [t[0] if getattr(t, "shape", ()) == (1, 1) else t for t in terms]
                 has_matrix = any(isinstance(term, sp.MatrixBase) for term in terms)
                 return reduce(operator.add, terms) if has_matrix else sp.Add(*terms)
             case ast.BinOp(left=left, op=ast.Mult(), right=right):

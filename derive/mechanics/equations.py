@@ -45,6 +45,15 @@ class Equations(Constraints):
             forces.append(collected(force, *state))
         return Matrix(forces)
 
+    @cached_property
+    def coriolis_matrix(self) -> Matrix:
+        """C(q, q̇) of M q̈ + C q̇ = Q - ∂V/∂q, of those with this product the usual one.
+
+        C_ij = Σ_k Γ_ijk v_k, with v the rates of all variables.
+        """
+        n, v = len(self.system.q), [*enumerate(self.rates)]
+        return Matrix(n, n, lambda i, j: sp.Add(*(self._christoffel(i, j, k) * r for k, r in v)))
+
     def _inertial(self, i: int) -> sp.Expr:
         """Σ Γ_ijk v_j v_k for the variable i."""
         v, n = self.rates, range(len(self.variables))

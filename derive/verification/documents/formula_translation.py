@@ -115,6 +115,7 @@ class LetterNotation:
     primed: frozenset[str] = frozenset()  # letters whose primes are rates beside dots of others
     calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
     factors: frozenset[str] = frozenset()  # identifiers before brackets that hold a column
+    columns: frozenset[str] = frozenset()  # functions that are columns, beside a scalar: g(q), g
 
 
 @dataclass
@@ -261,7 +262,7 @@ class FormulaTranslator:
         if self._is_function(node):
             if all(isinstance(one, Number) for one in node.arguments):
                 raise UntranslatableError("a value at a place")
-            return FormulaText(name)
+            return FormulaText(f"{name}_column" if name in self.notation.columns else name)
         return self._product([node.head, _in_brackets(node)])
 
     def _is_function(self, node: Application) -> bool:

@@ -241,6 +241,8 @@ def _best(
         if first and first.condition_count and not judges.has_motions(first):
             continue
         stated += [match for match in held if match.candidate.stating]
+        if not result and tried[0].basis == "energies":  # entries of matrices are not compared
+            stated.append(Match(tried[0], 0.0, 0, frozenset()))
         for match in held:
             (circular if match.is_circular else matches).append(match)
         if any(match.is_stated_by_positions or match.is_complete for match in result):

@@ -41,6 +41,8 @@ GRAVITY = "g"
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
+#: An entry of a matrix, and one of a matrix or column.
+MATRIX_ENTRY, INDEXED_ENTRY = (re.compile(rf"[A-Za-z]_?\d{one}") for one in (r"_?\d", r"(?:_?\d)?"))
 #: Words for quantities that do not change.
 CONSTANT = re.compile(r"[ck]onst(?:ante?)?|costante|cte|cste?", re.IGNORECASE)
 #: The name of one such quantity.
@@ -189,6 +191,10 @@ def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[Documen
 
 def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
     sides, relations = occurrence.sides, occurrence.relations
+    others = [k for k, one in enumerate(relations) if one not in EQUALITIES]
+    is_curvature = any(letter.primes > 1 for letter in letters(sides[0]))  # at a place, usually
+    if others and others[0] and not is_curvature:  # such as > 0 behind an equation
+        sides, relations = sides[: others[0] + 1], relations[: others[0]]
     if any(map(_is_at_one_time, sides)):
         raise UntranslatableError("it states a value at one time")
     index = next((one for one in INDICES if has_index(sides, one)), "")
@@ -223,8 +229,17 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
             names = {one.name for one in node.variables if isinstance(one, Letter)}
             varied.setdefault(plain.name(node.operand), {*dotted}).update(names)
     raised = {id(base) for tree in trees for base in _raised_rates(tree)}
-    if GRAVITY not in varied:
-        raised |= {id(one) for one in _factors_of_gravity(trees)}
+    behind_gravity = [] if GRAVITY in varied else [*_behind_gravity(trees)]
+    numbered = {one.name for one in everything if one.index.isdecimal()} & dotted
+    columns = {
+        GRAVITY
+        for one in behind_gravity
+        if isinstance(one.arguments[0], Letter)
+        and not one.arguments[0].index
+        and one.arguments[0].name in numbered
+    }
+    if not columns:
+        raised |= {id(one) for one in behind_gravity}
     functions = {
         name
         for tree in trees
@@ -259,6 +274,7 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         bool(indices) or len(dotted - generic) < 2,
         primed and not dotted,
         frozenset(dotted - marked if both else ()),
+        columns=frozenset(columns),
     )
 
 
@@ -281,8 +297,11 @@ def _raised_rates(tree: Node) -> Iterator[Application]:
                 yield node.base
 
 
-def _factors_of_gravity(trees: Sequence[Node]) -> Iterator[Application]:
-    """Coordinates in brackets behind g, ``m g(x)``, if it stands without brackets elsewhere."""
+def _behind_gravity(trees: Sequence[Node]) -> Iterator[Application]:
+    """Brackets behind g, if it stands without brackets elsewhere.
+
+    They hold a factor, as in ``m g(x)``, or a column of which g is a function, as in ``g(q)``.
+    """
     everything = [node for tree in trees for node in nodes(tree)]
     own = [
         one
@@ -347,6 +366,7 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     first, *others = formula.sides
     is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
     is_letter = not order(formula.subject) and not POINT.match(formula.subject)
+    is_letter &= not MATRIX_ENTRY.fullmatch(formula.subject)
     if formula.is_special_case or (is_zero and is_letter):
         return
     if formula.subject:
@@ -357,11 +377,28 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
         for side in others:
             for name, entry in zip(first.entries, side.entries, strict=False):
                 yield name.text, entry.text
+    yield from entries_of_chain(formula)
     last = formula.sides[-1].text
     if {*formula.relations} == {"="} and last.isidentifier():
         yield last, formula.sides[0].text
         # k_3 of k_1 = k_2 = k_3 = k
         yield from ((side.text, first.text) for side in others[1:-1] if side.text.isidentifier())
+
+
+def entries_of_chain(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
+    """Entries of matrices in the midst of a formula, and their values, which stand behind them.
+
+    M_21 is one in ``M_12 = M_21 = m*l``, and M_11 in ``M = [[M_11, M_12], ...] = [[m, 0], ...]``.
+    """
+    if {*formula.relations} != {"="}:
+        return
+    *inner, last = formula.sides[1:]
+    for side in inner:
+        if MATRIX_ENTRY.fullmatch(side.text):
+            yield side.text, last.text
+        for name, value in zip(side.entries, last.entries, strict=False):
+            if INDEXED_ENTRY.fullmatch(name.text):
+                yield name.text, value.text
 
 
 def without_unknown_terms(

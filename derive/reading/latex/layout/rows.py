@@ -142,6 +142,8 @@ def parts(tokens: list[Token]) -> list[Part]:
     at, row_is_empty = 0, True
     while at < len(tokens):
         token, part = tokens[at], result[-1]
+        if _is_implication(part, tokens, at):
+            token = Token(";", token.text, token.span)
         end = partner.get(at, 0)
         if end > at:
             part.tokens += tokens[at : end + 1]
@@ -167,6 +169,15 @@ def parts(tokens: list[Token]) -> list[Part]:
         if part.boundaries != {"&"}:
             row_has_relation = False
     return result
+
+
+def _is_implication(part: Part, tokens: list[Token], at: int) -> bool:
+    r"""Whether an arrow ``\to`` stands between two equations, unlike one to a limit."""
+    if tokens[at].kind != "relation" or tokens[at].text != "->" or not part.has_relation:
+        return False
+    row = takewhile(lambda token: token.kind not in SEPARATORS, tokens[at + 1 :])
+    behind = [token.text for token in row if token.kind == "relation"]
+    return behind[:1] == ["="]
 
 
 def _ends_sentence(tokens: list[Token], at: int) -> bool:

@@ -24,6 +24,7 @@ from derive.verification.documents.letters.document_system import derivation, is
 from derive.verification.documents.letters.implied_energies import (
     Energies,
     energies_of_hamiltonians,
+    energies_of_matrices,
 )
 from derive.verification.documents.letters.letters import Letters, energy_of_part
 from derive.verification.documents.statements import WORD, DocumentFormula, definitions
@@ -253,6 +254,7 @@ def stated_energies(
     yield from energies_of_hamiltonians(letters, formulas, values)
     if not kinetic:
         yield from _sums_of_parts(formulas, values)
+        yield from energies_of_matrices(letters, formulas, values, potential)
     if not potential:
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
 

@@ -1,5 +1,6 @@
-"""Energies that follow from a Hamiltonian that a document states, and potentials of forces."""
+"""Energies that follow from a Hamiltonian or matrices of a document, and potentials of forces."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
@@ -12,7 +13,7 @@ from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.system.symbols import acceleration, velocity
-from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.letters import ENTRY, Letters, composed
 from derive.verification.documents.statements import DocumentFormula, definitions
 
 #: Kinetic and potential energy, and the numbers of the formulas that state them.
@@ -88,6 +89,56 @@ def _hamiltonians(
         stating = {rates[f"{one}_dot"][1] for one in map(letters.momenta.get, momenta)}
         pairs = zip(momenta, gradient, strict=True)
         yield T + V, frozenset(stating | {rates[f"{p}_dot"][1] for p, one in pairs if one != 0})
+
+
+def energies_of_matrices(
+    letters: Letters,
+    formulas: Sequence[DocumentFormula],
+    names: Mapping[str, Value],
+    potentials: Sequence[tuple[sp.Expr, int]],
+) -> Iterator[Energies]:
+    """Yield the energies of a stated mass matrix and of stated potentials, or of a column G.
+
+    The matrix is that in M*q_ddot, and G is the gradient of a potential.
+    """
+    symbols = [names.get(q) for q in letters.ordered]
+    q = [one for one in symbols if isinstance(one, sp.Symbol)]
+    if not letters.column or len(q) != len(symbols):
+        return
+    v = sp.Matrix([velocity(one) for one in q])
+    accelerated = re.compile(rf"\b(\w+)\*{letters.column}_ddot\b")
+    texts = [side.text for one in formulas for side in one.sides]
+    for name in dict.fromkeys(match for text in texts for match in accelerated.findall(text)):
+        M, stating = _written_out(name, (len(q), len(q)), formulas, names)
+        if M is None or not M.is_symmetric() or M.free_symbols & {*v}:
+            continue
+        T = (v.T * M * v)[0, 0] / 2
+        for V, number in potentials:
+            yield T, V, stating | {number}
+        columns = (name for name, kind in letters.quantities.items() if kind == "gravity")
+        for column in dict.fromkeys((*columns, "G_column", "g_column")):
+            G, others = _written_out(column, (len(q), 1), formulas, names)
+            if G is not None and (V := potential_of(list(G), q)) is not None:
+                yield T, V, stating | others
+
+
+def _written_out(
+    name: str,
+    shape: tuple[int, int],
+    formulas: Sequence[DocumentFormula],
+    names: Mapping[str, Value],
+) -> tuple[sp.ImmutableDenseMatrix | None, frozenset[int]]:
+    """A matrix that a document states, or all of its entries, and the numbers of the formulas."""
+    value: object = names.get(name)
+    letter = name.removesuffix("_column")
+    stated = frozenset(k for k, one in enumerate(formulas) if one.subject == name)
+    if not isinstance(value, sp.MatrixBase):
+        value = dict(composed((name,), names, shape[0])).get(name)
+        entries = ((k, ENTRY.match(one.subject)) for k, one in enumerate(formulas))
+        stated = frozenset(k for k, entry in entries if entry and entry[1] == letter)
+    if not isinstance(value, sp.MatrixBase) or value.shape != shape:
+        return None, frozenset()
+    return sp.ImmutableDenseMatrix(value), stated
 
 
 def inertial(kinetic: sp.Expr, q: Sequence[sp.Symbol], index: int) -> sp.Expr:

@@ -31,10 +31,17 @@ from derive.verification.documents.letters.stated_constraints import (
     multipliers_of,
     stated_constraints,
 )
-from derive.verification.documents.statements import SQUARE, WORD, DocumentFormula
+from derive.verification.documents.statements import (
+    SQUARE,
+    WORD,
+    DocumentFormula,
+    entries_of_chain,
+)
 
 #: A letter with a number.
 INDEXED = re.compile(r"[A-Za-z]+_\d+")
+#: A product of two letters.
+PRODUCT = re.compile(r"\b(\w+)\*(\w+)\b")
 #: The sine or cosine of a difference of two angles.
 DIFFERENCE = re.compile(r"(?:sin|cos)\(\w+ - \w+\)")
 #: A number, perhaps with a unit.
@@ -72,7 +79,8 @@ def letters_of(
     ]
     functions = resting_functions(formulas, moving)
     quantities |= partners(quantities, functions)
-    columns = _columns(formulas, moving, matrices_of(formulas))
+    matrices = {*matrices_of(formulas), *matrices_by_entries(stems)}
+    columns = _columns(formulas, moving, matrices)
     generic = _generic(formulas, derivatives) | columns
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
@@ -177,16 +185,26 @@ def _generic(
 
 
 def _columns(
-    formulas: Iterable[DocumentFormula], moving: Sequence[str], matrices: Mapping[str, str]
+    formulas: Iterable[DocumentFormula], moving: Sequence[str], matrices: Collection[str]
 ) -> set[str]:
-    """Names such as x that stand for a column of x_1, x_2 ... beside a matrix alone: M*x_ddot.
+    """Names such as x that stand for a column of x_1, x_2 ... beside a matrix: M*x_ddot.
 
-    And those that are defined as a column of coordinates.
+    And those that are defined as a column of coordinates, or are one with another value, as x_d.
     """
     columns = {name for name in moving if f"{name}_1" in moving}
+    factors = {
+        stem(factor)
+        for formula in formulas
+        for matrix, factor in PRODUCT.findall(formula.text)
+        if matrix in matrices
+    }
     for formula in formulas:
-        if matrices.keys().isdisjoint(formula.words) and "[[" not in formula.text:
-            columns -= {stem(word) for word in formula.words}
+        if {*formula.words}.isdisjoint(matrices) and "[[" not in formula.text:
+            columns -= {stem(word) for word in formula.words} - factors
+    columns |= {
+        one for name in columns & factors for one in moving
+        if one.startswith(f"{name}_") and not INDEXED.match(one)
+    }  # fmt: skip
     for formula in formulas:
         entries = {one.text for one in formula.sides[-1].entries}
         if entries and formula.subject in moving and entries <= {*moving} - {formula.subject}:
@@ -247,6 +265,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
     mechanical = _mechanical(formulas, orders)
     equal = [{side.text for side in one.sides} for one in formulas]
     for formula in formulas:
+        defined.update(entry for entry, _ in entries_of_chain(formula))
         name = formula.subject
         others = {stem(word) for side in formula.sides[1:] for word in WORD.findall(side.text)}
         others -= OPERATORS

@@ -185,7 +185,8 @@ def energy_of_part(name: str) -> str | None:
     letter, _, index = name.partition("_")
     kind = KINDS_OF_ENERGIES.get(index[:1]) if letter == "E" else QUANTITIES.get(letter)
     is_part = kind in ("kinetic_energy", "potential_energy") and index not in TOTAL
-    return kind if is_part else None
+    is_derivative = kind == "potential_energy" and name.endswith("_prime")
+    return kind if is_part and not is_derivative else None
 
 
 def matrices_by_entries(names: Iterable[str]) -> frozenset[str]:

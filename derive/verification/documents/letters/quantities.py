@@ -16,6 +16,7 @@ from derive.verification.documents.letters.letters import (
     SQUARES,
     TOTAL,
     energy_of_part,
+    matrices_by_entries,
 )
 from derive.verification.documents.statements import GRAVITY, WORD, DocumentFormula
 
@@ -170,9 +171,10 @@ def _is_odd(text: str, rates: set[str]) -> bool:
     return bool(back) and all(one.is_number for one in values) and abs(sum(values)) < 1e-20
 
 
-def matrices_of(formulas: Iterable[DocumentFormula]) -> dict[str, str]:
-    """Names of the matrices of M q̈ + C q̇ = G that a document writes out."""
-    result: dict[str, str] = {}
+def matrices_of(formulas: Sequence[DocumentFormula]) -> dict[str, str]:
+    """Names of the matrices of M q̈ + C q̇ = G that a document writes out, or their entries."""
+    by_entries = {*matrices_by_entries(one.subject for one in formulas)} & {*MATRICES}
+    result = {letter: MATRICES[letter] for letter in by_entries if letter not in "Gg"}
     for formula in formulas:
         letter, _, index = formula.subject.removesuffix("_column").partition("_")
         count = max(len(side.entries) for side in formula.sides)
@@ -190,11 +192,13 @@ def routhians(formulas: Iterable[DocumentFormula], momenta: Mapping[str, str]) -
 
 
 def partners(quantities: Mapping[str, str], functions: Collection[str]) -> dict[str, str]:
-    """Potential energies P or Pi beside kinetic ones: functions of coordinates alone."""
+    """Potential energies P or Pi beside kinetic ones or matrices: functions of coordinates."""
     if "potential_energy" in quantities.values():
         return {}
     names = {partner for name, kind in quantities.items() if kind == "kinetic_energy"
              for partner in PARTNERS.get(name, ("Pi",))}  # fmt: skip
+    if "mass_matrix" in quantities.values():
+        names.update(*PARTNERS.values())
     return dict.fromkeys(names & {*functions}, "potential_energy")
 
 

@@ -187,6 +187,11 @@ class DocumentNamespace:
         column = self.letters.column
         if column and column not in self.all_names and len(order) == len(self.letters.ordered):
             self._add(column, sp.ImmutableDenseMatrix(order))
+        stated = {part for one in formulas for part in (one.subject, one.subject[:1])}
+        texts = (side.text for one in formulas for side in one.sides)
+        if column and "C" not in stated and any(f"C*{column}_dot" in text for text in texts):
+            rows = [self._system.q.index(q) for q in order]
+            self._add("C", self.derivation.coriolis_matrix.extract(rows, rows))
         for name in words:
             one = stem(name)
             if one.endswith("_column") and name == f"{one}_ddot" and one not in self.names:

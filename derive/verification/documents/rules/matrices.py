@@ -136,7 +136,10 @@ class DerivedMatrices:
         yield from (at_rest, -at_rest, forces - at_rest, at_rest - forces)
 
     def _coriolis(self, value: sp.MatrixBase) -> Required | None:
-        """C is not unique: C q̇ must be the forces of inertia that are quadratic in q̇."""
+        """C is not unique: C q̇ must be the forces of inertia that are quadratic in q̇.
+
+        Where it is not, entries that are those of Christoffel's symbols are correct.
+        """
         d, system, n = self._namespace.derivation, self._namespace.derivation.system, value.rows
         speeds = sp.Matrix([system.qdot[i] for i in self._rows])
         if value.shape != (len(speeds), len(speeds)) or not value.free_symbols & {*speeds}:
@@ -145,10 +148,18 @@ class DerivedMatrices:
         for row, i in enumerate(self._rows):
             force = system.applied[i] - d.potential_energy.diff(system.q[i]) - d.forcing[i]
             lacking = force - (value.row(row) * speeds)[0]
-            is_right = _agree(self._namespace, lacking, sp.S.Zero)
-            rests = [None if is_right else sp.cancel(lacking / speed) for speed in speeds]
+            if _agree(self._namespace, lacking, sp.S.Zero):
+                entries += [None] * n
+                continue
+            usual = d.coriolis_matrix.extract([i], self._rows)
+            are_usual = [
+                _agree(self._namespace, own, one)
+                for own, one in zip(value.row(row), usual, strict=True)
+            ]
+            is_one_wrong = are_usual.count(False) == 1
             entries += [
-                r if r is None else value[row, k] + r for k, r in zip(range(n), rests, strict=True)
+                None if is_one_wrong and are_usual[k] else value[row, k] + sp.cancel(lacking / v)
+                for k, v in enumerate(speeds)
             ]
         return entries
 
