@@ -367,7 +367,7 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
     is_letter = not order(formula.subject) and not POINT.match(formula.subject)
     is_letter &= not MATRIX_ENTRY.fullmatch(formula.subject)
-    if formula.is_special_case or (is_zero and is_letter):
+    if formula.is_special_case or (is_zero and is_letter) or is_motion_of_several(formula):
         return
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
@@ -383,6 +383,13 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
         yield last, formula.sides[0].text
         # k_3 of k_1 = k_2 = k_3 = k
         yield from ((side.text, first.text) for side in others[1:-1] if side.text.isidentifier())
+
+
+def is_motion_of_several(formula: DocumentFormula) -> bool:
+    """Whether it gives two letters one function of time, as x_1 = -x_2 = A*cos(omega*t)."""
+    *first, last = formula.sides
+    are_letters = all(one.text.removeprefix("-").isidentifier() for one in first)
+    return len(first) > 1 and are_letters and "t" in WORD.findall(last.text)
 
 
 def entries_of_chain(formula: DocumentFormula) -> Iterator[tuple[str, str]]:

@@ -36,6 +36,7 @@ from derive.verification.documents.statements import (
     WORD,
     DocumentFormula,
     entries_of_chain,
+    is_motion_of_several,
 )
 
 #: A letter with a number.
@@ -185,11 +186,12 @@ def _generic(
 
 
 def _columns(
-    formulas: Iterable[DocumentFormula], moving: Sequence[str], matrices: Collection[str]
+    formulas: Sequence[DocumentFormula], moving: Sequence[str], matrices: Collection[str]
 ) -> set[str]:
     """Names such as x that stand for a column of x_1, x_2 ... beside a matrix: M*x_ddot.
 
-    And those that are defined as a column of coordinates, or are one with another value, as x_d.
+    And those that are defined as a column of coordinates, or are one with another value, as x_d,
+    or stand for any of them in a single formula, as x of x_ddot = -omega**2*x.
     """
     columns = {name for name in moving if f"{name}_1" in moving}
     factors = {
@@ -201,6 +203,9 @@ def _columns(
     for formula in formulas:
         if {*formula.words}.isdisjoint(matrices) and "[[" not in formula.text:
             columns -= {stem(word) for word in formula.words} - factors
+    single = Counter(name for one in formulas for name in {*map(stem, one.words)})
+    columns |= {name for name in moving if {f"{name}_1", f"{name}_2"} <= {*moving}
+                and single[name] == 1}  # fmt: skip
     columns |= {
         one for name in columns & factors for one in moving
         if one.startswith(f"{name}_") and not INDEXED.match(one)
@@ -277,7 +282,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         lost_dot = lost_dot or any({f"{name}_dot", one} in equal for one in others)
         last = formula.sides[-1]
         is_displaced = orders.get(name) == 2 and formula.is_displacement
-        if NUMBER.fullmatch(last.text):  # a value, such as m = l = 1
+        if NUMBER.fullmatch(last.text) or is_motion_of_several(formula):  # such as m = l = 1
             continue
         if last.entries and orders.get(name) == 2:  # the state (x, x_dot) is often called x, too
             continue

@@ -24,6 +24,7 @@ from derive.verification.documents.numbers.candidate_motions import (
 from derive.verification.documents.numbers.single_mistakes import is_near
 from derive.verification.documents.statements import (
     EQUALITIES,
+    WORD,
     Derivatives,
     DocumentFormula,
     definitions,
@@ -110,7 +111,7 @@ class Numbers:
         """Yield the sides of a formula, and whether each agrees with the first with a value."""
         if formula.is_update or {*formula.relations} - {*EQUALITIES}:
             return
-        if self._is_value(formula) or self._is_solution(formula):
+        if self._is_value(formula) or self.is_solution(formula):
             return
         kind = self._letters.quantities.get(formula.subject)
         exact = formula.relations.index("~") + 1 if "~" in formula.relations else None
@@ -190,14 +191,19 @@ class Numbers:
         names = {side.text for side in formula.sides[:-1]}
         moving = {q + ending for q in letters.coordinates for ending in RATES[:2]}
         known = {*moving, *letters.parameters, *letters.quantities}
-        is_relation = {*formula.words} - OPERATORS <= {*letters.parameters}
-        return (names <= known and formula.is_value) or (bool(formula.subject) and is_relation)
+        values = [self.values.get(word) for word in {*formula.words} - OPERATORS - {"t"}]
+        is_relation = all(isinstance(one, Jet) and one.value.size == 1 for one in values)
+        return (names <= known and formula.is_value) or is_relation
 
-    def _is_solution(self, formula: DocumentFormula) -> bool:
-        """Whether it states a coordinate as a function of time alone, as x = A*cos(omega*t)."""
-        coordinates = {*self._letters.coordinates}
-        moving = [word for word in map(stem, formula.words) if word in coordinates]
-        return moving == [formula.subject] and "t" in formula.words
+    def is_solution(self, formula: DocumentFormula) -> bool:
+        """Whether it states a coordinate as a function of time alone, as x = A*cos(omega*t).
+
+        Or several, as x_1 = -x_2 = A*cos(omega*t).
+        """
+        *first, last = (side.text for side in formula.sides)
+        others = {stem(word) for word in WORD.findall(last)} & {*self._letters.coordinates}
+        are_coordinates = {one.removeprefix("-") for one in first} <= {*self._letters.coordinates}
+        return bool(first) and are_coordinates and not others and "t" in WORD.findall(last)
 
     def _is_definition(self, formula: DocumentFormula, text: str) -> bool:
         return any(

@@ -44,6 +44,8 @@ def resolved(
     }
     for name in filter(OWN_CONSTANT.fullmatch, constants):
         meanings[name], numbers.values[name] = name, constants[name]
+    solutions = [one for one in formulas if numbers.is_solution(one)]
+    amplitudes = {word for one in solutions for word in one.words} - {*letters.coordinates}
     others = [q for q in letters.coordinates if q not in candidate.coordinates]
     for name in (q + ending for q in others for ending in RATES[:3]):
         numbers.values.pop(name, None)
@@ -56,8 +58,9 @@ def resolved(
             f: u
             for f in formulas
             if 0 < len(u := _unknown(f, numbers)) <= MAX_UNKNOWN
-            # with a reaction all would hold, and other coordinates are those of other systems
-            and not {*map(stem, u)} & {*letters.multipliers, *others}
+            # with a reaction all would hold, other coordinates are those of other systems, and
+            # amplitudes have any value
+            and not {*map(stem, u)} & {*letters.multipliers, *others, *amplitudes}
         }
         result = next((m for u in dict.fromkeys(unknown.values())
                       if (m := _meaning(u, [f for f in unknown if set(unknown[f]) <= set(u)],

@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import chain, takewhile
 
 import sympy as sp
 
@@ -24,7 +25,7 @@ from derive.verification.documents.rules.evidence.stated_loads import (
     AS_FORCES,
     with_contrary_loads,
 )
-from derive.verification.documents.rules.frequencies import Frequencies
+from derive.verification.documents.rules.frequencies import Amplitudes, Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
 from derive.verification.documents.rules.matrices import DerivedMatrices
@@ -37,7 +38,7 @@ from derive.verification.documents.rules.side_verdict import (
     not_understood,
     plain,
 )
-from derive.verification.documents.rules.small_motions import Amplitudes, SmallMotions
+from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import (
     EQUALITIES,
     INDICES,
@@ -47,6 +48,7 @@ from derive.verification.documents.statements import (
     WORD,
     DocumentFormula,
     Occurrence,
+    is_motion_of_several,
 )
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
@@ -83,7 +85,8 @@ class Judge:
             PartialEnergies(namespace),
         )
         self._namespace, self._model = namespace, namespace.model
-        self._roles, self._amplitudes = Roles(namespace, linear), Amplitudes(namespace)
+        self._roles = Roles(namespace, linear)
+        self._amplitudes = Amplitudes(namespace, linear, self._roles)
         self._comparison = SideComparison(namespace, linear, self._roles)
         self._frequencies = Frequencies(namespace, linear, self._roles)
         self._others = OtherStatements(namespace, self._frequencies)
@@ -143,6 +146,8 @@ class Judge:
         if values := self._prescribed(formula):
             if all(map(self._linear.is_solution, values)):
                 return plain("verified", formula, "it solves the equation of small motions")
+            if self._linear.is_motion(self._motions_beside(formula)):
+                return plain("verified", formula, "it solves the equations of small motions")
             return plain("context", formula, "it prescribes a coordinate")
         if formula.occurrence in self._given:
             return plain("definition", formula, STATES)
@@ -161,8 +166,8 @@ class Judge:
         loads = unknown or self._loads.own(formula)
         if loads and self._loads.complete(formula, loads):
             return plain("verified", formula, f"with {', '.join(loads)} {AS_FORCES}")
-        if unknown and self._amplitudes.holds(formula):
-            return plain("verified", formula, "with the stated functions of time")
+        if unknown and (result := self._amplitudes.verdict(formula, unknown)) is not None:
+            return result
         if loads and self._is_stated and (result := self._loads.beside(formula, loads)) is not None:
             return result
         if unknown and (result := self._frequencies.determining(formula, unknown)) is not None:
@@ -274,6 +279,8 @@ class Judge:
             return []
         if names.get(first.text) not in (*system.q, *system.qdot):
             return []
+        if is_motion_of_several(formula):
+            others = others[-1:]
         with suppress(ExpressionError):
             moving = (*system.q, *system.qdot, *system.qddot, *system.p)
             # letters without a meaning, such as ω, are constants
@@ -286,6 +293,23 @@ class Judge:
             ):
                 return values
         return []
+
+    def _motions_beside(self, formula: DocumentFormula) -> dict[sp.Symbol, sp.Expr]:
+        """The functions of time of coordinates in a formula and in those next to it.
+
+        There are none of a coordinate for which these state two.
+        """
+        names, system = self._namespace.all_names, self._namespace.derivation.system
+        formulas, result = self._namespace.formulas, dict[sp.Symbol, sp.Expr]()
+        place = formulas.index(formula)
+        rows = formulas[:place][::-1], formulas[place + 1 :]
+        for one in (formula, *chain(*(takewhile(self._prescribed, row) for row in rows))):
+            value = self._prescribed(one)[0]
+            for side in one.sides[: -1 if is_motion_of_several(one) else 1]:
+                q = names.get(side.text.removeprefix("-"))
+                if q in system.q and len(result) < len(system.q):
+                    result.setdefault(q, -value if side.text.startswith("-") else value)
+        return result
 
     def _constant_of_motion(self, formula: DocumentFormula) -> tuple[str, sp.Expr] | None:
         """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.

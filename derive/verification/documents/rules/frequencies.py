@@ -1,13 +1,17 @@
-"""Frequencies and periods of small motions, and the equations that determine them."""
+"""Frequencies and periods of small motions, their amplitudes, and equations of both."""
 
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import cached_property
+from itertools import combinations
 
 import sympy as sp
 
 from derive.formulas.expression import parse
+from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
+from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -15,6 +19,7 @@ from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
 from derive.verification.documents.statements import SQUARE, DocumentFormula
+from derive.verification.judging.reference_system import depends_on
 
 #: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
 FREQUENCY_LETTERS: dict[str, tuple[sp.Expr, int]] = {
@@ -152,6 +157,142 @@ class Frequencies:
         force = -d.lagrangian.subs(v, 0).diff(q)
         is_known = bool(force) and sp.simplify(force / force.diff(q).subs(q, 0)) in (q, sp.sin(q))
         return self._linear.is_origin and is_known and not square.could_extract_minus_sign()
+
+
+class Amplitudes:
+    """Equations in A and B by the equations of motion with x = A*cos(w*t) and y = B*cos(w*t)."""
+
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions, roles: Roles) -> None:
+        self._namespace, self._system = namespace, namespace.derivation.system
+        self._linear, self._roles = linear, roles
+
+    def verdict(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
+        """The verdict on an equation in unknown letters; None if it can be another equation."""
+        if self._holds(formula):
+            return plain("verified", formula, "with the stated functions of time")
+        return self._refuted(formula, unknown)
+
+    def _refuted(self, formula: DocumentFormula, unknown: Sequence[str]) -> SideVerdict | None:
+        """The verdict `wrong` on one of (K - w**2 M) A = 0 that a single slip explains."""
+        sides = [one for one in formula.sides if one.text != "0"]
+        v, amplitudes = self._system.qdot[0], self._single_amplitudes
+        letters = {str(s): q for s, q in amplitudes.items()}
+        own = {s.name for f in self._motions.values() for s in f.free_symbols} - {*letters}
+        frequency = own & {*formula.words}
+        is_of_modes = len(frequency) == 1 and {*letters} <= {*unknown} <= {*letters} | frequency
+        has_place = self._linear.is_origin and not self._system.conditions
+        if len(formula.sides) != 2 or len(sides) != 1 or not is_of_modes or not has_place:
+            return None
+        letters[frequency.pop()] = v
+        M, D, K, _ = self._linear.matrices
+        try:
+            own = sp.expand(parse(sides[0].text, {**self._namespace.all_names, **letters}))
+        except (ExpressionError, NotImplementedError, TypeError, ValueError):
+            return None
+        if any(D) or not isinstance(own, sp.Expr):
+            return None
+        tried: dict[sp.Expr, int] = {}
+        for row in (K - v**2 * M).tolist():
+            equation = sp.expand(sp.Add(*map(sp.Mul, row, self._system.q)))
+            for q, entry in zip(self._system.q, row, strict=True):
+                factor = sp.cancel(own.diff(q) / entry) if entry != 0 else sp.S.Zero
+                if factor and not factor.has(v, *self._system.q):
+                    required = sp.expand(factor * equation)
+                    tried[required] = len(sp.Add.make_args(sp.expand(own - required)))
+        fewest = [one for one, count in tried.items() if count == min(tried.values())]
+        if len(fewest) != 1:
+            return None  # any of several terms can be wrong
+        result = self._roles.value(sides[0], "amplitudes", fewest[0], letters)
+        return result if len(result.verdict.corrections) == 1 else None
+
+    @cached_property
+    def _single_amplitudes(self) -> dict[sp.Symbol, sp.Symbol]:
+        """The amplitudes of coordinates that have one each, with equal functions of time."""
+        result: dict[sp.Symbol, sp.Symbol] = {}
+        functions = set[sp.Expr]()
+        for q, value in self._motions.items():
+            own = [s for s in self._amplitudes if value.has(s)]
+            if len(own) == 1 and own[0] not in result:
+                result[own[0]] = q
+                functions.add(sp.expand(value / own[0]))
+        return result if len(result) == len(self._system.q) and len(functions) == 1 else {}
+
+    def _holds(self, formula: DocumentFormula) -> bool:
+        """Whether a formula is one of these equations, or a sum or difference of two.
+
+        It may be multiplied by a factor without amplitudes.
+        """
+        if len(formula.sides) != 2 or not self._equations:
+            return False
+        try:
+            left, right = (self._value(one.text) for one in formula.sides)
+        except (ExpressionError, NotImplementedError, TypeError, ValueError):
+            return False
+        names = self._amplitudes
+        row = [(left - right).diff(one) for one in names]
+        rest = (left - right).xreplace(dict.fromkeys(names, sp.S.Zero))
+        moving = sp.Tuple(*row).free_symbols & {*names, *self._system.q, *self._system.qdot}
+        if rest != 0 or moving or not any(row):
+            return False
+        rows = [[one.diff(name) for name in names] for one in self._equations]
+        pairs = combinations(rows, 2)
+        rows += [[a + s * b for a, b in zip(*pair, strict=True)] for pair in pairs for s in (1, -1)]
+        return any(
+            all(is_small(row[i] * one[j] - row[j] * one[i]) for i, j in combinations(columns, 2))
+            for one in rows
+            if (columns := range(len(names)))
+        )
+
+    def _value(self, text: str) -> sp.Expr:
+        names = self._namespace.all_names
+        value = parse(text, {**self._letters, **names})
+        if not isinstance(value, sp.Expr) or isinstance(value, sp.MatrixBase):
+            raise TypeError("a matrix")
+        return value
+
+    @cached_property
+    def _letters(self) -> dict[str, sp.Symbol]:
+        """Letters without a meaning, which are constants."""
+        words = {word for one in self._namespace.formulas for word in one.words}
+        unknown = words - {*self._namespace.all_names}
+        return {word: sp.Symbol(word, positive=True) for word in sorted(unknown)}
+
+    @cached_property
+    def _motions(self) -> dict[sp.Symbol, sp.Expr]:
+        """The functions of time that a document states all coordinates to be; empty for others."""
+        return dict(self._stated())
+
+    def _stated(self) -> Iterator[tuple[sp.Symbol, sp.Expr]]:
+        names, system = self._namespace.all_names, self._system
+        for formula in self._namespace.formulas:
+            q = names.get(formula.subject)
+            if q in system.q and len(formula.sides) == 2 and "t" in formula.words:
+                with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                    value = self._value(formula.sides[1].text)
+                    if not depends_on(value, (*system.q, *system.qdot, *system.qddot)):
+                        yield q, value
+
+    @cached_property
+    def _amplitudes(self) -> list[sp.Symbol]:
+        """Constants that are factors of stated functions."""
+        values = self._motions.values()
+        return [
+            s for s in self._letters.values()
+            if any(one.has(s) and sp.expand(one - s * one.diff(s)) == 0 for one in values)
+        ]  # fmt: skip
+
+    @cached_property
+    def _equations(self) -> list[sp.Expr]:
+        """The equations of motion with the stated functions; none unless all are stated."""
+        if {*self._motions} != {*self._system.q} or len(self._amplitudes) < len(self._motions):
+            return []
+        pairs = zip(self._system.q, self._system.qdot, self._system.qddot, strict=True)
+        rates = {
+            symbol: self._motions[q].diff(TIME, order)
+            for q, *symbols in pairs
+            for order, symbol in enumerate((q, *symbols))
+        }
+        return [one.xreplace(rates) for one in self._namespace.derivation.euler_lagrange]
 
 
 def _named(formula: DocumentFormula) -> tuple[str, tuple[DocumentFormula, int]]:

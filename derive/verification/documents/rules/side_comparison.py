@@ -3,12 +3,13 @@
 import ast
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 import sympy as sp
 
 from derive.formulas.expression import Value
-from derive.formulas.syntax import place, syntax_tree
+from derive.formulas.syntax import ExpressionError, place, syntax_tree
 from derive.verification.corrections.source_names import SourceNames
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.letters import energy_of_part
@@ -146,8 +147,10 @@ class SideComparison:
     ) -> SideVerdict | None:
         """The verdict on a linear equation of motion by those of small motions; None for others.
 
-        It can hold with angles from another equilibrium.
+        It can hold with angles from another equilibrium, or for a mode.
         """
+        if (own := self._of_mode(formula, side, difference)) is not None:
+            return own
         is_explained = result.kind != "euler_lagrange" or len(result.verdict.corrections) == 1
         if is_explained or difference.atoms(sp.Function):
             return None
@@ -159,6 +162,43 @@ class SideComparison:
                 return plain("context", formula, ELSEWHERE)
         own = self._roles.equation(formula.sides[0], side, derivation)
         return own if len(own.verdict.corrections) == 1 else None
+
+    def _of_mode(
+        self, formula: DocumentFormula, side: FormulaText, difference: sp.Expr
+    ) -> SideVerdict | None:
+        """The verdict on an equation of one coordinate for motions with a stated relation of two.
+
+        It is `wrong` by the relation before it alone.
+        """
+        system, formulas = self._namespace.derivation.system, self._namespace.formulas
+        moving = [q for q in system.q if difference.has(q)]
+        accelerations = [one for one in system.qddot if difference.has(one)]
+        if len(system.q) != 2 or len(moving) != 1 or len(accelerations) != 1:
+            return None
+        before = formulas[: formulas.index(formula)]
+        relations = {
+            one.text: value for one in before if (value := self._relation(one)) is not None
+        }
+        for text, relation in relations.items():
+            derivation = self._linear.of_mode(relation, moving[0])
+            if derivation is None:
+                continue
+            own = self._roles.equation(formula.sides[0], side, derivation)
+            is_right = own.verdict.verdict in CORRECT
+            is_wrong = len(own.verdict.corrections) == 1 and text == [*relations][-1]
+            if is_right or is_wrong:
+                return replace(own, verdict=replace(own.verdict, note=f"with {text}"))
+        return None
+
+    def _relation(self, formula: DocumentFormula) -> sp.Expr | None:
+        """What a relation of coordinates alone states to vanish; None of others."""
+        system = self._namespace.derivation.system
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            left, right = (self._namespace.value(one.text) for one in formula.sides)
+            moving = (left - right).free_symbols
+            if len(moving) > 1 and moving <= {*system.q}:
+                return left - right
+        return None
 
     def _is_up_to_a_constant(self, formula: DocumentFormula) -> bool:
         """Whether a formula states the energy or one of a part, or has a constant of its own."""

@@ -1,14 +1,13 @@
-"""Formulas that hold for small motions about an equilibrium, and those of their amplitudes."""
+"""Formulas that hold for small motions about an equilibrium."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
-from itertools import combinations, product
+from itertools import product
 
 import sympy as sp
 
-from derive.formulas.expression import parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
@@ -17,9 +16,7 @@ from derive.system.symbols import TIME
 from derive.system.system import System
 from derive.verification.documents.letters.energies import StatedInertia
 from derive.verification.documents.letters.letters import KINDS
-from derive.verification.documents.rules.known_values import DocumentNamespace
-from derive.verification.documents.statements import DocumentFormula
-from derive.verification.judging.reference_system import ReferenceSystem, depends_on
+from derive.verification.judging.reference_system import ReferenceSystem
 
 #: Coordinates of the largest systems whose accelerations are solved for.
 MAX_INVERSE = 3
@@ -93,6 +90,20 @@ class SmallMotions:
         rest = self._equations[0].xreplace(dict(zip(symbols, rates, strict=True)))
         return bool(sp.simplify(rest) == 0)
 
+    def is_motion(self, motions: Mapping[sp.Symbol, sp.Expr]) -> bool:
+        """Whether functions of time of all coordinates solve the linear equations."""
+        system = self._derivation.system
+        if {*motions} != {*system.q} or not self.is_origin or system.conditions:
+            return False
+        if not all(value.has(TIME) for value in motions.values()):
+            return False
+        rates = {
+            symbol: motions[q].diff(TIME, order)
+            for q, *symbols in zip(system.q, system.qdot, system.qddot, strict=True)
+            for order, symbol in enumerate((q, *symbols))
+        }
+        return all(is_small(one.xreplace(rates)) for one in self._equations)
+
     def acceleration(self, symbol: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
         """The acceleration of small motions if `value` seems to be one: without functions."""
         full = self._derivation.euler_lagrange
@@ -162,9 +173,39 @@ class SmallMotions:
             return None
         M, D, K, inputs = self.matrices
         system = self._derivation.system
-        q, rates = sp.Matrix(system.q), sp.Matrix(system.qdot)
-        forces = -D * rates - K * q
+        forces = -D * sp.Matrix(system.qdot) - K * sp.Matrix(system.q)
         forces += sum((one * column for one, column in inputs.items()), sp.zeros(*forces.shape))
+        return self._with_matrix(system.q, M, forces)
+
+    def of_mode(self, relation: sp.Expr, q: sp.Symbol) -> Derivation | None:
+        """The derivation of one coordinate for motions with a linear relation of two.
+
+        None if motions do not keep the relation.
+        """
+        system = self._derivation.system
+        if len(system.q) != 2 or self.derivation is None or system.conditions:
+            return None
+        slopes = sp.Matrix([relation.diff(one) for one in system.q])
+        own = system.q.index(q)
+        if (
+            slopes.free_symbols
+            or slopes[1 - own] == 0
+            or relation.subs(q, 0).subs(system.q[1 - own], 0)
+        ):
+            return None
+        mode = sp.Matrix([sp.S.One, sp.S.One])
+        mode[1 - own] = -slopes[own] / slopes[1 - own]
+        M, D, K, inputs = self.matrices
+        mass, stiffness = ((mode.T * one * mode)[0, 0] for one in (M, K))
+        if any(D) or inputs or not all(map(is_small, (K - stiffness / mass * M) * mode)):
+            return None
+        return self._with_matrix((q,), sp.Matrix([[mass]]), sp.Matrix([-stiffness * q]))
+
+    def _with_matrix(
+        self, q: Sequence[sp.Symbol], M: sp.Matrix, forces: sp.Matrix
+    ) -> Derivation | None:
+        """The derivation of some coordinates with a constant mass matrix and these forces."""
+        system = self._derivation.system
         inertia = StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), sp.ImmutableDenseMatrix(M))
         # with these values, M is positive
         coupling = M.free_symbols - sp.Tuple(*M.diagonal()).free_symbols
@@ -174,7 +215,8 @@ class SmallMotions:
         ]
         with suppress(SystemDefinitionError):
             linear = System(
-                system.name, system.title, system.coordinates, parameters, [inertia],
+                system.name, system.title, [one for one in system.coordinates if one.symbol in q],
+                parameters, [inertia],
                 potential=sp.S.Zero, gravity=(sp.S.Zero, sp.S.Zero), forces=[*forces],
             )  # fmt: skip
             return Derivation(linear)
@@ -248,87 +290,3 @@ class SmallMotions:
             return any((is_named or one.is_number) and one.xreplace(at_rest) for one in slopes)
 
         return {*filter(is_input, alone)}
-
-
-class Amplitudes:
-    """Equations in A and B by the equations of motion with x = A*cos(w*t) and y = B*cos(w*t)."""
-
-    def __init__(self, namespace: DocumentNamespace) -> None:
-        self._namespace, self._system = namespace, namespace.derivation.system
-
-    def holds(self, formula: DocumentFormula) -> bool:
-        """Whether a formula is one of these equations, or a sum or difference of two.
-
-        It may be multiplied by a factor without amplitudes.
-        """
-        if len(formula.sides) != 2 or not self._equations:
-            return False
-        try:
-            left, right = (self._value(one.text) for one in formula.sides)
-        except (ExpressionError, NotImplementedError, TypeError, ValueError):
-            return False
-        names = self._amplitudes
-        row = [(left - right).diff(one) for one in names]
-        rest = (left - right).xreplace(dict.fromkeys(names, sp.S.Zero))
-        moving = sp.Tuple(*row).free_symbols & {*names, *self._system.q, *self._system.qdot}
-        if rest != 0 or moving or not any(row):
-            return False
-        rows = [[one.diff(name) for name in names] for one in self._equations]
-        pairs = combinations(rows, 2)
-        rows += [[a + s * b for a, b in zip(*pair, strict=True)] for pair in pairs for s in (1, -1)]
-        return any(
-            all(is_small(row[i] * one[j] - row[j] * one[i]) for i, j in combinations(columns, 2))
-            for one in rows
-            if (columns := range(len(names)))
-        )
-
-    def _value(self, text: str) -> sp.Expr:
-        names = self._namespace.all_names
-        value = parse(text, {**self._letters, **names})
-        if not isinstance(value, sp.Expr) or isinstance(value, sp.MatrixBase):
-            raise TypeError("a matrix")
-        return value
-
-    @cached_property
-    def _letters(self) -> dict[str, sp.Symbol]:
-        """Letters without a meaning, which are constants."""
-        words = {word for one in self._namespace.formulas for word in one.words}
-        unknown = words - {*self._namespace.all_names}
-        return {word: sp.Symbol(word, positive=True) for word in sorted(unknown)}
-
-    @cached_property
-    def _motions(self) -> dict[sp.Symbol, sp.Expr]:
-        """The functions of time that a document states all coordinates to be; empty for others."""
-        return dict(self._stated())
-
-    def _stated(self) -> Iterator[tuple[sp.Symbol, sp.Expr]]:
-        names, system = self._namespace.all_names, self._system
-        for formula in self._namespace.formulas:
-            q = names.get(formula.subject)
-            if q in system.q and len(formula.sides) == 2 and "t" in formula.words:
-                with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-                    value = self._value(formula.sides[1].text)
-                    if not depends_on(value, (*system.q, *system.qdot, *system.qddot)):
-                        yield q, value
-
-    @cached_property
-    def _amplitudes(self) -> list[sp.Symbol]:
-        """Constants that are factors of stated functions."""
-        values = self._motions.values()
-        return [
-            s for s in self._letters.values()
-            if any(one.has(s) and sp.expand(one - s * one.diff(s)) == 0 for one in values)
-        ]  # fmt: skip
-
-    @cached_property
-    def _equations(self) -> list[sp.Expr]:
-        """The equations of motion with the stated functions; none unless all are stated."""
-        if {*self._motions} != {*self._system.q} or len(self._amplitudes) < len(self._motions):
-            return []
-        pairs = zip(self._system.q, self._system.qdot, self._system.qddot, strict=True)
-        rates = {
-            symbol: self._motions[q].diff(TIME, order)
-            for q, *symbols in pairs
-            for order, symbol in enumerate((q, *symbols))
-        }
-        return [one.xreplace(rates) for one in self._namespace.derivation.euler_lagrange]
