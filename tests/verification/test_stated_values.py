@@ -315,6 +315,7 @@ def test_two_letters_of_one_relation_are_no_names_of_one_coordinate(tmp_path: Pa
 WIRE = r"""
 On a wire $z = \frac12 a r^2$ that turns at $\Omega$,
 $$T = \frac12 m\left((1 + a^2 r^2)\dot r^2 + r^2\Omega^2\right), \qquad V = \frac12 m g a r^2$$
+$$\frac{\partial T}{\partial \dot r} = m(1 + a^2 r^2)\dot r$$
 $$(1 + a^2 r^2)\ddot r + a^2 r\dot r^2 - r\Omega^2 + a g r = 0$$
 At the speed $\Omega^2 = a g$ it rests anywhere.
 """

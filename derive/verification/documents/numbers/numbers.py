@@ -132,7 +132,8 @@ class Numbers:
             if start or not self._is_definition(formula, side.text):  # which decides nothing
                 for entry in differences:
                     vanishes = self._vanishes(entry.value, kind in UP_TO_A_CONSTANT)
-                    yield side.text, vanishes
+                    if entry.value.size > 1 or vanishes.any():  # not those of initial values
+                        yield side.text, vanishes
             if formula.subject and kind is None and isinstance(right, Jet):
                 yield from ((side.text, vote) for vote in self._position(right.value))
 
@@ -191,9 +192,8 @@ class Numbers:
         names = {side.text for side in formula.sides[:-1]}
         moving = {q + ending for q in letters.coordinates for ending in RATES[:2]}
         known = {*moving, *letters.parameters, *letters.quantities}
-        values = [self.values.get(word) for word in {*formula.words} - OPERATORS - {"t"}]
-        is_relation = all(isinstance(one, Jet) and one.value.size == 1 for one in values)
-        return (names <= known and formula.is_value) or is_relation
+        is_relation = {*formula.words} - OPERATORS <= {*letters.parameters}
+        return (names <= known and formula.is_value) or (bool(formula.subject) and is_relation)
 
     def is_solution(self, formula: DocumentFormula) -> bool:
         """Whether it states a coordinate as a function of time alone, as x = A*cos(omega*t).

@@ -301,6 +301,8 @@ class Judge:
         """
         names, system = self._namespace.all_names, self._namespace.derivation.system
         formulas, result = self._namespace.formulas, dict[sp.Symbol, sp.Expr]()
+        if formula not in formulas:  # another form of one of them
+            return result
         place = formulas.index(formula)
         rows = formulas[:place][::-1], formulas[place + 1 :]
         for one in (formula, *chain(*(takewhile(self._prescribed, row) for row in rows))):

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
+from itertools import takewhile
 
 import sympy as sp
 
@@ -175,7 +176,7 @@ class SideComparison:
         accelerations = [one for one in system.qddot if difference.has(one)]
         if len(system.q) != 2 or len(moving) != 1 or len(accelerations) != 1:
             return None
-        before = formulas[: formulas.index(formula)]
+        before = [*takewhile(lambda one: one != formula, formulas)]
         relations = {
             one.text: value for one in before if (value := self._relation(one)) is not None
         }
