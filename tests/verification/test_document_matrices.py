@@ -146,3 +146,58 @@ $$ \mathbf{q} = \begin{pmatrix} x \\ y \end{pmatrix} $$
 $$ T = m \dot{\mathbf{q}}^T \dot{\mathbf{q}} $$
 """)  # fmt: skip
     assert verdicts[-1].correction == r"T = \frac{1}{2} m \dot{\mathbf{q}}^T \dot{\mathbf{q}}"
+
+
+ARM = r"""
+$$M(q)\ddot q + C(q, \dot q)\dot q + g(q) = \tau$$
+$$M_{11} = a + 2 b\cos q_2, \quad M_{12} = M_{21} = d + b\cos q_2, \quad M_{22} = d$$
+$$C_{11} = -b\sin(q_2)\dot q_2, \quad C_{12} = -b\sin(q_2)(\dot q_1 + \dot q_2)$$
+$$C_{21} = b\sin(q_2)\dot q_1, \quad C_{22} = 0$$
+$$g_1 = m_1 g l_1\cos q_1 + m_2 g l_2\cos(q_1 + q_2), \quad g_2 = m_2 g l_2\cos(q_1 + q_2)$$
+The error is $e = q_d - q$, and $M(q)\ddot q = M(q) u$.
+"""
+
+
+@pytest.mark.parametrize(("right", "slip"), [
+    (r"C_{11} = -b\sin(q_2)\dot q_2", r"C_{11} = b\sin(q_2)\dot q_2"),
+    (r"C_{21} = b\sin(q_2)\dot q_1", r"C_{21} = b\cos(q_2)\dot q_1"),
+])  # fmt: skip
+def test_entries_of_matrices_state_a_system(right: str, slip: str, tmp_path: Path) -> None:
+    assert not any(one.verdict == "wrong" for one in judged(tmp_path, ARM))
+    assert judged(tmp_path, ARM)[0].verdict == "verified"
+    (one,) = (one for one in judged(tmp_path, ARM.replace(right, slip)) if one.verdict == "wrong")
+    assert one.latex == slip
+
+
+COLUMNS = r"""
+$$M(q)\ddot q + C(q, \dot q)\dot q + G(q) = \tau, \quad q = [q_1, q_2]^T \in \mathbb{R}^2$$
+$$M(q) = \begin{bmatrix} M_{11} & M_{12} \\ M_{21} & M_{22} \end{bmatrix}
+= \begin{bmatrix} a + 2 b\cos q_2 & d + b\cos q_2 \\ d + b\cos q_2 & d \end{bmatrix}$$
+$$C(q, \dot q)\dot q = \begin{bmatrix} H_1 \\ H_2 \end{bmatrix} = b\begin{bmatrix}
+-2\dot q_1\dot q_2 - \dot q_2^2 \\ \dot q_1^2 \end{bmatrix}\sin q_2$$
+$$G(q) = \begin{bmatrix} G_1 \\ G_2 \end{bmatrix}
+= \begin{bmatrix} s\cos q_1 + c\cos(q_1 + q_2) \\ c\cos(q_1 + q_2) \end{bmatrix}$$
+$$E = \frac12\dot q^T M(q)\dot q + P(q), \quad P(q) = s\sin q_1 + c\sin(q_1 + q_2)$$
+$$\Delta = M_{11} M_{22} - M_{12} M_{21} = (a - d) d - b^2\cos^2 q_2 > 0$$
+"""
+
+
+@pytest.mark.long("entries alone have this basis", keep=1)
+@pytest.mark.parametrize(("right", "slip"), [
+    (r"-2\dot q_1\dot q_2 - ", r"-\dot q_1\dot q_2 - "),
+    (r"- b^2\cos^2 q_2 > 0", r"- b\cos^2 q_2 > 0"),
+])  # fmt: skip
+def test_matrices_that_are_written_out_twice(right: str, slip: str, tmp_path: Path) -> None:
+    verdicts = [one.verdict for one in judged(tmp_path, COLUMNS)]
+    assert "wrong" not in verdicts
+    assert verdicts.count("verified") >= 4
+    (one,) = (
+        one for one in judged(tmp_path, COLUMNS.replace(right, slip)) if one.verdict == "wrong"
+    )
+    assert slip in one.latex
+
+
+def test_the_column_of_gravity_is_the_gradient_of_the_potential(tmp_path: Path) -> None:
+    text = COLUMNS.replace(r"s\cos q_1 + c\cos(q_1", r"s\sin q_1 + c\cos(q_1")
+    (one,) = (one for one in judged(tmp_path, text) if one.verdict == "wrong")
+    assert one.wrong_term == r"s\sin q_1"

@@ -134,3 +134,56 @@ $$K = \begin{bmatrix} k + c & -c \\ -c & k + c \end{bmatrix}$$ $$(K - \omega^2 M
 
 def test_columns_of_amplitudes_are_not_compared(tmp_path: Path) -> None:
     assert judged(tmp_path, SWINGS + MATRICES)[-1].verdict == "context"
+
+
+COUPLED = r"""$$\ddot u_1 + \frac{D}{m} u_1 + \frac{c}{m} (u_1 - u_2) = 0$$
+$$\ddot u_2 + \frac{D}{m} u_2 + \frac{c}{m} (u_2 - u_1) = 0$$
+With $u_1 - u_2 = 0$ both move alike, $$u_1 = u_2 = A\sin(\omega t + \alpha), \quad
+\omega = \sqrt{D/m}$$
+and with $u_1 + u_2 = 0$ against one another:
+$$\ddot u_1 + (D + 2 c)\frac{u_1}{m} = 0$$
+$$u_1 = -u_2 = B\sin(\Omega t + \beta), \quad \Omega = \sqrt{(D + 2 c)/m} > \omega$$
+In all, $$u_1 = A\sin(\omega t + \alpha) + B\sin(\Omega t + \beta)$$
+$$u_2 = A\sin(\omega t + \alpha) - B\sin(\Omega t + \beta)$$
+At the start, $$A\sin\alpha + B\sin\beta = a_0$$ $$A\sin\alpha - B\sin\beta = 0$$"""
+
+
+def test_modes_and_solutions_of_two_coordinates(tmp_path: Path) -> None:
+    verdicts = {one.latex: one.verdict for one in judged(tmp_path, COUPLED)}
+    assert list(verdicts.values()).count("verified") == 7
+    assert "wrong" not in verdicts.values()
+
+
+@pytest.mark.parametrize(("right", "slip", "verdict"), [
+    (r"\ddot u_1 + (D + 2 c)", r"\ddot u_1 + (D + c)", "wrong"),
+    (r"+ \frac{c}{m} (u_2 - u_1)", r"+ \frac{c}{m} (u_1 - u_2)", "definition"),
+    (r"- B\sin(\Omega t", r"+ B\sin(\Omega t", "context"),
+])  # fmt: skip
+def test_slips_beside_modes(right: str, slip: str, verdict: str, tmp_path: Path) -> None:
+    text = COUPLED.replace(right, slip)
+    after = judged(tmp_path, text)
+    changed = [one for one in after if slip in one.latex]
+    assert changed[-1].verdict == verdict
+    assert sum(one.verdict == "wrong" for one in after) == (verdict == "wrong")
+
+
+MODES = r"""$$m_1\ddot x_1 = -k_1 x_1 + c (x_2 - x_1)$$ $$m_2\ddot x_2 = -k_2 x_2 - c (x_2 - x_1)$$
+Try $$x_1 = A_1\cos(\omega t)$$ $$x_2 = A_2\cos(\omega t)$$ as $\ddot x = -\omega^2 x$:
+$$(k_1 + c - m_1\omega^2) A_1 - c A_2 = 0$$ $$-c A_1 + (k_2 + c - m_2\omega^2) A_2 = 0$$
+$$(k_1 + c - m_1\omega^2)(k_2 + c - m_2\omega^2) - c^2 = 0$$"""
+
+
+@pytest.mark.parametrize(("right", "slip", "count"), [
+    ("", "", 0),
+    ("-c A_1 + (k", "c A_1 + (k", 1),
+    (r"c - m_1\omega^2) A_1", r"c - m_1\omega) A_1", 1),
+    (r"k_2 + c - m_2\omega^2) A_2", r"k_1 + c - m_2\omega^2) A_2", 1),
+])  # fmt: skip
+def test_an_equation_of_amplitudes_with_a_slip_is_wrong(
+    right: str, slip: str, count: int, tmp_path: Path
+) -> None:
+    formulas = judged(tmp_path, MODES.replace(right, slip) if right else MODES)
+    found = [one.latex for one in formulas if one.verdict == "wrong"]
+    assert len(found) == count
+    assert all(slip in one for one in found)
+    assert sum(one.verdict == "verified" for one in formulas) == 5 - count

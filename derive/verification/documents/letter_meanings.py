@@ -231,6 +231,7 @@ def _best(
     matches: list[Match] = []
     stated: list[Match] = []
     circular: list[Match] = []
+    has_matrix = "mass_matrix" in letters.quantities.values()
     for tried in (tried for group in groups for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
             break
@@ -241,7 +242,7 @@ def _best(
         if first and first.condition_count and not judges.has_motions(first):
             continue
         stated += [match for match in held if match.candidate.stating]
-        if not result and tried[0].basis == "energies":  # entries of matrices are not compared
+        if not held and has_matrix and tried[0].basis == "energies":  # entries are not compared
             stated.append(Match(tried[0], 0.0, 0, frozenset()))
         for match in held:
             (circular if match.is_circular else matches).append(match)

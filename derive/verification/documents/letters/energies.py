@@ -157,18 +157,21 @@ def stated_system(
 ) -> System | None:
     """A system by its mass matrix, with the parameters of other values; None if it is none.
 
-    A mass can be larger than others, as M in place of m_1 + m_2 is.
+    A mass can be larger than others, as M in place of m_1 + m_2 is, and so can letters of the
+    diagonal of the matrix alone.
     """
     used = sp.Tuple(matrix, potential, *forces, *others).free_symbols
     names = {valid_name(one): one for one in letters.parameters}
     own = sorted((s for s in used if s.name in names and s not in q), key=str)
     masses = [s for s in own if names[s.name] in letters.of_kind("mass")]
-    for largest in (None, *masses):
+    inner = sp.Tuple(*(matrix[i, j] for i in range(matrix.rows) for j in range(i))).free_symbols
+    of_diagonal = [s for s in own if s in sp.Tuple(*matrix.diagonal()).free_symbols - inner]
+    for large in ((), *((one,) for one in masses), of_diagonal):
         with suppress(SystemDefinitionError, NotImplementedError, ValueError):
             system = System(
                 name, title, [Coordinate(one, "m", "a coordinate") for one in q],
                 [Parameter(s, "m" if is_length(names[s.name]) else "1",
-                           LARGE if s is largest else 1.0, "a parameter") for s in own],
+                           LARGE if s in large else 1.0, "a parameter") for s in own],
                 [StatedInertia(sp.S.One, (sp.S.Zero, sp.S.Zero), matrix)],
                 potential=potential, gravity=(sp.S.Zero, sp.S.Zero), forces=[*forces],
             )  # fmt: skip

@@ -1,5 +1,6 @@
 """What follows from wrong formulas, and what contradicts verdicts."""
 
+import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -16,6 +17,8 @@ from derive.verification.judging.reference_system import time_derivative
 
 #: The note on a formula that follows correctly from a wrong one.
 FOLLOWS = "it follows from line"
+#: The line in it.
+OF_LINE = re.compile(rf"{FOLLOWS} (\d+)")
 #: The note on a Lagrangian of fewer coordinates, from which others can follow.
 SUBSTITUTED = "with the constraints substituted"
 #: Energies from which others follow.
@@ -141,6 +144,17 @@ class Consequences:
                         return True
                     break
         return False
+
+
+def without_sources(verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
+    """The verdicts, with `context` for a formula that follows from one that is not wrong."""
+    wrong = {one.occurrence.line for one, result in verdicts if result.verdict.verdict == "wrong"}
+    result = [*verdicts]
+    for number, (formula, one) in enumerate(verdicts):
+        source = OF_LINE.search(one.verdict.note)
+        if one.verdict.verdict == "wrong" and source and int(source[1]) not in wrong:
+            result[number] = formula, plain("context", formula, one.verdict.note)
+    return result
 
 
 def opposed(line: int) -> str:

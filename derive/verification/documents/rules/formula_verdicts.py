@@ -48,6 +48,7 @@ from derive.verification.documents.statements import (
     WORD,
     DocumentFormula,
     Occurrence,
+    entries_of_chain,
     is_motion_of_several,
 )
 from derive.verification.judging.engine import joined
@@ -176,7 +177,9 @@ class Judge:
             return plain("definition", formula, "")
         if self._unknown(formula.sides[:1]):
             return self._not_understood(formula, unknown)
+        named = {name for name, _ in entries_of_chain(formula)}  # by the side behind them
         known = [k for k in range(1, len(formula.sides)) if not self._unknown([formula.sides[k]])]
+        known = [k for k in known if named.isdisjoint(WORD.findall(formula.sides[k].text))]
         if len(formula.sides) > 2 and any(map(self._has_numbers, formula.sides)):
             known = [k for k in known if k == 1]  # others have the numbers of an example
             if not known:

@@ -19,6 +19,7 @@ from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
+from derive.verification.documents.statements import WORD
 from derive.verification.judging.verdict import Correction, Verdict
 
 #: The name that stands for a part, and operations of the largest formula that is solved for one.
@@ -80,7 +81,7 @@ class DerivedMatrices:
             return None
         if self._namespace.letters.quantities.get(name) == "coriolis_matrix":
             return self._coriolis(value)
-        for derived in (*self._of_shape(value.shape), *self._parts(value.shape)):
+        for derived in (*self._of_shape(value.shape), *self._parts(name, value.shape)):
             if value.rows == len(self._rows) and has_scaled_rows(self._namespace, value, derived):
                 return [None] * len(value)
             entries = [
@@ -126,14 +127,29 @@ class DerivedMatrices:
         if n > 1 or shape[0] == 2:
             yield from self._of_states(shape, rows)
 
-    def _parts(self, shape: tuple[int, int]) -> Iterator[sp.Matrix]:
-        """Parts of the forces, on either side: those at rest, and those of velocities alone."""
+    def _parts(self, name: str, shape: tuple[int, int]) -> Iterator[sp.Matrix]:
+        """Parts of the forces: those at rest, and those of velocities alone.
+
+        Their sign is that of the side where the document has them, or any.
+        """
         d = self._namespace.derivation
         if shape != (len(self._rows), 1):
             return
         forces = sp.Matrix([d.forcing[i] - d.system.applied[i] for i in self._rows])
         at_rest = forces.xreplace(dict.fromkeys(d.system.qdot, sp.S.Zero))
-        yield from (at_rest, -at_rest, forces - at_rest, at_rest - forces)
+        for sign in self._signs(name):
+            yield from (sign * at_rest, sign * (forces - at_rest))
+
+    def _signs(self, name: str) -> Sequence[int]:
+        """The signs that a part of the forces can have: -1 in M*q_ddot + name = tau."""
+        quantities = self._namespace.letters.quantities
+        masses = {one for one, kind in quantities.items() if kind == "mass_matrix"}
+        for formula in self._namespace.formulas:
+            for side in formula.sides:
+                signs = dict(_terms(side.text))
+                if name in signs and any({*WORD.findall(one)} & masses for one in signs):
+                    return (-signs[name],)
+        return (1, -1)
 
     def _coriolis(self, value: sp.MatrixBase) -> Required | None:
         """C is not unique: C q̇ must be the forces of inertia that are quadratic in q̇.
@@ -174,6 +190,13 @@ class DerivedMatrices:
                 yield A.extract(order, order)
             for columns in combinations(range(B.cols), shape[1]):
                 yield B.extract(order, columns)
+
+
+def _terms(text: str) -> Iterator[tuple[str, int]]:
+    """The terms of a sum with their signs."""
+    for term, sign in summands(syntax_tree(text)):
+        start, end = place(text, term)
+        yield text[start:end], sign
 
 
 def has_scaled_rows(

@@ -53,9 +53,13 @@ class OtherStatements:
         """The verdict on a formula for which `result` is not correct; None if it is no other."""
         if self.relates_parameters(formula) or self._is_other_number(formula):
             return plain("definition", formula, "")
+        names = self._namespace.all_names
         operands = (self._namespace.derivatives.get(one, (one,))[0] for one in formula.words)
         if letters := sorted(self._ambiguous.intersection(operands)):
             return plain("context", formula, f"{', '.join(letters)} has two meanings")
+        is_parameter = names.get(formula.subject) in self._namespace.derivation.system.params
+        if is_parameter and len(formula.sides) > 2 and formula.sides[-1].text == "0":
+            return plain("context", formula, "it states a constraint")
         if GENERALIZED_FORCE.fullmatch(formula.subject):
             return plain("context", formula, "it states a generalized force")
         if self._is_foreign(formula):

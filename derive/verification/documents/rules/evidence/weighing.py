@@ -25,6 +25,7 @@ from derive.verification.documents.rules.consequences import (
     Contradictions,
     WithVerdict,
     opposed,
+    without_sources,
 )
 from derive.verification.documents.rules.evidence.contrary_statements import ContraryStatements
 from derive.verification.documents.rules.evidence.loads import (
@@ -97,8 +98,8 @@ def weighed(
     those of all others needs no more evidence if one term is wrong.
     """
     evidence = _Evidence(results, candidate, contradictions, is_stated, is_partial)
-    for number, (formula, _) in enumerate(results):
-        yield formula, evidence.weighed(number)
+    own = [(formula, evidence.weighed(number)) for number, (formula, _) in enumerate(results)]
+    yield from without_sources(own)
 
 
 class _Evidence:
@@ -166,8 +167,9 @@ class _Evidence:
             return f"it contradicts {self._given}, {UNEXPLAINED}"
         if odd := {*self._contradictions.inhomogeneous} & {*self._candidate.stating}:
             return opposed(self._lines[min(odd)])
-        if self._further_inertia and not result.verdict.note.endswith(NOT_LINEAR):
-            return f"line {self._further_inertia} states an inertia beside the positions"
+        if (line := self._line_of_inertia(number)) is not None:
+            subject = "it" if line == self._lines[number] else f"line {line}"
+            return f"{subject} states an inertia beside the positions"
         if number in self._contradictions.doubts:
             others = self._contradictions.doubts[number] - {number}
             beside = f" and agrees with {_lines(self._lines[k] for k in others)}" if others else ""
@@ -257,16 +259,21 @@ class _Evidence:
         places = (w for w in words if INDEXED_PLACE.fullmatch(w) and w not in known)
         return next(places, "")
 
-    @cached_property
-    def _further_inertia(self) -> int | None:
-        """The line of an energy with a moment of inertia, which positions do not state."""
-        if self._candidate.basis != "positions":
+    def _line_of_inertia(self, number: int) -> int | None:
+        """The line of an energy with a moment of inertia, which positions do not state.
+
+        Or that of the formula itself, if it has one, unless a side of it contradicts another.
+        """
+        formula, result = self._results[number]
+        if self._candidate.basis != "positions" or result.verdict.note.endswith(NOT_LINEAR):
             return None
         own = self._candidate.letters
-        for number, (formula, one) in enumerate(self._results):
-            others = {*filter(INERTIA.fullmatch, formula.words)} - own
-            if others and not one.is_understood and 1 in map(order, formula.words):
-                return self._lines[number]
+        if {*filter(INERTIA.fullmatch, formula.words)} - own:
+            return None if _contradicts_itself(formula, result) else self._lines[number]
+        for k, (other, one) in enumerate(self._results):
+            others = {*filter(INERTIA.fullmatch, other.words)} - own
+            if others and not one.is_understood and 1 in map(order, other.words):
+                return self._lines[k]
         return None
 
     def _special_motion(self, number: int) -> int | None:
