@@ -115,6 +115,7 @@ class LetterNotation:
     primed: frozenset[str] = frozenset()  # letters whose primes are rates beside dots of others
     calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
     factors: frozenset[str] = frozenset()  # identifiers before brackets that hold a column
+    moving: frozenset[str] = frozenset()  # letters that have dots
     columns: frozenset[str] = frozenset()  # functions that are columns, beside a scalar: g(q), g
 
 
@@ -269,6 +270,9 @@ class FormulaTranslator:
         name = self.name(node.head)
         if name in self.notation.times and not any(map(_is_of_time, node.arguments)):
             return False
+        is_moving = node.head.name in self.notation.moving
+        if is_moving and any(_is_factor(node.head, one) for one in node.arguments):
+            return False
         if name in self.notation.functions | self.notation.calls:
             return True
         return len(node.arguments) > 1 and name not in self.notation.factors
@@ -339,6 +343,13 @@ def identifier(letter: Letter) -> str:
     name = letter.identifier.replace("+", "_plus_").replace("-", "_minus_")
     name = re.sub(r"\W", "_", name)
     return name if name[:1].isalpha() else f"letter_{name}"
+
+
+def _is_factor(head: Letter, argument: Node) -> bool:
+    """Whether brackets behind a coordinate hold a factor, with rates or with this coordinate."""
+    if isinstance(argument, Letter):
+        return False
+    return any(one.dots or one.identifier == head.identifier for one in letters(argument))
 
 
 def _is_of_time(argument: Node) -> bool:

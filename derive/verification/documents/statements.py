@@ -43,6 +43,8 @@ POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 SQUARE = re.compile(r"(\w+)\*\*2")
 #: An entry of a matrix, and one of a matrix or column.
 MATRIX_ENTRY, INDEXED_ENTRY = (re.compile(rf"[A-Za-z]_?\d{one}") for one in (r"_?\d", r"(?:_?\d)?"))
+#: A differential, which is read as a product.
+DIFFERENTIAL = re.compile(r"(?<!\w)d\*[A-Za-z]\w*\Z|(?<!\w)d\*(?:theta|t|x|r)\b")
 #: Words for quantities that do not change.
 CONSTANT = re.compile(r"[ck]onst(?:ante?)?|costante|cte|cste?", re.IGNORECASE)
 #: The name of one such quantity.
@@ -202,6 +204,8 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
     for number in numbers:
         written = [indexed(side, index, number) if index else side for side in sides]
         texts = [translator.text(side) for side in written]
+        if all(DIFFERENTIAL.search(text.text) for text in (texts[0], texts[-1])):
+            raise UntranslatableError("differentials")
         pairs = [*zip(("=", *relations), texts, strict=True)]
         if len(texts) > 2:
             pairs = [one for one in pairs if not OWN_CONSTANT.fullmatch(one[1].text)]
@@ -274,6 +278,7 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         bool(indices) or len(dotted - generic) < 2,
         primed and not dotted,
         frozenset(dotted - marked if both else ()),
+        moving=frozenset(dotted),
         columns=frozenset(columns),
     )
 

@@ -278,7 +278,8 @@ class _Equations:
     ) -> None:
         self._known: dict[str, Dimension] = {"t": {TIME: Fraction(1)}, "pi": ONE}
         for name in letters.of_kind("mass"):
-            self._known[name] = {MASS: Fraction(1)}
+            if not name.startswith("mu"):  # which can be that of gravity, or of friction
+                self._known[name] = {MASS: Fraction(1)}
         for name in letters.of_kind("gravity"):
             if name.startswith("g"):  # G is the constant of gravitation
                 self._known[name] = GRAVITY

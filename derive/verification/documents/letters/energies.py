@@ -35,6 +35,8 @@ Stated = Mapping[str, Sequence[tuple[sp.Expr, int]]]
 MOST, ROUNDS = 3, 3
 #: Words about Rayleigh's function.
 RAYLEIGH = re.compile(r"rayleigh|dis{1,2}ipa[ctz]|レイリー|瑞利", re.IGNORECASE)
+#: A letter of a speed that no formula defines.
+SPEED = re.compile(r"v(?:_\w+)?\Z")
 #: The value of a mass that is larger than the others.
 LARGE = 10.0
 
@@ -245,6 +247,7 @@ def stated_energies(
     `stated` and `values` are those of `stated_values`.
     """
     kinetic, potential = (stated.get(f"{kind}_energy", ()) for kind in ("kinetic", "potential"))
+    kinetic = [(T, number) for T, number in kinetic if not _has_open_speed(T)]
     for (T, first), (V, second) in product(kinetic, potential):
         yield T, V, frozenset({first, second})
     at_rest = {velocity(values[q]): sp.S.Zero for q in letters.coordinates}
@@ -260,6 +263,13 @@ def stated_energies(
         yield from energies_of_matrices(letters, formulas, values, potential)
     if not potential:
         yield from ((T, sp.S.Zero, frozenset({number})) for T, number in kinetic)
+
+
+def _has_open_speed(kinetic: sp.Expr) -> bool:
+    """Whether an energy has a term m*v**2/2 in a speed that no formula states by coordinates."""
+    speeds = (s for s in kinetic.free_symbols if SPEED.match(s.name))
+    others = {s for s in kinetic.free_symbols if order(s.name)}
+    return bool(others) and any(kinetic.diff(s).free_symbols.isdisjoint(others) for s in speeds)
 
 
 def _sums_of_parts(

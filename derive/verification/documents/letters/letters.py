@@ -77,8 +77,8 @@ WITH_INDEX = {
 #: A letter with a word as its index, such as mCart.
 CAPITAL = re.compile(r"[A-Za-z][A-Z][a-z]+\Z")
 
-OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "pi", "det"}
-OPERATORS |= {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}
+OPERATORS = {*FUNCTIONS, "ddt", "diff", "inverse", "transpose", "square", "norm", "cross", "pi"}
+OPERATORS |= {"det", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "sign", "max", "min"}
 #: Abbreviations of sines and cosines, such as s_1, c_12 and s_1_plus_2.
 ABBREVIATION = re.compile(r"([sc])_(\d(?:_plus_\d|\d)*)\Z")
 #: A column of names.

@@ -211,12 +211,12 @@ def _linearised(formulas: Sequence[DocumentFormula]) -> set[int]:
 def _of_special_motions(
     tried: Sequence[SystemCandidate], letters: Letters, formulas: Sequence[DocumentFormula]
 ) -> set[int]:
-    """The numbers of formulas of special motions, which stated energies do not determine.
+    """The numbers of formulas of special motions, which stated systems do not determine.
 
     They contain coordinates or momenta without rates, and letters that neither energies contain
-    nor positions.
+    nor equations nor positions.
     """
-    if tried[0].basis != "energies":
+    if tried[0].basis not in ("energies", "equations"):
         return set()
     known = frozenset[str]().union(*(one.letters for one in tried))
     known |= {*filter(POINT.match, letters.parameters)}

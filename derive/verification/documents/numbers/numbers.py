@@ -90,7 +90,7 @@ class Numbers:
 
     def define(self, formulas: Sequence[DocumentFormula]) -> None:
         """Set the values of names that formulas define, also of coordinates of no candidate."""
-        subjects = {one.subject for one in formulas} - {*self._letters.accelerated}
+        subjects = {stem(one.subject) for one in formulas} - {*self._letters.accelerated}
         for name in subjects & ({*self._letters.coordinates} - {*self._motions.coordinates}):
             for ending in RATES[:3]:
                 self.values.pop(name + ending, None)

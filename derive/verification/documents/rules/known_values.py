@@ -180,6 +180,8 @@ class DocumentNamespace:
     def _add_columns(self, formulas: Sequence[DocumentFormula]) -> None:
         """Matrices and columns by their entries, and columns of small displacements."""
         words = dict.fromkeys(word for formula in formulas for word in formula.words)
+        entries = {one.subject for one in formulas}  # of columns that no formula contains
+        words |= dict.fromkeys(f"{one}_column" for one in "CGgch" if f"{one}_1" in entries)
         order = [one for q in self.letters.ordered if (one := self.names.get(q)) in self._system.q]
         for name, value in composed(words, self.all_names, len(order)):
             self.composed.add(name)
@@ -209,8 +211,9 @@ class DocumentNamespace:
             "energy": d.energy,
         }
         values |= self._matrices
+        stated = {one.subject for one in self.formulas}
         for name, kind in self.letters.quantities.items():
-            if kind in values:
+            if kind in values and (kind != "mass_matrix" or name in stated):  # not its entries
                 self.names[name] = values[kind]
         # a potential energy can leave terms of velocities to the Lagrangian
         for name, kind in self.letters.quantities.items():
@@ -449,7 +452,14 @@ def _functions(system: Any, derivation: Derivation) -> Iterator[tuple[str, Any]]
         return sp.Abs(value)
 
     yield "ddt", ddt
-    yield "diff", lambda value, symbol: value.diff(symbol)
+
+    def diff(value: Value, variable: sp.Symbol) -> Value:
+        """The derivative, along the motion if the value changes without the variable."""
+        if variable in system.q and not value.has(variable) and depends_on(value, system.q):
+            return ddt(value) / velocity(variable)
+        return value.diff(variable)
+
+    yield "diff", diff
     yield "inverse", lambda matrix: matrix.inv()
     yield "transpose", lambda matrix: matrix.T
     yield "square", lambda column: (column.T * column)[0, 0]

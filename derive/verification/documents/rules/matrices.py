@@ -144,11 +144,14 @@ class DerivedMatrices:
         """The signs that a part of the forces can have: -1 in M*q_ddot + name = tau."""
         quantities = self._namespace.letters.quantities
         masses = {one for one, kind in quantities.items() if kind == "mass_matrix"}
+        letter = name.removesuffix("_column")
+        named = (name, letter, f"{letter}*{self._namespace.letters.column}_dot")
         for formula in self._namespace.formulas:
             for side in formula.sides:
                 signs = dict(_terms(side.text))
-                if name in signs and any({*WORD.findall(one)} & masses for one in signs):
-                    return (-signs[name],)
+                own = next((signs[one] for one in named if one in signs), None)
+                if own and any({*WORD.findall(one)} & masses for one in signs):
+                    return (-own,)
         return (1, -1)
 
     def _coriolis(self, value: sp.MatrixBase) -> Required | None:
