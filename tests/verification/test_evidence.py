@@ -11,7 +11,11 @@ from derive.verification.documents.judgement import _without_foreign
 from derive.verification.documents.letters.candidates import BY_EQUATIONS, STATED, SystemCandidate
 from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letter_roles import letters_of
-from derive.verification.documents.rules.consequences import Contradictions, WithVerdict
+from derive.verification.documents.rules.consequences import (
+    Contradictions,
+    WithVerdict,
+    without_sources,
+)
 from derive.verification.documents.rules.evidence.weighing import weighed
 from derive.verification.documents.rules.side_verdict import plain
 from derive.verification.documents.statements import DocumentFormula, Occurrence, translated
@@ -282,3 +286,14 @@ def test_a_place_without_a_rate_can_be_another_one(place: str, kind: str, expect
     # positions that are stated show what it is
     by_positions = [*weighed(results, stated(STATED), Contradictions(), is_stated=False)]
     assert by_positions[-1][1].verdict.verdict == "wrong"
+
+
+@pytest.mark.parametrize(("source", "expected"), [("wrong", "wrong"), ("context", "context")])
+def test_what_follows_from_a_formula_is_wrong_if_this_is(source: str, expected: str) -> None:
+    energies = formulas(r"L = \frac12 m\dot x^2 - k x^2", r"H = \frac12 m\dot x^2 + k x^2")
+    (first, one), (second, other) = (with_verdict(formula, "wrong") for formula in energies)
+    one = replace(one, verdict=replace(one.verdict, verdict=source))
+    note = f"it follows from line {first.occurrence.line}; given line 9"
+    other = replace(other, verdict=replace(other.verdict, note=note))
+    found = without_sources([(first, one), (second, other)])
+    assert verdicts(found) == [(source, ""), (expected, note)]
