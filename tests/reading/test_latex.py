@@ -164,6 +164,8 @@ def test_spans_of_statements_are_their_places_in_the_display() -> None:
         ("", r"\half\thetadot^2 + \xddot\ddotalpha_1", "([1 / 2] theta.^2 + x.. alpha_1..)"),
         ("", r"\frac{\d x}{\d t} + \Vec{q}\Ddot y \mbf{p}", "(d(x; t) + bold q y.. bold p)"),
         ("", r"b\cdot\ddot a + \dots", "(b a.. + dots)"),
+        ("", r"\ddt{x} + \inv{2} y", "(d(x; t) + [1 / 2] y)"),
+        ("", r"\bf M(\bf q) \bf{\ddot q} = {\bf B}", "bold M@(bold q) bold q.. = bold B"),
         ("", r"a \odot b", r"unreadable: the command \odot is not known"),
         (r"\newcommand{\rdot}{\dot R}\def\d{\delta}", r"\rdot\d", "R. delta"),
     ],

@@ -137,7 +137,9 @@ DERIVATIVES = {
 #: Macros that many documents define in other files, and accents of older packages.
 USUAL = {
     "d": Macro("d", r"\mathrm{d}"),
+    "ddt": Macro("ddt", r"\frac{\mathrm{d} #1}{\mathrm{d} t}", 1),
     "half": Macro("half", r"\frac{1}{2}"),
+    "inv": Macro("inv", r"\frac{1}{#1}", 1),
     "mbf": Macro("mbf", r"\mathbf{#1}", 1),
     "vect": Macro("vect", r"\vec{#1}", 1),
 }

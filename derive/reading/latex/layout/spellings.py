@@ -26,17 +26,21 @@ POINTS = {".": "dot", "cdot": "dot", "..": "ddot", "cdotcdot": "ddot", "...": "d
 
 
 def with_new_fonts(tokens: list[Token]) -> list[Token]:
-    r"""Tokens in which ``{\bf r}`` is ``\mathbf{r}``."""
+    r"""Tokens in which ``{\bf r}`` is ``\mathbf{r}``.
+
+    Behind no brace, such a font is meant for the next letter or braces: ``\bf M(\bf q)``.
+    """
     result: list[Token] = []
     for token in tokens:
         if token.kind == "command" and token.text in OLD_FONTS:
             brace = max(0, len(result) - 1)
             while brace and result[brace].kind == "space":
                 brace -= 1
-            if not result or result[brace].kind != "{":
-                raise UnreadError(rf"\{token.text} does not stand behind a brace")
-            font = replace(token, text=OLD_FONTS[token.text], span=result[brace].span)
-            result.insert(brace, font)
+            font = replace(token, text=OLD_FONTS[token.text])
+            if result and result[brace].kind == "{":
+                result.insert(brace, replace(font, span=result[brace].span))
+            else:
+                result.append(font)
         else:
             result.append(token)
     return result
