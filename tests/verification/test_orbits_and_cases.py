@@ -151,3 +151,11 @@ def test_columns_by_their_entries_are_judged(right: str, slip: str, tmp_path: Pa
     before, _, after = LEG.rpartition(right)
     (one,) = (one for one in judged(tmp_path, before + slip + after) if one.verdict == "wrong")
     assert slip in one.latex
+
+
+def test_primes_can_be_derivatives_by_the_angle(tmp_path: Path) -> None:
+    text = r"""$$L = \frac12 m (\dot r^2 + r^2\dot\phi^2) + \frac{k}{r}, \quad \ell = m r^2\dot\phi$$
+$$m\ddot r - \frac{\ell^2}{m r^3} + \frac{k}{r^2} = 0$$ With $u = \frac{1}{r}$,
+$$u' = -\frac{r'}{r^2}, \quad u'' = \frac{d}{d\phi}\left(-\frac{r'}{r^2}\right)
+= -\frac{r''}{r^2} + 2\frac{(r')^2}{r^3}$$"""
+    assert "wrong" not in verdicts(tmp_path, text).values()

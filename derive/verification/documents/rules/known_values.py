@@ -454,8 +454,12 @@ def _functions(system: Any, derivation: Derivation) -> Iterator[tuple[str, Any]]
     yield "ddt", ddt
 
     def diff(value: Value, variable: sp.Symbol) -> Value:
-        """The derivative, along the motion if the value changes without the variable."""
-        if variable in system.q and not value.has(variable) and depends_on(value, system.q):
+        """The derivative, along the motion if the value changes without the variable.
+
+        Rates in it can be derivatives by this variable themselves, written with primes.
+        """
+        is_partial = value.has(variable) or depends_on(value, system.qdot)
+        if variable in system.q and not is_partial and depends_on(value, system.q):
             return ddt(value) / velocity(variable)
         return value.diff(variable)
 
