@@ -156,6 +156,14 @@ def test_columns_by_their_entries_are_judged(right: str, slip: str, tmp_path: Pa
 def test_primes_can_be_derivatives_by_the_angle(tmp_path: Path) -> None:
     text = r"""$$L = \frac12 m (\dot r^2 + r^2\dot\phi^2) + \frac{k}{r}, \quad \ell = m r^2\dot\phi$$
 $$m\ddot r - \frac{\ell^2}{m r^3} + \frac{k}{r^2} = 0$$ With $u = \frac{1}{r}$,
-$$u' = -\frac{r'}{r^2}, \quad u'' = \frac{d}{d\phi}\left(-\frac{r'}{r^2}\right)
+$$u' = \frac{d}{d\phi}\left(\frac{1}{r}\right) = -\frac{r'}{r^2}, \quad u'' = \frac{d}{d\phi}\left(-\frac{r'}{r^2}\right)
 = -\frac{r''}{r^2} + 2\frac{(r')^2}{r^3}$$"""
     assert "wrong" not in verdicts(tmp_path, text).values()
+
+
+def test_a_function_of_the_angle_does_not_vanish_with_its_letters(tmp_path: Path) -> None:
+    text = r"""$$h = r^2\dot\phi, \quad u(\phi) \equiv 1/r(\phi), \quad u' = \frac{du}{d\phi}$$
+$$u'' + u = \frac{k}{h^2} u^2$$ $$u' u'' + u u' = \frac{k}{h^2} u^2 u'$$"""
+    found = verdicts(tmp_path, text)
+    assert found[r"u(\phi) \equiv 1/r(\phi)"] in ("definition", "context")
+    assert found[r"u' u'' + u u' = \frac{k}{h^2} u^2 u'"] == "context"

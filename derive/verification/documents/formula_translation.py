@@ -92,6 +92,9 @@ def order(name: str) -> int:
 #: Reciprocals of functions that formulas have.
 RECIPROCALS = {"sec": "cos", "csc": "sin"}
 
+#: Letters of potentials, whose primes are derivatives by their own arguments.
+FUNCTIONS_OF_PLACES = ("V", "U", "W", "f", "F")
+
 #: Most terms of a sum that is written out.
 MAX_TERMS = 20
 #: Most terms and factors that are read: each is evaluated within the next.
@@ -116,6 +119,7 @@ class LetterNotation:
     calls: frozenset[str] = frozenset()  # functions whose arguments are kept: f(t + h, w)
     factors: frozenset[str] = frozenset()  # identifiers before brackets that hold a column
     moving: frozenset[str] = frozenset()  # letters that have dots
+    slope: str = ""  # the letter by which primes are derivatives, as u' = du/dθ
     columns: frozenset[str] = frozenset()  # functions that are columns, beside a scalar: g(q), g
 
 
@@ -139,9 +143,18 @@ class FormulaTranslator:
         """The identifier of a letter with its dots."""
         are_rates = self.notation.primes_are_rates or letter.name in self.notation.primed
         primes = letter.primes if are_rates else 0
+        is_slope = letter.primes and not letter.dots and letter.name not in FUNCTIONS_OF_PLACES
+        if (slope := self.notation.slope) and is_slope:
+            return self._slope(identifier(letter), (slope,) * letter.primes)
         name = identifier(letter) + "_prime" * (letter.primes - primes)
         name = f"{name}_column" if letter.is_bold else name
         return name + RATES[letter.dots + primes]
+
+    def _slope(self, operand: str, variables: tuple[str, ...]) -> str:
+        """The name of a derivative."""
+        name = f"d{operand}" + "".join(f"_d{one}" for one in variables)
+        self.derivatives[name] = operand, variables
+        return name
 
     def _text(self, node: Node) -> FormulaText:
         match node:
@@ -286,11 +299,12 @@ class FormulaTranslator:
         variables = tuple(self._text(one).text for one in node.variables)
         operand = self._text(node.operand)
         if isinstance(node.operand, Letter | Application) and operand.text.isidentifier():
-            name = "d".join(["", operand.text]) + "".join(f"_d{one}" for one in variables)
-            self.derivatives[name] = operand.text, variables
-            return FormulaText(name)
+            return FormulaText(self._slope(operand.text, variables))
         for variable in variables:
-            operand = joined_text(ATOM, "diff(", operand, f", {variable})")
+            if not node.is_partial and variable in self.notation.moving:  # along the motion
+                operand = joined_text(PRODUCT, "ddt(", operand, f")/{variable}_dot")
+            else:
+                operand = joined_text(ATOM, "diff(", operand, f", {variable})")
         return operand
 
     def _rate(self, operand: FormulaText, times: int) -> FormulaText:

@@ -30,6 +30,7 @@ from derive.verification.documents.formula_translation import (
     FormulaTranslator,
     LetterNotation,
     UntranslatableError,
+    identifier,
     order,
     stem,
 )
@@ -103,6 +104,8 @@ class DocumentFormula:
     index: int = 0
     #: Whether it is a special case of a parameter, such as the critical speed omega**2 = g/R.
     is_special_case: bool = False
+    #: Whether a side states that the others do not change, such as ``= const``.
+    is_conserved: bool = False
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -207,15 +210,18 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
         if all(DIFFERENTIAL.search(text.text) for text in (texts[0], texts[-1])):
             raise UntranslatableError("differentials")
         pairs = [*zip(("=", *relations), texts, strict=True)]
+        constants = [one for one in pairs if OWN_CONSTANT.fullmatch(one[1].text)]
         if len(texts) > 2:
-            pairs = [one for one in pairs if not OWN_CONSTANT.fullmatch(one[1].text)]
+            pairs = [one for one in pairs if one not in constants]
+        texts, relations = [text for _, text in pairs], [one for one, _ in pairs[1:]]
         yield DocumentFormula(
-            occurrence, tuple(text for _, text in pairs), tuple(one for one, _ in pairs[1:]), number
+            occurrence, tuple(texts), tuple(relations), number, is_conserved=bool(constants)
         )
 
 
 def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     """What letters are, from all statements."""
+    occurrences = [*occurrences]
     trees = [side for occurrence in occurrences for side in occurrence.sides]
     plain = FormulaTranslator()
     everything = [letter for tree in trees for letter in letters(tree)]
@@ -224,7 +230,8 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
     # a letter with dots and with primes has its rates in both notations, if one is the second
     marked = {letter.name for letter in everything if letter.primes and letter.dots}
     twice = {letter.name for letter in everything if letter.primes == 2}
-    both = (dotted & twice) - marked
+    slopes = set[str]().union(*(_slope_variables(one.sides) for one in occurrences))
+    both = set[str]() if slopes else (dotted & twice) - marked
     indices = [int(one.index) for one in everything if one.index.isdecimal() and one.name in dotted]
     # letters that move, or by which a function is differentiated, are its arguments
     varied: dict[str, set[str]] = {}
@@ -276,11 +283,21 @@ def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
         frozenset(matrices),
         min(count, 9),
         bool(indices) or len(dotted - generic) < 2,
-        primed and not dotted,
+        primed and not dotted and not slopes,
         frozenset(dotted - marked if both else ()),
         moving=frozenset(dotted),
+        slope=min(slopes) if len(slopes) == 1 and slopes <= dotted else "",
         columns=frozenset(columns),
     )
+
+
+def _slope_variables(sides: Sequence[Node]) -> set[str]:
+    """The letters but time of total derivatives beside primes."""
+    if not any(letter.primes for letter in letters(sides)):
+        return set()
+    total = (one for one in nodes(sides) if isinstance(one, Derivative) and not one.is_partial)
+    variables = {one for node in total for one in node.variables if isinstance(one, Letter)}
+    return {identifier(one) for one in variables if one.name != "t"}
 
 
 def _is_at_one_time(side: Node) -> bool:

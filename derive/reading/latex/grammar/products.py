@@ -149,8 +149,9 @@ def _ends_with_angle(call: Node) -> bool:
 
 
 def _has_brackets(part: Part) -> bool:
-    """Whether a part is a letter before brackets, other than x(t)."""
+    """Whether a part is a letter before brackets, other than x(t) and r(θ)."""
     if not isinstance(part, Application):
         return False
     argument = part.arguments[0]
-    return not (isinstance(argument, Letter) and argument.identifier == "t")
+    is_function = isinstance(argument, Letter) and argument.name in ("t", *GREEK)
+    return not (is_function and len(part.arguments) == 1)

@@ -157,7 +157,18 @@ class StatedEquations:
                     is_scalar = not isinstance(value, sp.MatrixBase)
                     if is_scalar and sp.count_ops(value) <= MAX_OPERATIONS:
                         result.append((number, value))
+            if formula.is_conserved:
+                result += ((number, rate) for rate in self._rates(formula))
         return result
+
+    def _rates(self, formula: DocumentFormula) -> Iterator[sp.Expr]:
+        """Yield the rate of what a formula states to be constant, such as of r**2*theta_dot."""
+        for side in formula.sides[::-1]:
+            with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+                rate = parse(f"ddt({side.text})", self._names)
+                if not isinstance(rate, sp.MatrixBase) and rate.has(*map(acceleration, self._q)):
+                    yield rate
+                    return
 
     def _candidate(
         self, rows: Sequence[_Equation], reactions: Mapping[str, sp.Symbol], numbers: frozenset[int]

@@ -8,6 +8,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import cached_property
 
 import sympy as sp
 
@@ -15,10 +16,11 @@ from derive.formulas.expression import FUNCTIONS, Value, parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.derivation import Derivation
+from derive.reading.latex.tree import Application, Letter, nodes
 from derive.system.parts import Coordinate, Parameter, SystemDefinitionError
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.formula_translation import RATES, order, stem
+from derive.verification.documents.formula_translation import RATES, identifier, order, stem
 from derive.verification.documents.letters.energies import StatedInertia
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import (
@@ -223,7 +225,10 @@ class Identities:
             raise ExpressionError("names define one another")
         if self._is_partial(word):
             operand, variables = self._derivatives[word]
-            return self._name(operand, depth + 1).diff(*map(self._symbol, variables))
+            value, by = self._name(operand, depth + 1), [*map(self._symbol, variables)]
+            if value.free_symbols.isdisjoint(by) and (operand, variables[0]) in self._arguments:
+                raise ExpressionError(f"{word} is a derivative along the motion")
+            return value.diff(*by)
         value = self._values.get(name)
         if value is None and name in self._texts and self._texts[name] != "0":
             value = self._value(self._texts[name], depth + 1)
@@ -240,6 +245,18 @@ class Identities:
         for _ in range(order(word)):
             value = self._rate(value)
         return value
+
+    @cached_property
+    def _arguments(self) -> set[tuple[str, str]]:
+        """Names and letters of which they are written as functions, such as u and θ of u(θ)."""
+        trees = (side for one in self._formulas for side in one.occurrence.sides)
+        return {
+            (identifier(node.head), identifier(one))
+            for node in nodes(tuple(trees))
+            if isinstance(node, Application) and isinstance(node.head, Letter)
+            for one in node.arguments
+            if isinstance(one, Letter)
+        }
 
     def _is_partial(self, name: str) -> bool:
         """Whether a name is a partial derivative of another that has a definition."""

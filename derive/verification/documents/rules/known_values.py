@@ -452,18 +452,7 @@ def _functions(system: Any, derivation: Derivation) -> Iterator[tuple[str, Any]]
         return sp.Abs(value)
 
     yield "ddt", ddt
-
-    def diff(value: Value, variable: sp.Symbol) -> Value:
-        """The derivative, along the motion if the value changes without the variable.
-
-        Rates in it can be derivatives by this variable themselves, written with primes.
-        """
-        is_partial = value.has(variable) or depends_on(value, system.qdot)
-        if variable in system.q and not is_partial and depends_on(value, system.q):
-            return ddt(value) / velocity(variable)
-        return value.diff(variable)
-
-    yield "diff", diff
+    yield "diff", lambda value, symbol: value.diff(symbol)
     yield "inverse", lambda matrix: matrix.inv()
     yield "transpose", lambda matrix: matrix.T
     yield "square", lambda column: (column.T * column)[0, 0]
