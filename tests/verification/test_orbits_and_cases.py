@@ -154,9 +154,10 @@ def test_columns_by_their_entries_are_judged(right: str, slip: str, tmp_path: Pa
 
 
 def test_primes_can_be_derivatives_by_the_angle(tmp_path: Path) -> None:
-    text = r"""$$L = \frac12 m (\dot r^2 + r^2\dot\phi^2) + \frac{k}{r}, \quad \ell = m r^2\dot\phi$$
+    text = r"""$$L = \frac12 m (\dot r^2 + r^2\dot\phi^2) + \frac{k}{r}$$ $$\ell = m r^2\dot\phi$$
 $$m\ddot r - \frac{\ell^2}{m r^3} + \frac{k}{r^2} = 0$$ With $u = \frac{1}{r}$,
-$$u' = \frac{d}{d\phi}\left(\frac{1}{r}\right) = -\frac{r'}{r^2}, \quad u'' = \frac{d}{d\phi}\left(-\frac{r'}{r^2}\right)
+$$u' = \frac{d}{d\phi}\left(\frac{1}{r}\right) = -\frac{r'}{r^2}$$
+$$u'' = \frac{d}{d\phi}\left(-\frac{r'}{r^2}\right)
 = -\frac{r''}{r^2} + 2\frac{(r')^2}{r^3}$$"""
     assert "wrong" not in verdicts(tmp_path, text).values()
 
@@ -167,3 +168,15 @@ $$u'' + u = \frac{k}{h^2} u^2$$ $$u' u'' + u u' = \frac{k}{h^2} u^2 u'$$"""
     found = verdicts(tmp_path, text)
     assert found[r"u(\phi) \equiv 1/r(\phi)"] in ("definition", "context")
     assert found[r"u' u'' + u u' = \frac{k}{h^2} u^2 u'"] == "context"
+
+
+CONSERVED = r"""$$\ddot r - r\dot\phi^2 = -\frac{\mu}{r^2}, \quad h = r^2\dot\phi = \text{const}$$
+With $u(\phi) = 1/r(\phi)$, $$\dot r = -h\frac{du}{d\phi}, \quad
+\frac{d^2u}{d\phi^2} + u = \frac{\mu}{h^2}$$"""
+
+
+def test_a_constant_of_the_motion_states_an_equation(tmp_path: Path) -> None:
+    found = verdicts(tmp_path, CONSERVED)
+    assert list(found.values())[-2:] == ["verified", "verified"]
+    slip = CONSERVED.replace(r"+ u = \frac", r"- u = \frac")
+    assert list(verdicts(tmp_path, slip).values())[-1] != "verified"

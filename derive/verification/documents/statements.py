@@ -213,10 +213,9 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
         constants = [one for one in pairs if OWN_CONSTANT.fullmatch(one[1].text)]
         if len(texts) > 2:
             pairs = [one for one in pairs if one not in constants]
-        texts, relations = [text for _, text in pairs], [one for one, _ in pairs[1:]]
-        yield DocumentFormula(
-            occurrence, tuple(texts), tuple(relations), number, is_conserved=bool(constants)
-        )
+        own = tuple(text for _, text in pairs)
+        between = tuple(one for one, _ in pairs[1:])
+        yield DocumentFormula(occurrence, own, between, number, is_conserved=bool(constants))
 
 
 def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:

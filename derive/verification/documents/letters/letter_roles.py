@@ -266,7 +266,7 @@ def _slope(text: str, name: str) -> sp.Expr:
 
 def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> set[str]:
     """Names that a formula in others defines, but for solutions such as theta = a*cos(omega*t)."""
-    defined = set()
+    defined = set[str]()
     mechanical = _mechanical(formulas, orders)
     equal = [{side.text for side in one.sides} for one in formulas]
     for formula in formulas:

@@ -21,6 +21,7 @@ from derive.verification.documents.rules.consequences import (
     opposed,
 )
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
+from derive.verification.documents.rules.evidence.slips import is_slip
 from derive.verification.documents.rules.evidence.stated_loads import (
     AS_FORCES,
     with_contrary_loads,
@@ -53,7 +54,7 @@ from derive.verification.documents.statements import (
 )
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
-from derive.verification.judging.verdict import Correction
+from derive.verification.judging.verdict import Correction, Verdict
 
 #: A number with a decimal point.
 DECIMAL = re.compile(r"\d\.\d")
@@ -129,7 +130,29 @@ class Judge:
             return plain("definition", formula, STATES)
         if result.verdict.verdict == "wrong" and "dots" in formula.words:
             return plain("context", formula, "dots stand for some of its terms")
-        return result
+        return replace(result, verdict=self._with_other_letter(result.verdict))
+
+    def _with_other_letter(self, verdict: Verdict) -> Verdict:
+        """The verdict; a correction that writes out the value of a letter is this letter.
+
+        It stands in the place of another one, which is as likely as any slip of a letter.
+        """
+        if len(verdict.corrections) != 1 or is_slip(verdict.corrections):
+            return verdict
+        (correction,) = verdict.corrections
+        params = {*self._namespace.derivation.system.params}
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            required = self._namespace.value(correction.correct)
+            for name in self._namespace.defining:
+                value = self._namespace.names.get(name)
+                if not isinstance(value, sp.Expr) or not value.free_symbols <= params:
+                    continue
+                for letter in dict.fromkeys(WORD.findall(correction.wrong)):
+                    text = re.sub(rf"\b{letter}\b", name, correction.wrong)
+                    if sp.expand(self._namespace.value(text) - required) == 0:
+                        own = replace(correction, correct=text)
+                        return replace(verdict, corrections=(own,))
+        return verdict
 
     def _verdict(self, formula: DocumentFormula) -> SideVerdict:
         if not formula.relations:

@@ -14,7 +14,6 @@ from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText, order, stem
 from derive.verification.documents.letters.candidates import BY_LAGRANGIAN
-from derive.verification.documents.rules.evidence.slips import is_slip
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
@@ -79,7 +78,6 @@ class Roles:
         if kind:
             with suppress(ExpressionError):
                 verdict = judge_formula(self._model_of(side, name), "", side.text, kind, name)
-                verdict = self._with_other_letter(verdict)
                 if verdict.verdict != "unreadable":
                     return SideVerdict(verdict, ((0, side),), kind)
         inside = self._inside_rate(first, side)
@@ -200,29 +198,7 @@ class Roles:
             verdict = judge_formula(model, "", side.text, "value", name)
             if verdict.verdict != "wrong" or verdict.corrections:
                 break
-        return SideVerdict(self._with_other_letter(verdict), ((0, side),), "value")
-
-    def _with_other_letter(self, verdict: Verdict) -> Verdict:
-        """The verdict; a correction that writes out the value of a letter is this letter.
-
-        It stands in the place of another one, which is as likely as any slip of a letter.
-        """
-        if len(verdict.corrections) != 1 or is_slip(verdict.corrections):
-            return verdict
-        (correction,) = verdict.corrections
-        params = {*self._namespace.derivation.system.params}
-        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
-            required = self._namespace.value(correction.correct)
-            for name in self._namespace.defining:
-                value = self._namespace.names.get(name)
-                if not isinstance(value, sp.Expr) or not value.free_symbols <= params:
-                    continue
-                for letter in dict.fromkeys(WORD.findall(correction.wrong)):
-                    text = re.sub(rf"\b{letter}\b", name, correction.wrong)
-                    if sp.expand(self._namespace.value(text) - required) == 0:
-                        own = replace(correction, correct=text)
-                        return replace(verdict, corrections=(own,))
-        return verdict
+        return SideVerdict(verdict, ((0, side),), "value")
 
     def _canonical(self, subject: str, left: sp.Expr, right: sp.Expr) -> sp.Expr | None:
         """The right-hand side of a canonical equation, in the variables that a document uses.
