@@ -201,3 +201,15 @@ def test_the_column_of_gravity_is_the_gradient_of_the_potential(tmp_path: Path) 
     text = COLUMNS.replace(r"s\cos q_1 + c\cos(q_1", r"s\sin q_1 + c\cos(q_1")
     (one,) = (one for one in judged(tmp_path, text) if one.verdict == "wrong")
     assert one.wrong_term == r"s\sin q_1"
+
+
+def test_entries_beside_their_matrix_are_those_of_the_mass_matrix(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 (a + 2 b\cos q_2)\dot q_1^2 + (d + b\cos q_2)\dot q_1\dot q_2
++ \frac12 d\dot q_2^2, \quad V = c\cos q_1$$
+$$M = \begin{bmatrix} M_{11} & M_{12} \\ M_{21} & M_{22} \end{bmatrix}$$
+$$M_{11} = a + 2 b\cos q_2, \quad M_{12} = M_{21} = d + b\cos q_2, \quad M_{22} = d$$"""
+    assert [one.verdict for one in judged(tmp_path, text)][3:] == ["verified"] * 3
+    slip = judged(
+        tmp_path, text.replace(r"d + b\cos q_2, \quad M_{22}", r"d + b\sin q_2, \quad M_{22}")
+    )
+    assert [one.verdict for one in slip].count("wrong") == 1

@@ -67,10 +67,17 @@ class DerivedMatrices:
         if not match:
             return None
         matrix = match[1] if match[3] else f"{match[1]}_column"
+        column = int(match[3]) - 1 if match[3] else 0
+        names, quantities = self._namespace.names, self._namespace.letters.quantities
+        if matrix not in self._namespace.composed and quantities.get(matrix) == "mass_matrix":
+            own, derived, row = names.get(name), names.get(matrix), int(match[2]) - 1
+            if own is None or derived is None or max(row, column) >= derived.rows:
+                return None
+            required = derived[row, column]
+            return [None if _agree(self._namespace, own, required) else required]
         if matrix not in self._required or matrix not in self._namespace.composed:
             return None
-        column = int(match[3]) - 1 if match[3] else 0
-        index = (int(match[2]) - 1) * self._namespace.names[matrix].cols + column
+        index = (int(match[2]) - 1) * names[matrix].cols + column
         return self._required[matrix][index : index + 1]
 
     def _compared(self, name: str) -> Required | None:
