@@ -167,6 +167,11 @@ def test_slips_beside_modes(right: str, slip: str, verdict: str, tmp_path: Path)
     assert sum(one.verdict == "wrong" for one in after) == (verdict == "wrong")
 
 
+def test_an_equation_of_one_coordinate_can_be_of_another_case(tmp_path: Path) -> None:
+    text = rf"{COUPLED} While the other one rests, $$\ddot u_1 + (D + c)\frac{{u_1}}{{m}} = 0$$"
+    assert judged(tmp_path, text)[-1].verdict == "context"
+
+
 MODES = r"""$$m_1\ddot x_1 = -k_1 x_1 + c (x_2 - x_1)$$ $$m_2\ddot x_2 = -k_2 x_2 - c (x_2 - x_1)$$
 Try $$x_1 = A_1\cos(\omega t)$$ $$x_2 = A_2\cos(\omega t)$$ as $\ddot x = -\omega^2 x$:
 $$(k_1 + c - m_1\omega^2) A_1 - c A_2 = 0$$ $$-c A_1 + (k_2 + c - m_2\omega^2) A_2 = 0$$

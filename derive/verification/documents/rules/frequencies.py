@@ -177,8 +177,8 @@ class Amplitudes:
         sides = [one for one in formula.sides if one.text != "0"]
         v, amplitudes = self._system.qdot[0], self._single_amplitudes
         letters = {str(s): q for s, q in amplitudes.items()}
-        own = {s.name for f in self._motions.values() for s in f.free_symbols} - {*letters}
-        frequency = own & {*formula.words}
+        constants = {s.name for f in self._motions.values() for s in f.free_symbols}
+        frequency = (constants - {*letters}) & {*formula.words}
         is_of_modes = len(frequency) == 1 and {*letters} <= {*unknown} <= {*letters} | frequency
         has_place = self._linear.is_origin and not self._system.conditions
         if len(formula.sides) != 2 or len(sides) != 1 or not is_of_modes or not has_place:

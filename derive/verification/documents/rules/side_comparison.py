@@ -169,7 +169,8 @@ class SideComparison:
     ) -> SideVerdict | None:
         """The verdict on an equation of one coordinate for motions with a stated relation of two.
 
-        It is `wrong` by the relation before it alone.
+        It is `wrong` by a relation just before it alone, and not if it lacks letters, as without
+        coupling.
         """
         system, formulas = self._namespace.derivation.system, self._namespace.formulas
         moving = [q for q in system.q if difference.has(q)]
@@ -185,9 +186,10 @@ class SideComparison:
             if derivation is None:
                 continue
             own = self._roles.equation(formula.sides[0], side, derivation)
-            is_right = own.verdict.verdict in CORRECT
-            is_wrong = len(own.verdict.corrections) == 1 and text == [*relations][-1]
-            if is_right or is_wrong:
+            is_slip = len(own.verdict.corrections) == 1 and text == before[-1].text
+            added = {*WORD.findall(" ".join(one.correct for one in own.verdict.corrections))}
+            is_wrong = is_slip and added <= {*formula.words}
+            if is_wrong or own.verdict.verdict in CORRECT:
                 return replace(own, verdict=replace(own.verdict, note=f"with {text}"))
         return None
 
