@@ -177,6 +177,7 @@ def test_a_prepared_function_checks_starts_as_others_do(crank: GeneratedModule) 
         if not 0.5 < ratio < 2.0:  # both sum in another order
             seen.append(assembly.is_exact(y.tolist()))
             assert seen[-1] == (ratio <= 1)
+            assert seen[-1] == assembly.is_exact([*y[:3], *-y[3:]])  # the reverse motion
     assert {*seen} == {True, False}
     assert not assembly.is_exact([np.nan, *start[1:]])
 
