@@ -16,6 +16,7 @@ import generated.elastic_pendulum as ep
 import generated.henon_heiles as hh
 import generated.single_pendulum as sp
 import generated.swinging_atwood as atwood
+from solvers.integration.checks import global_error
 from solvers.integration.ensemble import ensemble
 from solvers.integration.integrate import integrate
 from solvers.references.taylor import taylor
@@ -80,6 +81,25 @@ def test_the_estimate_exists_without_a_compiler_and_for_partial_results() -> Non
     stopped = integrate(dp, (0, 5), REPORT, dp.DEFAULTS, rtol=1e-9, max_steps=20)
     assert np.isfinite(stopped.global_error_estimate).all()
     assert stopped.global_error_estimate.max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("form", "other"), [("lagrangian", "rational"), ("rational", "lagrangian")]
+)
+def test_the_comparison_is_in_another_form(
+    form: str, other: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    forms: list[str] = []
+    original = global_error.singular_passage.run
+
+    def observed(problem: Any, *others: Any) -> Any:
+        forms.append(problem.form.name)
+        return original(problem, *others)
+
+    run = integrate(sp, (0, 1), (1.0, 0.0), sp.DEFAULTS, form=form)
+    monkeypatch.setattr(global_error.singular_passage, "run", observed)
+    assert run.global_error_estimate.max() < 1e-6
+    assert forms == [other]
 
 
 def test_a_copied_solution_states_that_it_has_no_estimate() -> None:
