@@ -65,7 +65,6 @@ def displays(text: str, folder: Path) -> list[str]:
         ("r = (x^2 + y^2)^(3/2)", r"r = (x^2 + y^2)^{3/2}"),
         ("r = sqrt(x**2 + y**2)", r"r = \sqrt{x^2 + y^2}"),
         ("KE + PE = I*alpha", r"\text{KE} + \text{PE} = I\alpha"),
-        ("u = k/m = constant", r"u = k/m = \text{constant}"),
         ("½ m (ẋ² + ẏ²) = mgh", r"\frac12 m(\dot x^2 + \dot y^2) = m g h"),
     ],
 )

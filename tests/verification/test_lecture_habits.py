@@ -85,6 +85,8 @@ def test_constants_of_the_motion_are_verified(tmp_path: Path) -> None:
     assert [one.note for one in found[2:4]] == [
         "j is a constant of the motion", "epsilon is a constant of the motion"
     ]  # fmt: skip
+    spelled = judged(tmp_path, BOWL.replace("const. = j", "j = constant"))
+    assert [one.verdict for one in spelled] == [one.verdict for one in found]
     changed = judged(tmp_path, BOWL.replace(r"\frac{j^2}{2", r"\frac{j^2}{4"))
     assert changed[3].verdict == "definition"
 

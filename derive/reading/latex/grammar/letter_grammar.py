@@ -200,7 +200,7 @@ class LetterTokens(Arguments):
         while self.kind(last, end) == "digit":
             last += 1
         run = "".join(token.text for token in tokens[at:stop])
-        if run == "const":
+        if run in ("const", "constant"):
             span = tokens[at].span[0], tokens[stop - 1].span[1]
             is_short = any(token.text == "." for token in tokens[stop : stop + 1])
             return Letter(run, span), stop + is_short

@@ -22,7 +22,7 @@ WORD = re.compile(
       (?P<head>{HEAD})(?P<index>_?\d{{1,2}})?_?(?P<dots>dot_?dot|d{{1,3}}ot)(?P<behind>_?\d{{1,2}})?
     | (?P<root>sqrt)
     | (?P<greek>{SPELLED})
-    | (?P<name>[KP]E|const(?:ant)?)
+    | (?P<energy>[KP]E)
     )(?![A-Za-z])
     | \b(?P<differential>d)(?P<order>[23])(?={HEAD})
     | \b(?P<variable>d[a-z])(?P<count>[23])\b""",
@@ -96,8 +96,8 @@ def _of_word(run: list[Token], word: re.Match[str]) -> list[Token]:
         if word[base]:
             number = part(exponent)
             return [*part(base), Token("^", "^", number[0].span), *number]
-    if word["name"]:
-        return [Token("word", word["name"], (start, end))]
+    if word["energy"]:
+        return [Token("word", word["energy"], (start, end))]
     return command("root" if word["root"] else "greek")
 
 
