@@ -192,3 +192,10 @@ def test_an_equation_of_amplitudes_with_a_slip_is_wrong(
     assert len(found) == count
     assert all(slip in one for one in found)
     assert sum(one.verdict == "verified" for one in formulas) == 5 - count
+
+
+def test_a_canonical_equation_with_time_prescribes_no_coordinate(tmp_path: Path) -> None:
+    text = r"""$$H = \frac{(p - m b\sin(w t))^2}{2 m} + \frac12 k x^2$$
+$$\dot x = \frac{\partial H}{\partial p} = \frac{p - m b\sin(w t)}{m}$$
+$$\dot p = -k x$$"""
+    assert [one.verdict for one in judged(tmp_path, text)][1:] == ["verified"] * 2

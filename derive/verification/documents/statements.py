@@ -409,8 +409,9 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
 def is_motion_of_several(formula: DocumentFormula) -> bool:
     """Whether it gives two letters one function of time, as x_1 = -x_2 = A*cos(omega*t)."""
     *first, last = formula.sides
-    are_letters = all(one.text.removeprefix("-").isidentifier() for one in first)
-    return len(first) > 1 and are_letters and "t" in WORD.findall(last.text)
+    names = [one.text.removeprefix("-") for one in first]
+    are_letters = all(one.isidentifier() and not (order(one) or "_d" in one) for one in names)
+    return len(names) > 1 and are_letters and "t" in WORD.findall(last.text)
 
 
 def entries_of_chain(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
