@@ -36,13 +36,15 @@ def energies_of_hamiltonians(
     for H, numbers in _hamiltonians(letters, formulas, scope, momenta):
         with suppress(NotImplementedError, ValueError, TypeError):
             inverse = sp.ImmutableDenseMatrix(sp.hessian(H, columns))
-            if inverse.free_symbols & {*columns} or inverse.det() == 0:
+            determinant = inverse.det(method="berkowitz")
+            if inverse.free_symbols & {*columns} or determinant == 0:
                 continue
             if max(map(sp.count_ops, inverse)) > MAX_OPERATIONS:
                 continue
             at_rest = dict.fromkeys(columns, sp.S.Zero)
             drift = sp.Matrix([H.diff(p) for p in columns]).xreplace(at_rest)
-            mass = inverse.inv().applyfunc(sp.cancel)
+            # elimination simplifies every step
+            mass = (inverse.adjugate() / determinant).applyfunc(sp.cancel)
             T = (v.T * mass * (v / 2 - drift))[0, 0]
             yield T, H.xreplace(at_rest) - (drift.T * mass * drift)[0, 0] / 2, numbers
 
