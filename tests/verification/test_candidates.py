@@ -10,7 +10,7 @@ from derive.reading.programs.program import ProgramEquation
 from derive.system.files.system_catalogue import load
 from derive.system.system import System
 from derive.verification.documents import letter_meanings, program_judgement
-from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.formula_translation import is_derivative, order, stem
 from derive.verification.documents.judges import Judges
 from derive.verification.documents.letters import candidates as module
 from derive.verification.documents.letters.candidates import SystemCandidate, candidates, loads
@@ -177,3 +177,11 @@ def test_a_system_is_refuted_by_one_other_formula() -> None:
     failed = [{1}, {0}, {1, 2}, set[int]()]
     matches = [Match(stating, 1, 3, frozenset(one)) for one in failed]
     assert [one.is_refuted_by_one for one in matches] == [True, False, False, False]
+
+
+@pytest.mark.parametrize(("name", "expected"), [
+    ("dL_dtheta", True), ("dL_dx_dot", True), ("delta_dot", False), ("d_dot", False),
+    ("x_d", False),
+])  # fmt: skip
+def test_names_of_derivatives_are_no_rates(name: str, expected: bool) -> None:
+    assert is_derivative(name) == expected

@@ -89,6 +89,11 @@ def order(name: str) -> int:
     return RATES.index(name.removeprefix(stem(name)))
 
 
+def is_derivative(name: str) -> bool:
+    """Whether a name is that of a derivative, such as dL_dtheta."""
+    return name.startswith("d") and "_d" in stem(name)  # but delta_dot is a rate
+
+
 #: Reciprocals of functions that formulas have.
 RECIPROCALS = {"sec": "cos", "csc": "sin"}
 

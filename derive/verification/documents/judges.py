@@ -15,7 +15,7 @@ from derive.verification.documents.letters.document_system import system_letters
 from derive.verification.documents.letters.letters import KINDS, OPERATORS, Letters
 from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
-from derive.verification.documents.rules.consequences import FOLLOWS, Contradictions, WithVerdict
+from derive.verification.documents.rules.consequences import Contradictions, WithVerdict
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.other_statements import GENERALIZED_FORCE
@@ -304,7 +304,7 @@ def with_fewest_slips(best: Match, matches: Sequence[Match], judges: Judges) -> 
     def slips(match: Match) -> float:
         verdicts = judges.verdicts(match.candidate)
         wrong = [(formula, one) for formula, one in verdicts if one.verdict.verdict == "wrong"]
-        own = [formula for formula, one in wrong if FOLLOWS not in one.verdict.note]
+        own = [formula for formula, one in wrong if not one.source]
         has_wrong_positions = is_contradicted and match.candidate.basis == "energies"
         if has_wrong_positions:
             own = [one for one in own if not POINT.match(one.subject.removesuffix("_dot"))]

@@ -31,6 +31,7 @@ from derive.verification.documents.formula_translation import (
     LetterNotation,
     UntranslatableError,
     identifier,
+    is_derivative,
     order,
     stem,
 )
@@ -42,10 +43,8 @@ GRAVITY = "g"
 POINT = re.compile(r"([xyzXYZ])(?:_?(\w+))?\Z")
 #: The square of a name.
 SQUARE = re.compile(r"(\w+)\*\*2")
-#: An entry of a matrix, and one of a matrix or column.
-MATRIX_ENTRY, INDEXED_ENTRY = (re.compile(rf"[A-Za-z]_?\d{one}") for one in (r"_?\d", r"(?:_?\d)?"))
-#: A differential, which is read as a product.
-DIFFERENTIAL = re.compile(r"(?<!\w)d\*[A-Za-z]\w*\Z|(?<!\w)d\*(?:theta|t|x|r)\b")
+#: Names of an entry of a matrix or column: a letter and two indices, or one.
+ENTRY = re.compile(r"([A-Za-z]+)_(\d)(?:_?(\d))?\Z")
 #: Words for quantities that do not change.
 CONSTANT = re.compile(r"[ck]onst(?:ante?)?|costante|cte|cste?", re.IGNORECASE)
 #: The name of one such quantity.
@@ -207,8 +206,6 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
     for number in numbers:
         written = [indexed(side, index, number) if index else side for side in sides]
         texts = [translator.text(side) for side in written]
-        if all(DIFFERENTIAL.search(text.text) for text in (texts[0], texts[-1])):
-            raise UntranslatableError("differentials")
         pairs = [*zip(("=", *relations), texts, strict=True)]
         constants = [one for one in pairs if OWN_CONSTANT.fullmatch(one[1].text)]
         if len(texts) > 2:
@@ -387,8 +384,8 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     first, *others = formula.sides
     is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
     is_letter = not order(formula.subject) and not POINT.match(formula.subject)
-    is_letter &= not MATRIX_ENTRY.fullmatch(formula.subject)
-    if formula.is_special_case or (is_zero and is_letter) or is_motion_of_several(formula):
+    is_letter &= not is_matrix_entry(formula.subject)
+    if formula.is_special_case or (is_zero and is_letter):
         return
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)
@@ -410,7 +407,9 @@ def is_motion_of_several(formula: DocumentFormula) -> bool:
     """Whether it gives two letters one function of time, as x_1 = -x_2 = A*cos(omega*t)."""
     *first, last = formula.sides
     names = [one.text.removeprefix("-") for one in first]
-    are_letters = all(one.isidentifier() and not (order(one) or "_d" in one) for one in names)
+    are_letters = all(
+        one.isidentifier() and not order(one) and not is_derivative(one) for one in names
+    )
     return len(names) > 1 and are_letters and "t" in WORD.findall(last.text)
 
 
@@ -423,11 +422,17 @@ def entries_of_chain(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
         return
     *inner, last = formula.sides[1:]
     for side in inner:
-        if MATRIX_ENTRY.fullmatch(side.text):
+        if is_matrix_entry(side.text):
             yield side.text, last.text
         for name, value in zip(side.entries, last.entries, strict=False):
-            if INDEXED_ENTRY.fullmatch(name.text):
+            if ENTRY.match(name.text):
                 yield name.text, value.text
+
+
+def is_matrix_entry(name: str) -> bool:
+    """Whether a name is that of an entry of a matrix, such as M_12."""
+    match = ENTRY.match(name)
+    return match is not None and match[3] is not None
 
 
 def without_unknown_terms(

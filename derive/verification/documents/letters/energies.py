@@ -18,7 +18,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
-from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.formula_translation import is_derivative, order, stem
 from derive.verification.documents.letters.candidates import BY_LAGRANGIAN, STATED
 from derive.verification.documents.letters.document_system import derivation, is_length, valid_name
 from derive.verification.documents.letters.implied_energies import (
@@ -326,8 +326,7 @@ def stated_values(
         for number, formula in enumerate(formulas):
             for name, text in definitions(formula):
                 kind = letters.quantities.get(name, "")
-                is_derivative = name.startswith("d") and "_d" in name  # dL_dx_dot is no rate
-                if name in symbols or is_derivative or (name in namespace and not kind):
+                if name in symbols or is_derivative(name) or (name in namespace and not kind):
                     continue
                 try:
                     value = parse(text, namespace)

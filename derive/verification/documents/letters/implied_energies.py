@@ -13,8 +13,8 @@ from derive.formulas.expression import Value, parse
 from derive.formulas.syntax import ExpressionError
 from derive.formulas.zero import vanishes
 from derive.system.symbols import acceleration, velocity
-from derive.verification.documents.letters.letters import ENTRY, Letters, composed
-from derive.verification.documents.statements import DocumentFormula, definitions
+from derive.verification.documents.letters.letters import Letters, composed
+from derive.verification.documents.statements import ENTRY, DocumentFormula, definitions
 
 #: Kinetic and potential energy, and the numbers of the formulas that state them.
 Energies = tuple[sp.Expr, sp.Expr, frozenset[int]]

@@ -16,7 +16,7 @@ import sympy as sp
 from derive.verification.documents.formula_translation import order
 from derive.verification.documents.jets import FUNCTIONS
 from derive.verification.documents.letters.stated_constraints import StatedConstraint
-from derive.verification.documents.statements import WORD, DocumentFormula
+from derive.verification.documents.statements import ENTRY, WORD, DocumentFormula
 
 #: Names of energies and of the Lagrangian, without their index.
 QUANTITIES: dict[str, str] = {
@@ -40,8 +40,6 @@ MAX_COORDINATES = 6
 MATRICES = {"M": "mass_matrix", "C": "coriolis_matrix", "G": "gravity", "g": "gravity"}
 #: Numbers of entries of matrices and columns.
 SQUARES, COLUMNS = (4, 9, 16, 25), (2, 3, 4, 5)
-#: Names of an entry: a letter and one index, or two.
-ENTRY = re.compile(r"([A-Za-z]+)_(\d)(?:_?(\d))?\Z")
 #: Indices that change nothing.
 TOTAL = ("", "tot", "total", "sys", "kin", "pot")
 

@@ -1,6 +1,5 @@
 """What follows from wrong formulas, and what contradicts verdicts."""
 
-import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -17,8 +16,6 @@ from derive.verification.judging.reference_system import time_derivative
 
 #: The note on a formula that follows correctly from a wrong one.
 FOLLOWS = "it follows from line"
-#: The line in it.
-OF_LINE = re.compile(rf"{FOLLOWS} (\d+)")
 #: The note on a Lagrangian of fewer coordinates, from which others can follow.
 SUBSTITUTED = "with the constraints substituted"
 #: Energies from which others follow.
@@ -73,14 +70,15 @@ class Consequences:
                 verdict = plain("verified", formula, f"{FOLLOWS} {reduced.line}")
             elif verdict.verdict.verdict == "wrong" and source and self._follows(formula, source):
                 note = joined(verdict.verdict.note, f"{FOLLOWS} {source.line}")
-                verdict = replace(verdict, verdict=replace(verdict.verdict, note=note))
+                own = replace(verdict.verdict, note=note)
+                verdict = replace(verdict, verdict=own, source=source.line)
             elif verdict.verdict.verdict == "wrong" and verdict.kind in ENERGIES:
                 value = self._written(formula)
                 if value is not None:
                     values[verdict.kind] = value
                     L = values["kinetic_energy"] - values["potential_energy"]
-                    own = value if verdict.kind == "lagrangian" else L
-                    source = _Source(formula.occurrence.line, own)
+                    lagrangian = value if verdict.kind == "lagrangian" else L
+                    source = _Source(formula.occurrence.line, lagrangian)
             result.append((formula, verdict))
         return result
 
@@ -151,8 +149,7 @@ def without_sources(verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
     wrong = {one.occurrence.line for one, result in verdicts if result.verdict.verdict == "wrong"}
     result = [*verdicts]
     for number, (formula, one) in enumerate(verdicts):
-        source = OF_LINE.search(one.verdict.note)
-        if one.verdict.verdict == "wrong" and source and int(source[1]) not in wrong:
+        if one.verdict.verdict == "wrong" and one.source and one.source not in wrong:
             result[number] = formula, plain("context", formula, one.verdict.note)
     return result
 

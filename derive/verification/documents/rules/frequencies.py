@@ -11,13 +11,12 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
-from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
-from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions
+from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions, along
 from derive.verification.documents.statements import SQUARE, DocumentFormula
 from derive.verification.judging.reference_system import depends_on
 
@@ -199,10 +198,10 @@ class Amplitudes:
                 if factor and not factor.has(v, *self._system.q):
                     required = sp.expand(factor * equation)
                     tried[required] = len(sp.Add.make_args(sp.expand(own - required)))
-        fewest = [one for one, count in tried.items() if count == min(tried.values())]
-        if len(fewest) != 1:
-            return None  # any of several terms can be wrong
-        result = self._roles.value(sides[0], "amplitudes", fewest[0], letters)
+        if not tried:
+            return None
+        nearest = min(tried, key=tried.__getitem__)
+        result = self._roles.value(sides[0], "amplitudes", nearest, letters)
         return result if len(result.verdict.corrections) == 1 else None
 
     @cached_property
@@ -286,12 +285,7 @@ class Amplitudes:
         """The equations of motion with the stated functions; none unless all are stated."""
         if {*self._motions} != {*self._system.q} or len(self._amplitudes) < len(self._motions):
             return []
-        pairs = zip(self._system.q, self._system.qdot, self._system.qddot, strict=True)
-        rates = {
-            symbol: self._motions[q].diff(TIME, order)
-            for q, *symbols in pairs
-            for order, symbol in enumerate((q, *symbols))
-        }
+        rates = along(self._system, self._motions)
         return [one.xreplace(rates) for one in self._namespace.derivation.euler_lagrange]
 
 

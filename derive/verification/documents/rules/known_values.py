@@ -43,6 +43,8 @@ from derive.verification.judging.system_names import usual_names, with_multiplie
 
 #: Generalized forces, such as Q_theta.
 FORCE = re.compile(r"[QF]_(\w+)\Z")
+#: Letters of the columns of forces in equations of motion with matrices.
+FORCES_OF_MOTION = ("C", "G", "g", "c", "h")
 #: Rounds in which definitions are sought: a name can be defined after its use.
 ROUNDS = 4
 
@@ -111,6 +113,12 @@ class DocumentNamespace:
     def all_names(self) -> dict[str, Any]:
         """All names that formulas can use."""
         return {**own_names(self._system), **self.names}
+
+    @property
+    def rows(self) -> list[int]:
+        """The coordinates of the system in the order of the document's columns."""
+        ordered = map(self.names.get, self.letters.ordered)
+        return [self._system.q.index(one) for one in ordered if one in self._system.q]
 
     def value(self, text: str) -> Value:
         """The value of a formula; an `ExpressionError` if it has none."""
@@ -181,8 +189,9 @@ class DocumentNamespace:
         """Matrices and columns by their entries, and columns of small displacements."""
         words = dict.fromkeys(word for formula in formulas for word in formula.words)
         entries = {one.subject for one in formulas}  # of columns that no formula contains
-        words |= dict.fromkeys(f"{one}_column" for one in "CGgch" if f"{one}_1" in entries)
-        order = [one for q in self.letters.ordered if (one := self.names.get(q)) in self._system.q]
+        columns = (f"{one}_column" for one in FORCES_OF_MOTION if f"{one}_1" in entries)
+        words |= dict.fromkeys(columns)
+        order = [self._system.q[row] for row in self.rows]
         for name, value in composed(words, self.all_names, len(order)):
             self.composed.add(name)
             self._add(name, value)
@@ -192,8 +201,7 @@ class DocumentNamespace:
         stated = {part for one in formulas for part in (one.subject, one.subject[:1])}
         texts = (side.text for one in formulas for side in one.sides)
         if column and "C" not in stated and any(f"C*{column}_dot" in text for text in texts):
-            rows = [self._system.q.index(q) for q in order]
-            self._add("C", self.derivation.coriolis_matrix.extract(rows, rows))
+            self._add("C", self.derivation.coriolis_matrix.extract(self.rows, self.rows))
         for name in words:
             one = stem(name)
             if one.endswith("_column") and name == f"{one}_ddot" and one not in self.names:
@@ -277,9 +285,7 @@ class DocumentNamespace:
     @property
     def _matrices(self) -> dict[str, Value]:
         """The mass matrix with its rows in the order of the names."""
-        order = [self.names[q] for q in self.letters.ordered if self.names.get(q) in self._system.q]
-        rows = [self._system.q.index(q) for q in order]
-        return {"mass_matrix": self.derivation.mass_matrix.extract(rows, rows)}
+        return {"mass_matrix": self.derivation.mass_matrix.extract(self.rows, self.rows)}
 
     def _add_derivatives(self) -> None:
         for name, (operand, variables) in self.derivatives.items():
@@ -451,12 +457,18 @@ def _functions(system: Any, derivation: Derivation) -> Iterator[tuple[str, Any]]
             return sp.sqrt(sp.Add(*(entry**2 for entry in value)))
         return sp.Abs(value)
 
+    def cross(one: Any, other: Any) -> Value:
+        if one.shape == other.shape == (2, 1):  # across their plane
+            return one[0] * other[1] - one[1] * other[0]
+        return one.cross(other)
+
     yield "ddt", ddt
     yield "diff", lambda value, symbol: value.diff(symbol)
     yield "inverse", lambda matrix: matrix.inv()
     yield "transpose", lambda matrix: matrix.T
     yield "square", lambda column: (column.T * column)[0, 0]
     yield "norm", norm
+    yield "cross", cross
     yield "det", lambda matrix: matrix.det()
     yield "asin", sp.asin
     yield "acos", sp.acos

@@ -6,7 +6,6 @@ The matrices are those of small motions, and of the state space.
 import ast
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from functools import cached_property
 from itertools import combinations
 
 import sympy as sp
@@ -14,12 +13,11 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError, is_sum, place, summands, syntax_tree
 from derive.verification.documents.formula_translation import FormulaText
-from derive.verification.documents.letters.letters import ENTRY
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict
 from derive.verification.documents.rules.small_motions import SmallMotions
-from derive.verification.documents.statements import WORD
+from derive.verification.documents.statements import ENTRY, WORD
 from derive.verification.judging.verdict import Correction, Verdict
 
 #: The name that stands for a part, and operations of the largest formula that is solved for one.
@@ -89,7 +87,9 @@ class DerivedMatrices:
         if self._namespace.letters.quantities.get(name) == "coriolis_matrix":
             return self._coriolis(value)
         for derived in (*self._of_shape(value.shape), *self._parts(name, value.shape)):
-            if value.rows == len(self._rows) and has_scaled_rows(self._namespace, value, derived):
+            if value.rows == len(self._namespace.rows) and has_scaled_rows(
+                self._namespace, value, derived
+            ):
                 return [None] * len(value)
             entries = [
                 None if _agree(self._namespace, a, b) else b
@@ -108,15 +108,8 @@ class DerivedMatrices:
             self._known[shape] = [one for one in self._all(shape) if one.shape == shape]
         return self._known[shape]
 
-    @cached_property
-    def _rows(self) -> list[int]:
-        """The coordinates in the order of the document's columns."""
-        names, q = self._namespace.names, self._namespace.derivation.system.q
-        ordered = (names.get(name) for name in self._namespace.letters.ordered)
-        return [q.index(symbol) for symbol in ordered if symbol in q]
-
     def _all(self, shape: tuple[int, int]) -> Iterator[sp.Matrix]:
-        d, rows = self._namespace.derivation, self._rows
+        d, rows = self._namespace.derivation, self._namespace.rows
         n = len(rows)
         if n != len(d.system.q):
             return
@@ -140,9 +133,9 @@ class DerivedMatrices:
         Their sign is that of the side where the document has them, or any.
         """
         d = self._namespace.derivation
-        if shape != (len(self._rows), 1):
+        if shape != (len(self._namespace.rows), 1):
             return
-        forces = sp.Matrix([d.forcing[i] - d.system.applied[i] for i in self._rows])
+        forces = sp.Matrix([d.forcing[i] - d.system.applied[i] for i in self._namespace.rows])
         at_rest = forces.xreplace(dict.fromkeys(d.system.qdot, sp.S.Zero))
         for sign in self._signs(name):
             yield from (sign * at_rest, sign * (forces - at_rest))
@@ -167,17 +160,17 @@ class DerivedMatrices:
         Where it is not, entries that are those of Christoffel's symbols are correct.
         """
         d, system, n = self._namespace.derivation, self._namespace.derivation.system, value.rows
-        speeds = sp.Matrix([system.qdot[i] for i in self._rows])
+        speeds = sp.Matrix([system.qdot[i] for i in self._namespace.rows])
         if value.shape != (len(speeds), len(speeds)) or not value.free_symbols & {*speeds}:
             return None
         entries: list[sp.Expr | None] = []
-        for row, i in enumerate(self._rows):
+        for row, i in enumerate(self._namespace.rows):
             force = system.applied[i] - d.potential_energy.diff(system.q[i]) - d.forcing[i]
             lacking = force - (value.row(row) * speeds)[0]
             if _agree(self._namespace, lacking, sp.S.Zero):
                 entries += [None] * n
                 continue
-            usual = d.coriolis_matrix.extract([i], self._rows)
+            usual = d.coriolis_matrix.extract([i], self._namespace.rows)
             are_usual = [
                 _agree(self._namespace, own, one)
                 for own, one in zip(value.row(row), usual, strict=True)

@@ -23,6 +23,7 @@ class SideVerdict:
     ]  # the sides within the judged text, and where they start
     kind: str
     is_understood: bool = True  # all its letters have a meaning
+    source: int = 0  # the line of a wrong formula from which it follows; 0 without one
 
 
 def plain(

@@ -97,11 +97,7 @@ class SmallMotions:
             return False
         if not all(value.has(TIME) for value in motions.values()):
             return False
-        rates = {
-            symbol: motions[q].diff(TIME, order)
-            for q, *symbols in zip(system.q, system.qdot, system.qddot, strict=True)
-            for order, symbol in enumerate((q, *symbols))
-        }
+        rates = along(system, motions)
         return all(is_small(one.xreplace(rates)) for one in self._equations)
 
     def acceleration(self, symbol: sp.Symbol, value: sp.Expr) -> sp.Expr | None:
@@ -290,3 +286,12 @@ class SmallMotions:
             return any((is_named or one.is_number) and one.xreplace(at_rest) for one in slopes)
 
         return {*filter(is_input, alone)}
+
+
+def along(system: System, motions: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
+    """Coordinates and their rates as functions of time, by those of all coordinates."""
+    return {
+        symbol: motions[q].diff(TIME, order)
+        for q, *symbols in zip(system.q, system.qdot, system.qddot, strict=True)
+        for order, symbol in enumerate((q, *symbols))
+    }

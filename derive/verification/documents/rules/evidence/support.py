@@ -13,7 +13,7 @@ from derive.reading.latex.tree import Quotient, nodes
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import SystemCandidate, kind_of
 from derive.verification.documents.letters.document_system import derivation
-from derive.verification.documents.rules.consequences import FOLLOWS, WithVerdict
+from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.evidence.loads import added
 from derive.verification.documents.rules.evidence.slips import is_slip
 from derive.verification.documents.rules.side_verdict import CORRECT, HOLDING, SideVerdict
@@ -41,7 +41,7 @@ class Support:
         corrections = {one.verdict.corrections for _, one in wrong}
         self._slips = {one for one in corrections if is_slip(one)}
         self.wrong = [one for formula, one in wrong if not is_ambiguous(formula)]
-        self.independent = [one for one in self.wrong if FOLLOWS not in one.verdict.note]
+        self.independent = [one for one in self.wrong if not one.source]
         self.misfits = sum(one.verdict.corrections not in self._slips for one in self.independent)
         held = (formula for formula, one in results if one.verdict.verdict in HOLDING)
         self.holding = sum(not _is_vacant(formula) for formula in held)
