@@ -377,3 +377,12 @@ def test_a_factor_of_all_other_terms_is_lost(terms: str, correction: str, tmp_pa
     assert (results[0].verdict == "wrong") == bool(correction)
     assert correction in results[0].correction
     assert "wrong" not in [one.verdict for one in results[1:]]
+
+
+def test_mu_is_no_mass(tmp_path: Path) -> None:
+    orbit = (
+        r"\ddot r - r\dot\theta^2 = -\frac{\mu}{r^2}", r"r\ddot\theta + 2\dot r\dot\theta = 0",
+        r"h = r^2\dot\theta", r"\dot A = \frac{h}{2}", r"p = \frac{h^2}{\mu}",
+    )  # fmt: skip
+    assert inhomogeneous(*orbit) == []
+    assert "wrong" not in {one.verdict for one in judged(tmp_path, *orbit)}

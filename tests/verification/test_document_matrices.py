@@ -148,6 +148,19 @@ $$ T = m \dot{\mathbf{q}}^T \dot{\mathbf{q}} $$
     assert verdicts[-1].correction == r"T = \frac{1}{2} m \dot{\mathbf{q}}^T \dot{\mathbf{q}}"
 
 
+def test_a_product_of_columns_across_their_plane_is_a_number(tmp_path: Path) -> None:
+    text = r"""
+$$ T = \frac12 m (\dot x^2 + \dot y^2), \qquad V = \frac12 k (x^2 + y^2) $$
+$$ m \ddot x = -k x, \qquad m \ddot y = -k y $$
+$$ \mathbf{r} = \begin{pmatrix} x \\ y \end{pmatrix}, \quad
+\mathbf{v} = \begin{pmatrix} \dot x \\ \dot y \end{pmatrix} $$
+$$ m \mathbf{r} \times \mathbf{v} = m (x\dot y - y\dot x) $$
+"""
+    assert judged(tmp_path, text)[-1].verdict == "verified"
+    slip = judged(tmp_path, text.replace(r"(x\dot y - y", r"(x\dot y + y"))
+    assert slip[-1].verdict != "verified"
+
+
 ARM = r"""
 $$M(q)\ddot q + C(q, \dot q)\dot q + g(q) = \tau$$
 $$M_{11} = a + 2 b\cos q_2, \quad M_{12} = M_{21} = d + b\cos q_2, \quad M_{22} = d$$

@@ -178,20 +178,34 @@ $$(k_1 + c - m_1\omega^2) A_1 - c A_2 = 0$$ $$-c A_1 + (k_2 + c - m_2\omega^2) A
 $$(k_1 + c - m_1\omega^2)(k_2 + c - m_2\omega^2) - c^2 = 0$$"""
 
 
-@pytest.mark.parametrize(("right", "slip", "count"), [
-    ("", "", 0),
-    ("-c A_1 + (k", "c A_1 + (k", 1),
-    (r"c - m_1\omega^2) A_1", r"c - m_1\omega) A_1", 1),
-    (r"k_2 + c - m_2\omega^2) A_2", r"k_1 + c - m_2\omega^2) A_2", 1),
+@pytest.mark.parametrize(("right", "slip", "term"), [
+    ("-c A_1 + (k", "c A_1 + (k", "c A_1"),
+    (r"c - m_1\omega^2) A_1", r"c - m_1\omega) A_1", r"- m_1\omega"),
+    (r"k_2 + c - m_2\omega^2) A_2", r"k_1 + c - m_2\omega^2) A_2", "k_1"),
 ])  # fmt: skip
 def test_an_equation_of_amplitudes_with_a_slip_is_wrong(
-    right: str, slip: str, count: int, tmp_path: Path
+    right: str, slip: str, term: str, tmp_path: Path
 ) -> None:
-    formulas = judged(tmp_path, MODES.replace(right, slip) if right else MODES)
-    found = [one.latex for one in formulas if one.verdict == "wrong"]
-    assert len(found) == count
-    assert all(slip in one for one in found)
-    assert sum(one.verdict == "verified" for one in formulas) == 5 - count
+    assert [one.verdict for one in judged(tmp_path, MODES)].count("verified") == 5
+    formulas = judged(tmp_path, MODES.replace(right, slip))
+    (found,) = (one for one in formulas if one.verdict == "wrong")
+    assert found.wrong_term == term
+    assert slip in found.latex
+    assert sum(one.verdict == "verified" for one in formulas) == 4
+
+
+def test_one_frequency_of_equal_masses(tmp_path: Path) -> None:
+    equal = MODES.replace("m_1", "m").replace("m_2", "m").replace("k_1", "k").replace("k_2", "k")
+    found = {one.latex: one.verdict for one in judged(tmp_path, equal)}
+    assert found[r"(k + c - m\omega^2) A_1 - c A_2 = 0"] == "verified"
+    assert found[r"-c A_1 + (k + c - m\omega^2) A_2 = 0"] == "verified"
+
+
+def test_an_equation_of_amplitudes_in_other_letters_is_open(tmp_path: Path) -> None:
+    first, _, rest = MODES.partition(r"$$(k_1 + c - m_1\omega^2) A_1 - c A_2 = 0$$")
+    for other in ("(k_1 + c) A_1 - b A_2 = 0", r"\omega A_1 - \omega A_2 = 0"):
+        text = f"{first}$${other}$${rest}"
+        assert "wrong" not in {one.verdict for one in judged(tmp_path, text)}
 
 
 def test_a_canonical_equation_with_time_prescribes_no_coordinate(tmp_path: Path) -> None:

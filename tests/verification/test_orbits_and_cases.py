@@ -76,6 +76,12 @@ def test_an_inequality_behind_an_equation_is_left_out(tmp_path: Path) -> None:
     ]
 
 
+def test_a_second_derivative_at_a_place_is_a_value(tmp_path: Path) -> None:
+    found = verdicts(tmp_path, WELL.replace("m g a > 0$$ and", "m g a$$ and").replace("a < 0", "a"))
+    assert found["V'' = m g a"] == found["V'' = -m g a"] == "context"
+    assert "wrong" not in found.values()
+
+
 WEIGHTS = r"""With $x_1 = x$ and $x_2 = \ell - x$,
 $$T = \frac12 (m_1 + m_2)\dot x^2, \quad V = -m_1 g x - m_2 g (\ell - x)$$
 $$L = \frac12 (m_1 + m_2)\dot x^2 + m_1 g x + m_2 g (\ell - x)$$
@@ -159,7 +165,11 @@ $$m\ddot r - \frac{\ell^2}{m r^3} + \frac{k}{r^2} = 0$$ With $u = \frac{1}{r}$,
 $$u' = \frac{d}{d\phi}\left(\frac{1}{r}\right) = -\frac{r'}{r^2}$$
 $$u'' = \frac{d}{d\phi}\left(-\frac{r'}{r^2}\right)
 = -\frac{r''}{r^2} + 2\frac{(r')^2}{r^3}$$"""
-    assert "wrong" not in verdicts(tmp_path, text).values()
+    found = verdicts(tmp_path, text)
+    assert list(found.values())[-2:] == ["verified"] * 2
+    two = verdicts(tmp_path, rf"{text} With $$V'(r) = \frac{{dV}}{{dr}}$$")  # primes of two kinds
+    assert "wrong" not in two.values()
+    assert "verified" not in list(two.values())[-3:-1]
 
 
 def test_a_function_of_the_angle_does_not_vanish_with_its_letters(tmp_path: Path) -> None:
@@ -178,5 +188,8 @@ With $u(\phi) = 1/r(\phi)$, $$\dot r = -h\frac{du}{d\phi}, \quad
 def test_a_constant_of_the_motion_states_an_equation(tmp_path: Path) -> None:
     found = verdicts(tmp_path, CONSERVED)
     assert list(found.values())[-2:] == ["verified", "verified"]
+    free = CONSERVED.replace(r" = \text{const}", "")  # one equation states no system
+    bases = [judged(tmp_path, text)[-1].basis for text in (CONSERVED, free)]
+    assert bases == ["document", "known system"]
     slip = CONSERVED.replace(r"+ u = \frac", r"- u = \frac")
     assert list(verdicts(tmp_path, slip).values())[-1] != "verified"

@@ -179,6 +179,8 @@ class OtherStatements:
             value = self._namespace.value(last)
         except ExpressionError:
             return False
+        if formula.subject.endswith("_prime") and not depends_on(value, moving):
+            return True  # V'' = m*g*a at a place
         sides = formula.sides[:-1]
         entries = [one.text for side in sides for one in side.entries or (side,)]
         rates = [names[one] for one in entries if names.get(one) in system.qddot]
