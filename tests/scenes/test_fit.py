@@ -22,7 +22,7 @@ from solvers.app.fitting import _model
 from solvers.equations.module import GeneratedModule
 from solvers.scenes.fitting import least_squares as shooting_steps
 from solvers.scenes.fitting import prediction
-from solvers.scenes.fitting.estimate import _parabolas
+from solvers.scenes.fitting.estimate import _is_noise, _parabolas
 from solvers.scenes.fitting.experiment import Experiment
 from solvers.scenes.fitting.measurement import Outputs
 from solvers.scenes.fitting.multiple_shooting import (
@@ -359,6 +359,16 @@ def test_first_guesses_are_those_of_parabolas_through_seven_samples() -> None:
         quadratic = np.polyfit(near, (near + begin) ** 3, 2)  # by another program
         assert (values[k], slopes[k]) == pytest.approx((quadratic[2], quadratic[1]), rel=1e-9)
         assert abs(slopes[k] - 3 * begin**2) > 1e-3  # which is no cubic
+
+
+def test_noise_is_independent_along_each_output() -> None:
+    noise = np.random.default_rng(3).choice([-1.0, 1.0], size=(1, 2, 400))
+    drift = noise.copy()
+    drift[0, 1] = np.sign(np.sin(np.arange(400) / 20))  # equal neighbours, in one output
+    experiment: Any = SimpleNamespace(masks=np.ones((1, 2, 400)), counts=np.array([400, 400]))
+    for residuals, expected in ((noise, True), (drift, False)):
+        linear: Any = SimpleNamespace(residuals=residuals.reshape(1, 800), squares=800.0)
+        assert _is_noise(experiment, linear) == expected
 
 
 def test_gaps_are_measured_in_the_scales_of_the_states() -> None:

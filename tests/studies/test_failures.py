@@ -357,6 +357,7 @@ def test_means_of_a_motion_are_those_by_another_program() -> None:
     found = statistics(dp, 8.0, {"method": "verner98", "rtol": 1e-11, "atol": 1e-11})
     start = (*CHAOTIC, 0.0, 0.0)
     mean = solve_ivp(rates, (0, 8), start, "DOP853", rtol=1e-9, max_step=0.01).y[4:, -1] / 8
+    assert found.run == "Verner 9(8), rational form, rtol = 1e-11"
     # one sample in half a second
     assert (found.kinetic.value, found.upright.value) == pytest.approx(mean, rel=0.1)
 

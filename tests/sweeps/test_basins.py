@@ -198,3 +198,8 @@ def test_motions_that_do_not_recur_or_failed_have_no_attractor() -> None:
 def test_invalid_basins_are_refused(basin: Basins, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Sweep(duffing, Grid({"x": [0.0]}), {"b": basin})
+
+
+def test_no_periods_are_skipped_unless_requested() -> None:
+    assert Basins("2*pi/Omega").sampling.skip == 0
+    assert Basins("2*pi/Omega", 30).sampling.skip == 30
