@@ -157,6 +157,8 @@ def test_spans_of_statements_are_their_places_in_the_display() -> None:
         ("", r"a \qand* b = c \qq*{so that} d = e", "a | b = c | d = e"),
         ("", r"\mqty(a & (b) \\ c & d) = \mqty*{x \\ y}", "[a, b; c, d] = [x; y]"),
         ("", r"\abs*{x} + \underline{y}", "(|x| + yunder)"),
+        ("", r"\vb*{q}\va p + \pdv*{L}{x} - \PD{L}{y}", "(bold q bold p + ∂(L; x) - ∂(L; y))"),
+        ("", r"\eval{x}_0", "at(x)"),
         ("", r"\underline{\underline{x = y}}", "x = y"),
         ("", r"1 - \cos[2](\theta)\qty(a)", "(1 - cos(theta)^2 a)"),
         ("", r"\sin [2] + \cos[x](a)", "(sin(2) + cos(x) a)"),

@@ -47,7 +47,7 @@ MARKS = {
     "widetilde": "tilde", "check": "check", "breve": "breve", "mathring": "ring",
     "underline": "under",
 }  # fmt: skip
-BOLD = frozenset("mathbf boldsymbol bold bm pmb mathbfit symbf vec overrightarrow vb va".split())
+BOLD = frozenset("mathbf boldsymbol bold bm pmb mathbfit symbf vec overrightarrow".split())
 UPRIGHT = frozenset("mathrm operatorname mathsf mathtt mathup".split())
 SCRIPT = frozenset("mathcal mathscr mathfrak mathbb mathit mathnormal".split())
 FONTS = BOLD | UPRIGHT | SCRIPT

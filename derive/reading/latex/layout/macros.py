@@ -117,6 +117,9 @@ PHYSICS = {
     "norm": Macro("norm", r"\left\|#1\right\|", 1),
     "dd": Macro("dd", r"\mathrm{d}"),
     "vu": Macro("vu", r"\hat{\mathbf{#1}}", 1),
+    "vb": Macro("vb", r"\mathbf{#1}", 1),
+    "va": Macro("va", r"\vec{#1}", 1),
+    "eval": Macro("eval", r"\left.#1\right|", 1),
     "qty": Macro("qty", ""),
     "qc": Macro("qc", r",\quad "),
     "qq": Macro("qq", r"\quad\text{#1}\quad ", 1),
@@ -132,7 +135,7 @@ PHYSICS |= {
 MATRICES = ("mqty", "matrixquantity", "bmqty", "pmqty")
 DERIVATIVES = {
     **dict.fromkeys(("dv", "odv", "deriv"), r"\mathrm{d}"),
-    **dict.fromkeys(("pdv", "pdiff", "pder", "pderiv"), r"\partial"),
+    **dict.fromkeys(("pdv", "pdiff", "pder", "pderiv", "pd", "PD"), r"\partial"),
 }
 #: Macros that many documents define in other files, and accents of older packages.
 USUAL = {
@@ -217,6 +220,7 @@ def _call(macro: Macro, call: Token, waiting: list[tuple[Token, int]]) -> list[T
 
 def _derivative(sign: str, call: Token, waiting: list[tuple[Token, int]]) -> list[Token]:
     r"""The fraction that ``\dv{x}{t}``, ``\dv{t}`` or ``\pdv[2]{L}{x}`` is."""
+    _skip_star(waiting)
     option = _optional(waiting)
     order = f"^{{{''.join(t.text for t in option)}}}" if option else ""
     arguments: list[list[Token]] = []
