@@ -242,16 +242,23 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
             if all(isinstance(one, np.ndarray) for one in entries):
                 return np.vstack(entries)
             column = np.empty((len(items), 1), dtype=object)
-            column[:, 0] = entries
+            column[:, 0] = [*map(_entry, entries)]
             return column
         case ast.List(elts=rows):
             lists = [row.elts for row in rows if isinstance(row, ast.List)]
             matrix = np.empty((len(lists), len(lists[0])), dtype=object)
             for i, row in enumerate(lists):
                 for j, entry in enumerate(row):
-                    matrix[i, j] = _value(entry, values)
+                    matrix[i, j] = _entry(_value(entry, values))
             return matrix
     raise UnknownNameError(ast.unparse(node)[:80])
+
+
+def _entry(value: Value) -> Jet:
+    """A value as an entry of a matrix, whose entries are no matrices."""
+    if isinstance(value, np.ndarray):
+        raise UnknownNameError("a matrix of matrices")
+    return value
 
 
 def _product(value: Value, factor: Jet) -> Value:

@@ -25,7 +25,7 @@ def motion(derivation: Derivation, state: State) -> State:
     """
     candidates = _closed(derivation, state) if derivation.holonomic else iter([dict(state)])
     for values in candidates:
-        with suppress(ZeroDivisionError):  # constraints depend on each other there
+        with suppress(ArithmeticError):  # constraints depend on each other there, or have no value
             return _moving(derivation, values)
     raise ExpressionError("no generic state satisfies the constraints")
 
@@ -51,7 +51,7 @@ def _closed(derivation: Derivation, state: State) -> Iterator[dict[sp.Symbol, sp
         # Newton's method may end at a local minimum of the residuals
         values = dict(state) | {s: state[s] + SHIFT * attempt * k for k, s in enumerate(q)}
         largest = mp.inf
-        with suppress(ZeroDivisionError):
+        with suppress(ArithmeticError):
             for _ in range(MOST_STEPS):
                 evaluator = Evaluator(values)
                 largest = max(abs(evaluator(entry).number) for entry in phi)
