@@ -53,6 +53,8 @@ OWN_CONSTANT = re.compile(rf"(?:{CONSTANT.pattern})_\d+", re.IGNORECASE)
 EQUALITIES = ("=", ":=", "~")
 #: The display of statements that are not written.
 IMPLIED = -1
+#: The start of names of coordinates of which a document has the velocities alone.
+PLACE = "place_"
 #: Letters that stand for numbers as an index.
 INDICES = ("i", "j")
 

@@ -18,7 +18,7 @@ from derive.verification.documents.letters.letters import (
     energy_of_part,
     matrices_by_entries,
 )
-from derive.verification.documents.statements import GRAVITY, WORD, DocumentFormula
+from derive.verification.documents.statements import GRAVITY, PLACE, WORD, DocumentFormula
 
 #: Letters of momenta.
 MOMENTUM = re.compile(r"(?:[pP]|Pi)(?:_|\Z)")
@@ -64,6 +64,8 @@ def quantities_of(
         and one not in {*forces, *functions_of_forces}
         and not (kind == "lagrangian" and one not in operands and _is_momentum(one, formulas))
     }
+    if any(one.subject.startswith(PLACE) for one in formulas):  # no coordinates for an energy
+        quantities = {}
     written_out = {one.subject for one in formulas if any(side.entries for side in one.sides)}
     quantities = {name: kind for name, kind in quantities.items() if name not in written_out}
     return quantities | matrices_of(formulas)

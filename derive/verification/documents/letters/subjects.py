@@ -17,6 +17,7 @@ from derive.verification.documents.letters.letter_roles import equal_letters, le
 from derive.verification.documents.letters.letters import ANGLES, QUANTITIES, Letters
 from derive.verification.documents.statements import (
     IMPLIED,
+    PLACE,
     POINT,
     WORD,
     DocumentFormula,
@@ -213,25 +214,36 @@ def implied_rates(statements: Translated) -> Translated:
     """The statements after such that make a letter the rate of a place, as a is in F = m*a.
 
     These are accelerations of a document without rates, and velocities without places: those of
-    Euler's equations. Beside energies, they are v, a and alpha alone.
+    Euler's equations, and any letters of equations of first order. Beside energies in rates, they
+    are v, a and alpha alone.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
-    if "kinetic_energy" in letters.quantities.values():
+    words = Counter(word for one in statements.formulas for word in one.words)
+    energies = (one for one in statements.formulas if one.subject in letters.quantities)
+    has_rates = any(order(word) for one in energies for word in one.words)
+    rates = {stem(name) for name in words if order(name)}
+    has_powers = any("_dot**" in one.text for one in statements.formulas)
+    is_first = rates == {*letters.coordinates} and {*map(order, words)} == {0, 1} and not has_powers
+    are_velocities = is_first and not has_rates and all(map(VELOCITY.match, rates))
+    if "kinetic_energy" in letters.quantities.values() and not are_velocities:
         places = _implied_places(letters, statements.formulas)
         return _with_rates(statements, (*_unnamed(letters, statements.formulas), *places))
-    if letters.quantities or letters.momenta or statements.derivatives:
+    if (letters.quantities and not are_velocities) or letters.momenta or statements.derivatives:
         return statements
-    words = Counter(word for one in statements.formulas for word in one.words)
     if not letters.coordinates:
         has_mass = bool(letters.of_kind("mass"))
         names = [name for name in words if ACCELERATION.match(name) and words[name] > 1] * has_mass
         ending = "_ddot"
     else:
         second = {stem(name) for name in words if order(name) > 1}
-        is_first = not any(name for name in second if not name.startswith("omega"))
-        names = [name for name in letters.coordinates if VELOCITY.match(name) and is_first]
+        has_places = any(not name.startswith("omega") for name in second)
+        names = [
+            name
+            for name in letters.coordinates
+            if is_first or (VELOCITY.match(name) and not has_places)
+        ]
         ending = "_dot"
-    return _with_rates(statements, ((f"place_{one}{ending}", one) for one in names))
+    return _with_rates(statements, ((f"{PLACE}{one}{ending}", one) for one in names))
 
 
 def _implied_places(
