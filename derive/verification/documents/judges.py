@@ -16,6 +16,7 @@ from derive.verification.documents.letters.letters import KINDS, OPERATORS, Lett
 from derive.verification.documents.numbers.matching import Match, best_matches
 from derive.verification.documents.numbers.resolution import resolved
 from derive.verification.documents.rules.consequences import Contradictions, WithVerdict
+from derive.verification.documents.rules.evidence.slips import is_change
 from derive.verification.documents.rules.formula_verdicts import Judge
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.other_statements import GENERALIZED_FORCE
@@ -158,6 +159,10 @@ class Judges:
         verdicts = (one.verdict for _, one in self.verdicts(candidate))
         return [one for one in verdicts if one.verdict not in CORRECT]
 
+    def refuted(self, candidate: SystemCandidate) -> list[Verdict]:
+        """The verdicts on formulas that are wrong."""
+        return [one for one in self.incorrect(candidate) if one.verdict == "wrong"]
+
     def count_wrong(self, candidate: SystemCandidate) -> int:
         """The number of formulas that are wrong."""
         return len(self.wrong(candidate))
@@ -229,7 +234,8 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
 
     What holds by the best alone is disputed. As much is also as many formulas that fail by one term
     each: the score does not show that one is missing. Equations, which follow from energies, must
-    not contradict more formulas than these.
+    not contradict more formulas than these; nor are they as likely as other equations, if no change
+    of one term reconciles them with what they contradict, unlike these.
     """
 
     def has_as_few_slips(match: Match) -> bool:
@@ -240,6 +246,12 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
         wrong, own = (judges.incorrect(one.candidate) for one in (match, best))
         return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
 
+    def is_less_likely(match: Match) -> bool:
+        are_equations = match.candidate.is_of_equations and best.candidate.is_of_equations
+        has_slips = all(is_change(one.corrections) for one in judges.refuted(best.candidate))
+        unexplained = are_equations and has_slips and match.unexplained
+        return bool(unexplained and unexplained & {*judges.wrong(match.candidate)})
+
     others = (one for one in matches if one.candidate.stating and best.failed - one.failed)
     ranked = sorted(others, key=lambda one: one.score)
     # of those of the same statements that fail alike, the likeliest
@@ -249,18 +261,21 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
     if is_decided and judges.count_wrong(best.candidate) == 1:
         return Contradictions()
     doubts, disputed = _rates_and_energies(best, judges), dict[int, frozenset[int]]()
+    decided = set[int]()
     verdicts = enumerate(judges.verdicts(best.candidate)) if stated else ()
     understood = {k for k, (_, one) in verdicts if one.is_understood}
     for match in stated:
         is_worse = match.candidate.is_of_equations and len(match.failed) > len(best.failed)
         is_tie = match.score >= best.score - TIE and not is_worse
         more = best.failed.intersection(understood) - match.failed
-        if more and (is_tie or has_as_few_slips(match)) and not judges.has_more(best, match):
+        if more and is_less_likely(match):
+            decided.update(more)
+        elif more and (is_tie or has_as_few_slips(match)) and not judges.has_more(best, match):
             for number in more:
                 doubts.setdefault(number, match.candidate.stating)
             for number in match.failed - best.failed:
                 disputed.setdefault(number, more)
-    return Contradictions(doubts, disputed)
+    return Contradictions(doubts, disputed, decided=frozenset(decided - {*doubts}))
 
 
 def _is_decisive(best: Match, matches: Sequence[Match]) -> bool:
@@ -341,9 +356,9 @@ def _with_one_wrong_position(
 
 
 def _rates_and_energies(best: Match, judges: Judges) -> dict[int, frozenset[int]]:
-    """Rates of positions, and energies, that both differ from those of stated positions.
+    """What differs from stated positions, if rates of these and energies both do.
 
-    A slip in a position is as likely, with which both can agree.
+    A slip in a position is as likely, with which both can agree, and what follows from them.
     """
     if best.candidate.basis != "positions":
         return {}
@@ -353,7 +368,7 @@ def _rates_and_energies(best: Match, judges: Judges) -> dict[int, frozenset[int]
              if POINT.match(one) and one not in judges.letters.coordinates]  # fmt: skip
     energies = [k for k in wrong if formulas[k].subject in judges.letters.quantities]
     both = frozenset((*rates, *energies))
-    return dict.fromkeys(both, both) if rates and energies else {}
+    return dict.fromkeys(wrong, both) if rates and energies else {}
 
 
 def _abbreviations(formulas: Sequence[DocumentFormula], letters: Letters) -> set[str]:

@@ -58,6 +58,8 @@ class Match:
     #: Numbers of formulas that do not hold, and whether each holds but for one term.
     failed: frozenset[int] = frozenset()
     is_nearly: bool = True
+    #: Numbers of formulas that no other term makes hold, where these were tried.
+    unexplained: frozenset[int] = frozenset()
     #: Alike for candidates of the same motions and energies.
     signature: bytes = b""
     #: Comparisons that hold because they state the system.
@@ -148,9 +150,9 @@ def best_matches(
     failing = len(votes) - int(agreeing.sum(axis=0).max())
     if len(votes) - failing * (1 - NEARLY) * (1 + FAILING) < least_support:
         return []  # even if all others hold but for one term
-    near = np.zeros_like(agreeing)
+    near, unexplained = np.zeros_like(agreeing), np.zeros_like(agreeing)
     uses_letters = cache(partial(_uses_letters, tried))
-    if len(votes) <= FEW:
+    if len(votes) <= FEW or len(tried) == 1:
         for row, (index, side, vote) in enumerate(votes):
             written = frozenset(formulas[index].words) & {*letters.parameters}
             possible = ~vote & uses_letters(written)
@@ -159,7 +161,9 @@ def best_matches(
             if lacking.all():
                 possible, sides = ~vote, (rest.sides[0].text, rest.sides[1].text)
             if possible.any() and (hits := numbers.is_near(*sides)) is not None:
-                near[row] = hits & possible
+                near[row], unexplained[row] = hits & possible, possible & ~hits
+    if len(votes) > FEW:
+        near[:] = False
     holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
     usual = np.array([one.is_usual for one in tried])
     score = holding - UNUSUAL * ~usual
@@ -171,10 +175,17 @@ def best_matches(
     for k, signature in zip(ranked, numbers.signatures(ranked), strict=True):
         chosen.setdefault(signature, k)
     rows = np.array([index for index, *_ in votes])
+
+    def of_formulas(flags: Votes) -> frozenset[int]:
+        return frozenset(map(int, rows[flags]))
+
     is_full = {*map(int, rows), *(index for index, _ in trivial)} == {*range(len(formulas))}
     return [
-        Match(tried[k], float(holding[k]), len(votes), frozenset(map(int, rows[~agreeing[:, k]])),
-              bool(is_nearly[k]), signature, sum(row in tried[k].stating for row in rows), is_full)
+        Match(
+            tried[k], float(holding[k]), len(votes), of_formulas(~agreeing[:, k]),
+            bool(is_nearly[k]), of_formulas(unexplained[:, k]), signature,
+            sum(row in tried[k].stating for row in rows), is_full,
+        )
         for signature, k in [*chosen.items()][:MAX_RIVALS]
     ]  # fmt: skip
 

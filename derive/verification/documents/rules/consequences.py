@@ -37,6 +37,8 @@ class Contradictions:
     disputed: Mapping[int, frozenset[int]] = field(default_factory=dict)
     #: The formulas whose dimensions contradict those of all others, and what restores them.
     inhomogeneous: Mapping[int, Restoration | None] = field(default_factory=dict)
+    #: Formulas that do not hold, if all systems with which they do need larger changes of others.
+    decided: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,11 @@ def is_slip(corrections: Sequence[Correction]) -> bool:
     return len(changes) == 1 and None not in changes
 
 
+def is_change(corrections: Sequence[Correction]) -> bool:
+    """Whether the corrections are those of one slip that changes one term."""
+    return len(corrections) == 1 and corrections[0].wrong != "" and is_slip(corrections)
+
+
 def _change(correction: Correction) -> sp.Expr | None:
     """The factor by which a slip changes a term, or the missing term; None if it is no slip."""
     try:

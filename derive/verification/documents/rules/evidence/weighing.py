@@ -219,7 +219,7 @@ class _Evidence:
         if result.kind in OF_ENERGIES and len(result.verdict.corrections) == 1:
             has_load = adds_constant_force(formula, result, self._candidate)
             return other_case if has_load or is_driven(self._candidate) else ""
-        if self._is_tie(result) or adds_letters(formula, result, self._candidate):
+        if self._is_tie(number) or adds_letters(formula, result, self._candidate):
             return other_case
         return ""
 
@@ -342,15 +342,17 @@ class _Evidence:
         """Whether a single formula supports an unusual meaning of angles."""
         return self._is_known and self._support.holding < 2 and self._candidate.is_turned
 
-    def _is_tie(self, result: SideVerdict) -> bool:
+    def _is_tie(self, number: int) -> bool:
         """Whether equations that state a system are no more certain than one that differs.
 
         A term with velocities that follows from the inertia is more certain, and so is one with
         the parameters of an energy that holds.
         """
+        result = self._results[number][1]
+        least = 1 if number in self._contradictions.decided else 2
         is_alone = (
             len(self._support.independent) == 1
-            and self._support.holding >= 2
+            and self._support.holding >= least
             and self._support.misfits == 0
         )
         if not self._candidate.is_of_equations or is_alone:
