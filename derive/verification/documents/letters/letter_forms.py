@@ -3,13 +3,16 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 from derive.reading.latex.tree import (
     DIFFERENCE,
     Application,
     Derivative,
     Letter,
+    Matrix,
     Node,
+    Product,
     Span,
     Statement,
     Sum,
@@ -28,7 +31,8 @@ VARIANTS = (("ell", "l"), ("varphi", "phi"), ("vartheta", "theta"), ("varepsilon
 
 def with_own_letters(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
     """The statements with a letter of its own for each meaning that a document shows."""
-    labelled = [_with_sides(one, with_labels(one.sides, QUANTITIES)) for one in occurrences]
+    masses = _with_masses(occurrences)
+    labelled = [_with_sides(one, with_labels(one.sides, QUANTITIES)) for one in masses]
     separate = _with_constants(_with_initial_rates(_with_functions(_with_lengths(labelled))))
     return _with_any_coordinate(_with_differences(separate))
 
@@ -114,6 +118,53 @@ def _with_lengths(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
         return _with_sides(place, with_letters(place.sides, partial(change, place, alone)))
 
     return [changed(one) for one in occurrences]
+
+
+#: The name of a mass M beside a matrix M.
+MASS = "mass"
+
+
+def _with_masses(occurrences: Sequence[Occurrence]) -> list[Occurrence]:
+    """The statements, with a name for a mass M that is in the entries of a matrix M.
+
+    The matrix is a side of an equation, a function of letters, or a factor of other letters' rates.
+    """
+
+    def is_matrix(node: Node) -> bool:
+        name = node.head if isinstance(node, Application) else node
+        return isinstance(name, Letter) and name.identifier == "M"
+
+    written = [
+        side
+        for one in occurrences
+        if any(map(is_matrix, one.sides))
+        for side in one.sides
+        if isinstance(side, Matrix)
+    ]
+    own = {one.identifier for one in letters(tuple(written))}
+    if "M" not in own:
+        return [*occurrences]
+
+    def matrices(place: Occurrence) -> Iterator[Span]:
+        yield from (one.span for one in place.sides if is_matrix(one))
+        for node in nodes(place.sides):
+            match node:
+                case Application(head=head, arguments=arguments) if is_matrix(head):
+                    if all(isinstance(one, Letter) for one in arguments):
+                        yield head.span
+                case Product(factors=factors):
+                    for one, other in pairwise(factors):
+                        if is_matrix(one) and isinstance(other, Letter) and other.dots:
+                            yield from [one.span] * (other.identifier not in own)
+
+    def change(alone: set[Span], letter: Letter) -> Letter:
+        is_mass = letter.identifier == "M" and letter.span not in alone
+        return replace(letter, name=MASS) if is_mass else letter
+
+    return [
+        _with_sides(one, with_letters(one.sides, partial(change, {*matrices(one)})))
+        for one in occurrences
+    ]
 
 
 #: The name of a function g, such as a constraint, beside the gravity g.

@@ -47,6 +47,8 @@ PRODUCT = re.compile(r"\b(\w+)\*(\w+)\b")
 DIFFERENCE = re.compile(r"(?:sin|cos)\(\w+ - \w+\)")
 #: A number, perhaps with a unit.
 NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d+\*[msN]\b.*")
+#: An angle from another direction.
+TURNED_ANGLE = re.compile(r"(?:(?=\w+ \+ pi\Z)|pi [+-] )(\w+)(?: \+ pi)?")
 #: A function of an angle and its argument.
 TURNED = re.compile(r"\b(?:sin|cos|tan)\([^()]*\)")
 #: Orders of the rows of a matrix that are tried.
@@ -81,7 +83,8 @@ def letters_of(
     functions = resting_functions(formulas, moving)
     quantities |= partners(quantities, functions)
     matrices = {*matrices_of(formulas), *matrices_by_entries(stems)}
-    columns = _columns(formulas, moving, matrices)
+    turned = _turned_angles(formulas, moving)
+    columns = _columns(formulas, (*moving, *turned), matrices)
     generic = _generic(formulas, derivatives) | columns
     moving = [one for one in moving if one not in generic] or moving
     momenta = {}
@@ -110,7 +113,7 @@ def letters_of(
         coordinates += [q for i in sorted(indices) if (q := f"q_{i}") not in coordinates]
     # a document can define r by other coordinates, and go on with r alone
     accelerated = tuple(one for one in coordinates if orders.get(one) == 2)
-    related = _related(formulas, {*quantities}, coordinates)
+    related = {*_related(formulas, {*quantities}, coordinates), *turned}
     coordinates += [one for one in stems if orders[one] == 2 and one in defined - related]
     known = {*quantities, *defined, *moving, *momenta, "t"}
     parameters = [
@@ -121,7 +124,7 @@ def letters_of(
     abbreviations = _abbreviations(stems, coordinates, formulas)
     used = {*abbreviations, *matrices_by_entries(stems)}
     parameters = [one for one in parameters if one not in used]
-    ordered, *others = _orders(formulas, coordinates, stems)
+    ordered, *others = _orders(formulas, coordinates, stems, turned)
     energies = {
         name for name, kind in quantities.items() if kind in ("kinetic_energy", "potential_energy")
     }
@@ -157,12 +160,16 @@ def equal_letters(formula: DocumentFormula) -> set[str]:
 
 
 def _orders(
-    formulas: Iterable[DocumentFormula], coordinates: Sequence[str], stems: Sequence[str]
+    formulas: Iterable[DocumentFormula],
+    coordinates: Sequence[str],
+    stems: Sequence[str],
+    turned: Mapping[str, str],
 ) -> Iterator[tuple[str, ...]]:
     """Orders of coordinates: of a column of them, of their indices, or any, from the first use."""
     for formula in formulas:
         for column in COLUMN.findall(formula.text):
-            names = [stem(name) for name in column.split(", ")]
+            written = map(stem, column.split(", "))
+            names = [turned.get(name, name) for name in written]
             if set(names) <= set(coordinates) and len(set(names)) == len(names):
                 yield (*names, *(q for q in coordinates if q not in names))
                 return
@@ -306,6 +313,14 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
         if square and others and is_new and not formula.is_special_case:
             defined.add(square[1])
     return defined
+
+
+def _turned_angles(
+    formulas: Iterable[DocumentFormula], moving: Collection[str]
+) -> dict[str, str]:
+    """Angles from another direction, as theta = pi + phi, and the coordinates that give them."""
+    pairs = ((one.subject, TURNED_ANGLE.fullmatch(one.sides[-1].text)) for one in formulas)
+    return {name: match[1] for name, match in pairs if name and match and match[1] in moving}
 
 
 def _related(

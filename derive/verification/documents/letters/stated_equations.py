@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import permutations
 
 import numpy as np
@@ -220,11 +220,27 @@ def _solved(matrix: sp.Matrix, rest: sp.Matrix) -> sp.Matrix | None:
     point = _point(sp.Tuple(matrix, rest))
     if matrix.rows <= MOST_BY_CRAMER:
         determinant = matrix.det(method="berkowitz")
-        return None if _is_zero(determinant, point) else matrix.adjugate() * rest / determinant
+        if _is_zero(determinant, point):
+            return None
+        return (matrix.adjugate() * rest).applyfunc(partial(_quotient, divisor=determinant))
     try:
         return matrix.LUsolve(rest, iszerofunc=lambda one: _is_zero(one, point))
     except (ValueError, sp.matrices.exceptions.NonInvertibleMatrixError):
         return None
+
+
+def _quotient(value: sp.Expr, divisor: sp.Expr) -> sp.Expr:
+    """A quotient, without a sine that is a factor of both: a tension has it at rest."""
+    sines = divisor.atoms(sp.sin)
+    if len(sines) != 1 or sp.expand(divisor.subs(sine := sines.pop(), 0)) != 0:
+        return value / divisor
+    square = 1 - sp.cos(sine.args[0]) ** 2
+    above, below = (sp.rem(sp.expand(one), sine**2 - square, sine) for one in (value, divisor))
+    odd, even = (above.coeff(sine, power) for power in (1, 0))
+    quotient, rest = sp.div(even, square, sp.cos(sine.args[0]))
+    if rest != 0 or below.coeff(sine, 0) != 0:
+        return value / divisor
+    return sp.cancel((odd + sine * quotient) / below.coeff(sine, 1))
 
 
 def _independent(rows: Sequence[_Equation], count: int) -> list[_Equation] | None:

@@ -9,7 +9,7 @@ from itertools import chain, takewhile
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
-from derive.formulas.syntax import ExpressionError
+from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.formulas.zero import vanishes
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText
@@ -137,9 +137,15 @@ class Judge:
 
         It stands in the place of another one, which is as likely as any slip of a letter.
         """
-        if len(verdict.corrections) != 1 or is_slip(verdict.corrections):
+        if len(verdict.corrections) != 1:
             return verdict
         (correction,) = verdict.corrections
+        if self._has_wrong_sign(correction):
+            wrong = correction.wrong
+            opposite = wrong[1:].lstrip() if wrong.startswith("-") else f"-{wrong}"
+            return replace(verdict, corrections=(replace(correction, correct=opposite),))
+        if is_slip(verdict.corrections):
+            return verdict
         params = {*self._namespace.derivation.system.params}
         with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
             required = self._namespace.value(correction.correct)
@@ -153,6 +159,14 @@ class Judge:
                         own = replace(correction, correct=text)
                         return replace(verdict, corrections=(own,))
         return verdict
+
+    def _has_wrong_sign(self, correction: Correction) -> bool:
+        """Whether a term that is a product has the wrong sign, in whatever letters."""
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            values = map(self._namespace.value, (correction.wrong, correction.correct))
+            is_product = len(summands(syntax_tree(correction.wrong))) == 1
+            return is_product and bool(sp.expand(sum(values)) == 0)
+        return False
 
     def _verdict(self, formula: DocumentFormula) -> SideVerdict:
         if not formula.relations:

@@ -15,6 +15,7 @@ from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.mechanics.derivation import Derivation
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.letters.candidates import BY_EQUATIONS, BY_POTENTIAL
 from derive.verification.documents.letters.document_system import is_length
 from derive.verification.documents.letters.letters import QUANTITIES, energy_of_part
 from derive.verification.documents.rules.frequencies import Frequencies
@@ -29,7 +30,7 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     without_unknown_terms,
 )
-from derive.verification.judging.reference_system import depends_on
+from derive.verification.judging.reference_system import depends_on, time_derivative
 
 #: Words of sentences about formulas that leave out terms, and about motions that have none.
 SIMPLIFIED = re.compile(
@@ -75,6 +76,8 @@ class OtherStatements:
             return plain("context", formula, note)
         if (other := self._with_an_energy(formula)) is not None:
             return other
+        if self._is_of_equations(formula):
+            return plain("context", formula, "it is constant, as an energy of the equations is")
         if self._is_place(formula) or self._is_turning_point(formula):
             return plain("context", formula, "it states a value")
         if (frequency := self._frequency(formula)) is not None:
@@ -234,6 +237,17 @@ class OtherStatements:
         if not offset.is_finite or offset == 0:
             return None
         return plain("context", formula, "it contains an energy, which can have another constant")
+
+    def _is_of_equations(self, formula: DocumentFormula) -> bool:
+        """Whether it states a constant energy of equations, which give none but for a factor."""
+        system = self._namespace.derivation.system
+        kind = self._namespace.letters.quantities.get(formula.subject)
+        if system.name not in (BY_EQUATIONS, BY_POTENTIAL) or kind not in ("energy", "hamiltonian"):
+            return False
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            rate = time_derivative(system, self._namespace.value(formula.sides[-1].text))
+            return self._namespace.model.agreement(rate) is not None
+        return False
 
     def _is_place(self, formula: DocumentFormula) -> bool:
         """Whether a formula can state a place, as cos θ = g/(ω² a): it has no other quantities.

@@ -1,0 +1,190 @@
+"""Equations of motion that follow from others: of velocities, of turned angles, in matrices."""
+
+from pathlib import Path
+
+import pytest
+import sympy as sp
+from constrained_systems import GRAVITY, KG, PLANE, ROD, length, m, x, y
+
+from derive import Derivation, PointMass, System
+from derive.formulas.syntax import ExpressionError
+from derive.reading.document_formats import read_document
+from derive.system.symbols import velocity
+from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.judging.constrained_motions import motion
+from derive.verification.judging.engine import State
+
+
+def judged(folder: Path, text: str) -> list[FormulaVerdict]:
+    (folder / "a.md").write_text(text, encoding="utf-8")
+    return [*judge_document(read_document(folder / "a.md")).formulas]
+
+
+def wrong(folder: Path, text: str) -> list[FormulaVerdict]:
+    return [one for one in judged(folder, text) if one.verdict == "wrong"]
+
+
+#: A vehicle by its side velocity v and its yaw rate r, both without coordinates.
+VEHICLE = r"""$$m(\dot v + u r) = F_f + F_r$$ $$I_z\dot r = a F_f - b F_r$$
+$$F_f = C_f\alpha_f, \quad F_r = C_r\alpha_r$$
+$$\alpha_f = \delta - \frac{v + a r}{u}, \quad \alpha_r = -\frac{v - b r}{u}$$
+$$\dot v = -\frac{C_f + C_r}{m u} v + \left(\frac{b C_r - a C_f}{m u} - u\right) r
++ \frac{C_f}{m}\delta$$
+$$\dot r = \frac{b C_r - a C_f}{I_z u} v - \frac{a^2 C_f + b^2 C_r}{I_z u} r
++ \frac{a C_f}{I_z}\delta$$"""
+
+
+def test_equations_of_velocities_state_a_system(tmp_path: Path) -> None:
+    found = judged(tmp_path, VEHICLE)
+    assert [one.verdict for one in found][-2:] == ["verified"] * 2
+
+
+@pytest.mark.parametrize(("right", "slip", "term"), [
+    ("a F_f - b F_r", "a F_f + b F_r", "b F_r"),
+    (r"a^2 C_f + b^2 C_r", "a^2 C_f - b^2 C_r", "- b^2 C_r"),
+    (r"\frac{a C_f}{I_z}\delta", r"\frac{C_f}{I_z}\delta", r"\frac{C_f}{I_z}\delta"),
+])  # fmt: skip
+def test_of_contrary_equations_that_of_one_slip_is_wrong(
+    right: str, slip: str, term: str, tmp_path: Path
+) -> None:
+    (one,) = wrong(tmp_path, VEHICLE.replace(right, slip))
+    assert slip in one.latex
+    assert one.wrong_term == term
+
+
+#: Torque-free motion: the kinetic energy gives no equations by Lagrange's formula.
+TOP = r"""$$I_1\dot\omega_1 = (I_2 - I_3)\omega_2\omega_3$$
+$$I_2\dot\omega_2 = (I_3 - I_1)\omega_3\omega_1$$ $$I_3\dot\omega_3 = (I_1 - I_2)\omega_1\omega_2$$
+The energy $$T = \frac12 (I_1\omega_1^2 + I_2\omega_2^2 + I_3\omega_3^2)$$ is constant.
+With $$I_1 = I_2, \quad \Omega = \frac{I_3 - I_1}{I_1}\omega_3$$ these are
+$$\dot\omega_1 = -\Omega\omega_2, \quad \dot\omega_2 = \Omega\omega_1$$"""
+
+
+def test_a_kinetic_energy_of_angular_velocities_contradicts_no_equation(tmp_path: Path) -> None:
+    found = judged(tmp_path, TOP)
+    assert not [one for one in found if one.verdict == "wrong"]
+    assert [one.verdict for one in found][-2:] == ["verified"] * 2
+
+
+SPRING = r"""$$\dot x = v, \quad m\dot v = -k x - c v, \quad \dot v = -\frac{k x + c v}{m}$$"""
+
+
+def test_a_velocity_with_its_place_is_none_of_its_own(tmp_path: Path) -> None:
+    assert [one.verdict for one in judged(tmp_path, SPRING)][1:] == ["verified"] * 2
+
+
+#: Forces between a cart and its pendulum; the tension P is not determined at rest.
+PARTS = r"""$$M\ddot x + b\dot x + N = F$$
+$$N = m\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta$$
+$$(M + m)\ddot x + b\dot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$P\sin\theta + N\cos\theta - m g\sin\theta = m l\ddot\theta + m\ddot x\cos\theta$$
+$$-P l\sin\theta - N l\cos\theta = I\ddot\theta$$
+$$(I + m l^2)\ddot\theta + m g l\sin\theta = -m l\ddot x\cos\theta$$
+With $\theta = \pi + \phi$, $$(I + m l^2)\ddot\phi - m g l\phi = m l\ddot x$$"""
+
+
+def test_small_motions_about_a_turned_angle_are_judged(tmp_path: Path) -> None:
+    found = judged(tmp_path, PARTS)
+    assert not [one for one in found if one.verdict == "wrong"]
+    assert [one.verdict for one in found if one.line > 5][:1] == ["verified"]
+    assert found[-1].verdict == "verified"
+    (one,) = wrong(tmp_path, PARTS.replace(r"- m g l\phi", r"+ m g l\phi"))
+    assert one.wrong_term == r"m g l\phi"
+
+
+def test_a_wrong_sign_is_corrected_in_the_letters_of_its_term(tmp_path: Path) -> None:
+    (one,) = wrong(tmp_path, PARTS.replace(r"+ m g l\sin", r"- m g l\sin"))
+    assert one.wrong_term == r"- m g l\sin\theta"
+    assert r"+ m g l \sin\left(\theta\right)" in one.correction
+
+
+def test_a_sum_is_not_wrong_for_a_sign_of_its_parts(tmp_path: Path) -> None:
+    before, _, after = PARTS.partition(r"- m l\dot\theta^2")
+    assert not wrong(tmp_path, rf"{before}+ m l\dot\theta^2{after}")
+
+
+BALL = r"""$$m\ddot x = m g\sin\alpha - f, \quad I\dot\omega = f r, \quad \dot x = \omega r$$
+$$I = \frac25 m r^2, \quad f = \frac27 m g\sin\alpha, \quad \ddot x = \frac57 g\sin\alpha$$
+$$E = \frac12 m\dot x^2 + \frac12 I\omega^2 - m g x\sin\alpha
+= \frac{7}{10} m\dot x^2 - m g x\sin\alpha$$"""
+
+
+def test_a_constant_energy_of_equations_is_not_wrong(tmp_path: Path) -> None:
+    found = judged(tmp_path, BALL)
+    assert (found[-1].verdict, found[-1].note) == (
+        "context", "it is constant, as an energy of the equations is"
+    )  # fmt: skip
+    other = judged(
+        tmp_path, BALL.replace(r"\frac{7}{10} m\dot x^2 - m", r"\frac{7}{10} m\dot x^2 + m")
+    )
+    assert other[-1].verdict != "verified"
+
+
+#: M is a mass and the matrix in whose entries it stands.
+CART = r"""$$L = \frac12 (M + m)\dot x^2 + m l\dot x\dot\theta\cos\theta + \frac12 m l^2\dot\theta^2
++ m g l\cos\theta$$
+$$(M + m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$q = \begin{bmatrix} x \\ \theta\end{bmatrix}, \quad
+M(q)\ddot q + C(q, \dot q)\dot q = \begin{bmatrix} F \\ -m g l\sin\theta\end{bmatrix}$$
+$$M\ddot q = \begin{bmatrix} F + m l\dot\theta^2\sin\theta \\ -m g l\sin\theta\end{bmatrix}$$
+$$M = \begin{bmatrix} M + m & m l\cos\theta \\ m l\cos\theta & m l^2\end{bmatrix}, \quad
+C = \begin{bmatrix} 0 & -m l\dot\theta\sin\theta \\ 0 & 0\end{bmatrix}$$
+Upright, $\theta = \pi + \phi$ and
+$$\ddot\phi = \frac{F + (M + m) g\phi}{M l}, \quad \ddot x = \frac{F + m g\phi}{M}$$
+$$A = \begin{bmatrix} 0 & 1 & 0 & 0\\ 0 & 0 & \frac{m g}{M} & 0\\ 0 & 0 & 0 & 1\\
+0 & 0 & \frac{(M + m) g}{M l} & 0\end{bmatrix}$$"""
+
+
+def test_a_mass_and_a_matrix_can_have_one_letter(tmp_path: Path) -> None:
+    found = judged(tmp_path, CART)
+    assert not [one for one in found if one.verdict == "wrong"]
+    assert [one.verdict for one in found].count("verified") == 9
+
+
+@pytest.mark.parametrize(("right", "slip", "term"), [
+    (r"& m l^2\end", r"& m l\end", "m l"),
+    (r"\frac{m g}{M} & 0", r"\frac{m g}{m} & 0", r"\frac{m g}{m}"),
+    (r"\frac{F + (M + m) g\phi}", r"\frac{F - (M + m) g\phi}", r"- (M + m) g\phi"),
+])  # fmt: skip
+def test_slips_beside_a_mass_and_a_matrix_of_one_letter(
+    right: str, slip: str, term: str, tmp_path: Path
+) -> None:
+    (one,) = wrong(tmp_path, CART.replace(right, slip))
+    assert one.wrong_term == term
+
+
+#: The position y has the wrong sign of its drive, and the potential energy that of its length.
+DRIVEN = r"""$$x = l\sin\theta$$ $$y = -l\cos\theta - a\cos\omega t$$
+$$\dot x = l\dot\theta\cos\theta$$ $$\dot y = l\dot\theta\sin\theta - a\omega\sin\omega t$$
+$$T = \frac12 m(\dot x^2 + \dot y^2), \quad V = m g y$$
+$$T = \frac{m}{2}(l^2\dot\theta^2 + a^2\omega^2\sin^2\omega t
+- 2 l\dot\theta a\omega\sin\theta\sin\omega t), \quad V = m g (l\cos\theta + a\cos\omega t)$$
+$$\ddot\theta = \frac{a\omega^2}{l}\sin\theta\cos\omega t - \frac{g}{l}\sin\theta$$"""
+
+
+def test_a_slip_in_a_position_is_not_that_of_what_follows(tmp_path: Path) -> None:
+    assert not wrong(tmp_path, DRIVEN)
+
+
+def test_blocks_of_matrices_are_not_compared(tmp_path: Path) -> None:
+    text = r"""$$m\ddot x = -k x + u$$ $$\mathbf q = \begin{bmatrix} x \\ 0\end{bmatrix}$$
+$$\mathbf s = \begin{bmatrix} \mathbf q \\ 1\end{bmatrix}, \quad
+K = \begin{bmatrix} \mathbf q & 0 \\ 0 & 1\end{bmatrix}$$"""
+    assert "wrong" not in {one.verdict for one in judged(tmp_path, text)}
+
+
+def near_the_origin(condition: sp.Expr) -> State:
+    """The state of a motion near one at which a condition has no value."""
+    system = System("swing", "A mass", PLANE, [KG, ROD, GRAVITY], [PointMass(m, (x, y))],
+        constraints=[condition])  # fmt: skip
+    names = (*system.q, *system.qdot, *system.params)
+    state = dict.fromkeys(names, sp.Integer(1)) | {x: sp.S.Zero, y: sp.S.Zero}
+    return motion(Derivation(system), state)
+
+
+def test_conditions_without_a_value_at_a_state_have_no_motion_there() -> None:
+    with pytest.raises(ExpressionError, match="no generic state"):
+        near_the_origin((x * velocity(y) - velocity(x)) / sp.sqrt(x**2 + y**2))
+    found = near_the_origin(sp.sqrt(x**2 + y**2) - length)  # there is one beside it
+    assert float(found[x] ** 2 + found[y] ** 2) == pytest.approx(1.0)
