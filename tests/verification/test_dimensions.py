@@ -386,3 +386,11 @@ def test_mu_is_no_mass(tmp_path: Path) -> None:
     )  # fmt: skip
     assert inhomogeneous(*orbit) == []
     assert "wrong" not in {one.verdict for one in judged(tmp_path, *orbit)}
+
+
+def test_a_letter_with_another_meaning_in_several_formulas_is_no_slip() -> None:
+    damped = (r"R\ddot h + \gamma\dot h + g h = 0", r"R\ddot q + \gamma\dot q + g q = 0",
+              r"R\ddot h = -\gamma\dot h - g h", r"l = R + R_1")  # fmt: skip
+    divided = r"\ddot h + \gamma\dot h + \omega^2 h = 0", r"\ddot q + \gamma\dot q + \omega^2 q = 0"
+    assert inhomogeneous(*damped, *divided) == []
+    assert inhomogeneous(*damped, divided[0]) == [4]

@@ -11,6 +11,7 @@ from derive.verification.documents.judgement import _without_foreign
 from derive.verification.documents.letters.candidates import BY_EQUATIONS, STATED, SystemCandidate
 from derive.verification.documents.letters.known_systems.templates import named
 from derive.verification.documents.letters.letter_roles import letters_of
+from derive.verification.documents.letters.subjects import implied_rates
 from derive.verification.documents.rules.consequences import (
     Contradictions,
     WithVerdict,
@@ -18,7 +19,12 @@ from derive.verification.documents.rules.consequences import (
 )
 from derive.verification.documents.rules.evidence.weighing import weighed
 from derive.verification.documents.rules.side_verdict import plain
-from derive.verification.documents.statements import DocumentFormula, Occurrence, translated
+from derive.verification.documents.statements import (
+    DocumentFormula,
+    Occurrence,
+    Translated,
+    translated,
+)
 from derive.verification.judging.motion_verdicts import NOT_LINEAR
 from derive.verification.judging.verdict import Correction
 
@@ -301,3 +307,37 @@ def test_what_follows_from_a_formula_is_wrong_if_this_is(source: str, expected: 
     other = replace(other, source=first.occurrence.line)
     found = without_sources([(first, one), (second, other)])
     assert verdicts(found) == [(source, ""), (expected, "")]
+
+
+@pytest.mark.parametrize(("relation", "expected"), [
+    (r"s^2 + y^2 = (h^2 - q^2)/2", "wrong"),
+    (r"s^2 + y^2 = k (h^2 - q^2)/2", "context"),  # with a parameter, it can be a condition
+    (r"s^2 + y^2 = -q^2", "context"), ("s^2 = -y^2", "context"),  # at a place
+])  # fmt: skip
+def test_a_relation_of_defined_names_is_of_no_other_case(relation: str, expected: str) -> None:
+    *names, L, one, two, last = formulas("h = s + y", "q = s - y", r"L = m\dot s^2 - k s^2",
+        r"m\ddot s = - k y", r"m\ddot y = - k s", relation)  # fmt: skip
+    if "q^2)" not in relation:
+        names = names[2:]  # q is not defined
+    results = [
+        *(with_verdict(one, "definition") for one in names), with_verdict(L, "definition"),
+        *(with_verdict(one, "wrong") for one in (one, two, one, two)),
+        with_correction(last, "-q**2", "q**2"),
+    ]  # fmt: skip
+    candidate = stated("stated_energies", frozenset({len(names)}))
+    judged = [*weighed(results, candidate, Contradictions(), is_stated=False)]
+    assert judged[-1][1].verdict.verdict == expected
+
+
+def test_a_column_has_the_order_of_coordinates_also_of_turned_ones() -> None:
+    own = formulas(r"\theta = \pi + \phi", r"\ddot x + \ddot\phi = 0", r"\ddot\theta = x",
+        r"q = \begin{bmatrix} \theta \\ x \end{bmatrix}")  # fmt: skip
+    assert letters_of(own, {}).ordered == ("phi", "x")
+
+
+def test_a_component_of_a_velocity_belongs_to_a_position_that_is_stated_once() -> None:
+    T, one, two, v = r"T = \dot\phi^2", r"x_2 = l\sin\phi", r"x_2 = b\sin\phi", r"v_{x2} = l"
+    for latex, count in (((T, one, v), 1), ((T, one, two, v), 0), ((T, one), 0)):
+        read = Translated(formulas(*latex), (), {})
+        implied = [one.text for one in implied_rates(read).formulas if one.occurrence.line == 0]
+        assert implied == ["v_x2 = x_2_dot"] * count

@@ -142,6 +142,15 @@ def test_a_mass_and_a_matrix_can_have_one_letter(tmp_path: Path) -> None:
     assert [one.verdict for one in found].count("verified") == 9
 
 
+def test_a_column_can_have_a_turned_angle_first(tmp_path: Path) -> None:
+    other = CART.replace(r"x \\ \theta\end", r"\theta \\ x\end").replace(
+        r"M + m & m l\cos\theta \\ m l\cos\theta & m l^2",
+        r"m l^2 & m l\cos\theta \\ m l\cos\theta & M + m",
+    )
+    (matrix,) = (one for one in judged(tmp_path, other) if one.latex.startswith(r"M = \begin"))
+    assert matrix.verdict == "verified"
+
+
 @pytest.mark.parametrize(("right", "slip", "term"), [
     (r"& m l^2\end", r"& m l\end", "m l"),
     (r"\frac{m g}{M} & 0", r"\frac{m g}{m} & 0", r"\frac{m g}{m}"),
@@ -165,6 +174,56 @@ $$\ddot\theta = \frac{a\omega^2}{l}\sin\theta\cos\omega t - \frac{g}{l}\sin\thet
 
 def test_a_slip_in_a_position_is_not_that_of_what_follows(tmp_path: Path) -> None:
     assert not wrong(tmp_path, DRIVEN)
+
+
+#: Two pendulums on a cart, small, with their sum and difference.
+SUMS = r"""$$L = \frac{M}{2}\dot d^2 + \frac{m R^2}{2}(\dot\theta_1^2 + \dot\theta_2^2)
++ m R\dot d(\dot\theta_1 + \dot\theta_2) - \frac{m g R}{2}(\theta_1^2 + \theta_2^2)$$
+$$h = \theta_1 + \theta_2, \quad q = \theta_1 - \theta_2$$
+$$\theta_1^2 + \theta_2^2 = \frac{h^2 + q^2}{2}, \quad
+\dot\theta_1^2 + \dot\theta_2^2 = \frac{\dot h^2 + \dot q^2}{2}$$
+With other loads, $$M\ddot d = F - c d, \quad m R\ddot\theta_1 = F - c\theta_1 R, \quad
+m\ddot\theta_2 = F_2 - c d\theta_2$$"""
+
+
+def test_a_relation_of_defined_names_depends_on_no_system(tmp_path: Path) -> None:
+    assert not wrong(tmp_path, SUMS)
+    (one,) = wrong(tmp_path, SUMS.replace("{h^2 + q^2}", "{h^2 - q^2}"))
+    assert one.wrong_term == "- q^2"
+
+
+ARM = r"""$$x_1 = l_1\sin\theta_1, \quad y_1 = -l_1\cos\theta_1$$
+$$x_2 = l_1\sin\theta_1 + l_2\sin\theta_2, \quad y_2 = -l_1\cos\theta_1 - l_2\cos\theta_2$$
+$$v_{x2} = l_1\dot\theta_1\cos\theta_1 + l_2\dot\theta_2\cos\theta_2$$
+$$v_{2y} = l_1\dot\theta_1\sin\theta_1 + l_2\dot\theta_2\sin\theta_2$$
+$$T = \frac12 m_1 l_1^2\dot\theta_1^2 + \frac12 m_2 (v_{x2}^2 + v_{2y}^2)$$"""
+
+
+def test_components_of_velocities_are_rates_of_positions(tmp_path: Path) -> None:
+    assert [one.verdict for one in judged(tmp_path, ARM)][4:] == ["verified"] * 3
+    (one,) = wrong(tmp_path, ARM.replace(r"\sin\theta_1 + l_2\dot", r"\sin\theta_1 - l_2\dot"))
+    assert one.latex.startswith("v_{2y} =")
+    # which of two is meant?
+    two = r"$$x_2 = l_1\sin\theta_1, \quad v_{x2} = l_1\dot\theta_1\cos\theta_1$$"
+    assert "v_{x2}" not in {one.latex[:6] for one in wrong(tmp_path, two + ARM)}
+
+
+#: Inertias that positions do not state: a known system has them.
+LINKS = r"""$$p_1 = \begin{bmatrix} a c_1 \\ a s_1 \\ 0\end{bmatrix}, \quad
+p_2 = \begin{bmatrix} l c_1 + b c_{12} \\ l s_1 + b s_{12} \\ 0\end{bmatrix}$$
+$$M = \begin{bmatrix} m_1 a^2 + m_2 l^2 + m_2 b^2 + I_1 + I_2 + 2 m_2 l b c_2
+& m_2 b^2 + m_2 l b c_2 + I_2 \\ m_2 b^2 + m_2 l b c_2 + I_2 & m_2 b^2 + I_2\end{bmatrix}$$
+In all, $$M = \begin{bmatrix} I_1 + I_2 + m_1 a^2 + m_2 (l^2 + b^2 + 2 l b c_2)
+& I_2 + m_2 (b^2 + l b c_2) \\ I_2 + m_2 (b^2 + l b c_2) & I_2 + m_2 b^2\end{bmatrix}$$
+$$C = \begin{bmatrix} -m_2 l b s_2\dot q_2 & -m_2 l b s_2 (\dot q_1 + \dot q_2) \\
+m_2 l b s_2\dot q_1 & 0\end{bmatrix}, \quad
+\tau = M\ddot q + C\dot q + G(q)$$"""
+
+
+def test_of_two_matrices_that_of_the_known_system_is_right(tmp_path: Path) -> None:
+    assert not wrong(tmp_path, LINKS)
+    (one,) = wrong(tmp_path, LINKS.replace("b^2 + 2 l b c_2)", "b^2 + l b c_2)"))
+    assert "l b c_2" in one.wrong_term
 
 
 def test_blocks_of_matrices_are_not_compared(tmp_path: Path) -> None:

@@ -73,7 +73,7 @@ def inhomogeneous_formulas(
 
     There are none if as many others could be those, if a formula can be one in other units, as its
     parameters have no dimension, or if they alone agree with formulas `elsewhere` in the document.
-    Of several, each has corrections.
+    Of several, each has corrections, and no letter can have another meaning in them.
     """
     outside = {stem(word) for one in elsewhere for word in one.words if order(word)}
     outside -= {stem(word) for one in formulas for word in one.words}
@@ -90,6 +90,11 @@ def inhomogeneous_formulas(
     pivots = _pivots(own for number, own in rows.items() if number not in odd) or {}
     further = [*map(equations.row, elsewhere)]
     if _pivots(further, pivots) is None and _agree(further, (rows[number] for number in odd)):
+        return {}
+    if len(odd) > 1 and any(
+        _pivots(equations.with_other_letter(one, odd).values()) is not None
+        for one in letters.parameters
+    ):
         return {}
     for number in odd:
         own = (one for one in letters.parameters if one in formulas[number].words)
@@ -308,6 +313,17 @@ class _Equations:
         """The equations of each formula with any."""
         rows = {number: self.row(formula) for number, formula in enumerate(self._formulas)}
         return {number: own for number, own in rows.items() if own}
+
+    def with_other_letter(self, name: str, numbers: Collection[int]) -> dict[int, list[Dimension]]:
+        """The equations with another letter in place of one in some formulas, if all have it."""
+        if not all(name in self._formulas[number].words for number in numbers):
+            return self.rows()
+        rows = self.rows()
+        for number in numbers:
+            formula = self._formulas[number]
+            texts = [re.sub(rf"\b{name}\b", f"{name}_other", side.text) for side in formula.sides]
+            rows[number] = self.row(replace(formula, sides=tuple(map(FormulaText, texts))))
+        return rows
 
     def row(self, formula: DocumentFormula) -> list[Dimension]:
         """The equations of a formula: dimensions that vanish."""

@@ -315,9 +315,7 @@ def _defined(formulas: Iterable[DocumentFormula], orders: Mapping[str, int]) -> 
     return defined
 
 
-def _turned_angles(
-    formulas: Iterable[DocumentFormula], moving: Collection[str]
-) -> dict[str, str]:
+def _turned_angles(formulas: Iterable[DocumentFormula], moving: Collection[str]) -> dict[str, str]:
     """Angles from another direction, as theta = pi + phi, and the coordinates that give them."""
     pairs = ((one.subject, TURNED_ANGLE.fullmatch(one.sides[-1].text)) for one in formulas)
     return {name: match[1] for name, match in pairs if name and match and match[1] in moving}

@@ -215,7 +215,7 @@ def implied_rates(statements: Translated) -> Translated:
 
     These are accelerations of a document without rates, and velocities without places: those of
     Euler's equations, and any letters of equations of first order. Beside energies in rates, they
-    are v, a and alpha alone.
+    are v, a and alpha alone, and components of velocities such as v_x2.
     """
     letters = letters_of(statements.formulas, statements.derivatives)
     words = Counter(word for one in statements.formulas for word in one.words)
@@ -227,7 +227,8 @@ def implied_rates(statements: Translated) -> Translated:
     are_velocities = is_first and not has_rates and all(map(VELOCITY.match, rates))
     if "kinetic_energy" in letters.quantities.values() and not are_velocities:
         places = _implied_places(letters, statements.formulas)
-        return _with_rates(statements, (*_unnamed(letters, statements.formulas), *places))
+        named = _unnamed(letters, statements.formulas)
+        return _with_components(_with_rates(statements, (*named, *places)))
     if (letters.quantities and not are_velocities) or letters.momenta or statements.derivatives:
         return statements
     if not letters.coordinates:
@@ -294,6 +295,22 @@ def _unnamed(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[
             yield f"{places[0]}_ddot", "a"
         if len(angles) == 1 and counts["alpha"] > 1 and not counts[f"{angles[0]}_ddot"]:
             yield f"{angles[0]}_ddot", "alpha"
+
+
+def _with_components(statements: Translated) -> Translated:
+    """The statements, with v_x2 as the rate of a position x_2 behind the formula of this."""
+    formulas = statements.formulas
+    stated = Counter(one.subject for one in formulas if POINT.match(one.subject))
+    words = {word for one in formulas for word in one.words}
+    result = list[DocumentFormula]()
+    for formula in formulas:
+        result.append(formula)
+        name = formula.subject
+        axis, _, index = name.partition("_")
+        if index and stated[name] == 1 and f"{name}_dot" not in words:
+            spellings = {f"v_{axis}{index}", f"v_{axis}_{index}", f"v_{index}{axis}"}
+            result += _implied((one, f"{name}_dot") for one in sorted(spellings & words))
+    return replace(statements, formulas=tuple(result))
 
 
 def with_arbitrary_potentials(statements: Translated) -> Translated:

@@ -15,7 +15,7 @@ from derive.verification.documents.letters.candidates import SystemCandidate, ki
 from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.rules.consequences import WithVerdict
 from derive.verification.documents.rules.evidence.loads import added
-from derive.verification.documents.rules.evidence.slips import is_slip
+from derive.verification.documents.rules.evidence.slips import is_change, is_slip
 from derive.verification.documents.rules.side_verdict import CORRECT, HOLDING, SideVerdict
 from derive.verification.documents.statements import WORD, DocumentFormula
 from derive.verification.judging.motion_verdicts import NOT_LINEAR
@@ -55,6 +55,28 @@ class Support:
         is_energy = is_free and result.kind in OF_ENERGIES
         is_one_term = len(verdict.corrections) < 2 or not is_energy
         return is_slip_or_form or (is_one_term and self._is_rest_right)
+
+    def holds_elsewhere(self, formula: DocumentFormula, result: SideVerdict) -> bool:
+        """Whether one slip explains a formula of which the document has the right form, too."""
+        return is_change(result.verdict.corrections) and any(
+            one.subject == formula.subject != "" and other.verdict.verdict in HOLDING
+            for one, other in self._results
+        )
+
+    def is_of_definitions(self, formula: DocumentFormula, result: SideVerdict) -> bool:
+        """Whether a slip explains a relation of coordinates and names that they define.
+
+        It depends on no system, as θ₁² + θ₂² = (h² + q²)/2 with h = θ₁ + θ₂ and q = θ₁ - θ₂.
+        """
+        own, coordinates = {*formula.words} - {*FUNCTIONS}, {*self._candidate.coordinates}
+        defined = {
+            one.subject
+            for one, other in self._results
+            if other.verdict.verdict == "definition" and one is not formula
+            if {*one.words} - {one.subject, *FUNCTIONS} <= coordinates
+        } - coordinates
+        is_one = is_change(result.verdict.corrections)
+        return is_one and bool(own & defined) and own <= coordinates | defined
 
     @cached_property
     def _is_rest_right(self) -> bool:

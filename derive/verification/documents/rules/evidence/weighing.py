@@ -174,6 +174,8 @@ class _Evidence:
             others = self._contradictions.doubts[number] - {number}
             beside = f" and agrees with {_lines(self._lines[k] for k in others)}" if others else ""
             return f"it contradicts {self._given or 'the system'}{beside}: {UNDECIDED}"
+        if self._support.is_of_definitions(formula, result):
+            return ""
         if formula.subject in self._unused:
             return opposed(self._unused[formula.subject])
         if number in self._undecided:
@@ -187,7 +189,7 @@ class _Evidence:
             return other_case
         if self._is_known and (
             self._has_other_energies
-            or self._support.is_weak
+            or (self._support.is_weak and not self._support.holds_elsewhere(formula, result))
             or self._unsure & {*formula.words}
             or exchanges_loads(result, self._candidate)
         ):
