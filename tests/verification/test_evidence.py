@@ -330,7 +330,7 @@ def test_a_relation_of_defined_names_is_of_no_other_case(relation: str, expected
 
 
 def test_a_column_has_the_order_of_coordinates_also_of_turned_ones() -> None:
-    own = formulas(r"\theta = \pi + \phi", r"\ddot x + \ddot\phi = 0", r"\ddot\theta = x",
+    own = formulas(r"\ddot x + x = 0", r"\theta = \pi + \phi", r"\ddot\phi + \ddot\theta = x",
         r"q = \begin{bmatrix} \theta \\ x \end{bmatrix}")  # fmt: skip
     assert letters_of(own, {}).ordered == ("phi", "x")
 
