@@ -11,6 +11,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.reading.document_formats import read_document
 from derive.system.symbols import velocity
 from derive.verification.documents.judgement import judge_document
+from derive.verification.documents.letters.stated_equations import _quotient
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
 from derive.verification.judging.constrained_motions import motion
 from derive.verification.judging.engine import State
@@ -91,6 +92,18 @@ def test_small_motions_about_a_turned_angle_are_judged(tmp_path: Path) -> None:
     assert found[-1].verdict == "verified"
     (one,) = wrong(tmp_path, PARTS.replace(r"- m g l\phi", r"+ m g l\phi"))
     assert one.wrong_term == r"m g l\phi"
+
+
+@pytest.mark.parametrize("factor", [sp.S.One, 1 / (m + sp.cos(x) ** 2)])
+def test_quotients_have_a_value_where_a_sine_cancels(factor: sp.Expr) -> None:
+    sine, cosine = sp.sin(x), sp.cos(x)
+    value = factor * (sine * cosine + y * (1 - cosine**2)) + sine**3
+    quotient = _quotient(value, divisor=sine * (m + cosine**2))
+    numbers = {x: sp.Rational(1, 3), y: sp.Rational(2, 5), m: sp.Rational(7, 4)}
+    expected = value / (sine * (m + cosine**2))
+    assert float((quotient - expected).subs(numbers)) == pytest.approx(0.0, abs=1e-14)
+    if factor == 1:
+        assert quotient.subs(x, 0) == 1 / (m + 1)
 
 
 def test_a_wrong_sign_is_corrected_in_the_letters_of_its_term(tmp_path: Path) -> None:

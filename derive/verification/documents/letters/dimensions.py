@@ -91,9 +91,9 @@ def inhomogeneous_formulas(
     further = [*map(equations.row, elsewhere)]
     if _pivots(further, pivots) is None and _agree(further, (rows[number] for number in odd)):
         return {}
+    shared = {*letters.parameters}.intersection(*(formulas[number].words for number in odd))
     if len(odd) > 1 and any(
-        _pivots(equations.with_other_letter(one, odd).values()) is not None
-        for one in letters.parameters
+        _pivots(equations.with_other_letter(one, odd).values()) is not None for one in shared
     ):
         return {}
     for number in odd:
@@ -315,9 +315,7 @@ class _Equations:
         return {number: own for number, own in rows.items() if own}
 
     def with_other_letter(self, name: str, numbers: Collection[int]) -> dict[int, list[Dimension]]:
-        """The equations with another letter in place of one in some formulas, if all have it."""
-        if not all(name in self._formulas[number].words for number in numbers):
-            return self.rows()
+        """The equations with another letter in place of one in some formulas."""
         rows = self.rows()
         for number in numbers:
             formula = self._formulas[number]

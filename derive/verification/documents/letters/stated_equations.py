@@ -235,12 +235,13 @@ def _quotient(value: sp.Expr, divisor: sp.Expr) -> sp.Expr:
     if len(sines) != 1 or sp.expand(divisor.subs(sine := sines.pop(), 0)) != 0:
         return value / divisor
     square = 1 - sp.cos(sine.args[0]) ** 2
-    above, below = (sp.rem(sp.expand(one), sine**2 - square, sine) for one in (value, divisor))
-    odd, even = (above.coeff(sine, power) for power in (1, 0))
-    quotient, rest = sp.div(even, square, sp.cos(sine.args[0]))
-    if rest != 0 or below.coeff(sine, 0) != 0:
-        return value / divisor
-    return sp.cancel((odd + sine * quotient) / below.coeff(sine, 1))
+    with suppress(sp.PolynomialError):  # of quotients
+        above, below = (sp.rem(sp.expand(one), sine**2 - square, sine) for one in (value, divisor))
+        odd, even = (above.coeff(sine, power) for power in (1, 0))
+        quotient, rest = sp.div(even, square, sp.cos(sine.args[0]))
+        if rest == 0 and below.coeff(sine, 0) == 0:
+            return sp.cancel((odd + sine * quotient) / below.coeff(sine, 1))
+    return value / divisor
 
 
 def _independent(rows: Sequence[_Equation], count: int) -> list[_Equation] | None:

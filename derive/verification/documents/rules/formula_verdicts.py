@@ -130,12 +130,13 @@ class Judge:
             return plain("definition", formula, STATES)
         if result.verdict.verdict == "wrong" and "dots" in formula.words:
             return plain("context", formula, "dots stand for some of its terms")
-        return replace(result, verdict=self._with_other_letter(result.verdict))
+        return replace(result, verdict=self._in_own_letters(result.verdict))
 
-    def _with_other_letter(self, verdict: Verdict) -> Verdict:
-        """The verdict; a correction that writes out the value of a letter is this letter.
+    def _in_own_letters(self, verdict: Verdict) -> Verdict:
+        """The verdict with a correction in the letters of its term, or one other letter.
 
-        It stands in the place of another one, which is as likely as any slip of a letter.
+        The opposite term has the same letters. A correction that writes out the value of a letter
+        is this letter in the place of another one, which is as likely as any slip of a letter.
         """
         if len(verdict.corrections) != 1:
             return verdict
