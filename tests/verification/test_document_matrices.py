@@ -171,6 +171,7 @@ The error is $e = q_d - q$, and $M(q)\ddot q = M(q) u$.
 """
 
 
+@pytest.mark.long("both rows are judged alike", keep=1)
 @pytest.mark.parametrize(("right", "slip"), [
     (r"C_{11} = -b\sin(q_2)\dot q_2", r"C_{11} = b\sin(q_2)\dot q_2"),
     (r"C_{21} = b\sin(q_2)\dot q_1", r"C_{21} = b\cos(q_2)\dot q_1"),

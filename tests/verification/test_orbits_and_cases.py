@@ -148,6 +148,7 @@ $$G_1 = m_1 g r_1\sin q_1 + m_2 g (l_1\sin q_1 + r_2\sin(q_1 + q_2))$$
 $$G_2 = m_2 g r_2\sin(q_1 + q_2)$$"""
 
 
+@pytest.mark.long("columns of both kinds are composed alike", keep=1)
 @pytest.mark.parametrize(("right", "slip"), [
     (r"(2\dot q_1 + \dot q_2)", r"(\dot q_1 + \dot q_2)"),
     (r"G_2 = m_2 g r_2\sin(q_1 + q_2)", r"G_2 = m_2 g r_2\sin(q_2)"),

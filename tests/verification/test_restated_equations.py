@@ -41,6 +41,7 @@ def test_equations_of_velocities_state_a_system(tmp_path: Path) -> None:
     assert [one.verdict for one in found][-2:] == ["verified"] * 2
 
 
+@pytest.mark.long("each is decided in the same way", keep=1)
 @pytest.mark.parametrize(("right", "slip", "term"), [
     ("a F_f - b F_r", "a F_f + b F_r", "b F_r"),
     (r"a^2 C_f + b^2 C_r", "a^2 C_f - b^2 C_r", "- b^2 C_r"),
