@@ -65,7 +65,11 @@ MOTIONS: dict[str, tuple[Any, ...]] = {
     "parallel, loose": (dp, (0, 9), REPORT, {}, {"method": "gauss4", "rtol": 1e-4, "atol": 1e-4}),
     "samples": (dp, (0, 10), REPORT, {}, {"method": "radau3", "t_eval": MANY}),
     "parallel, samples": (dp, (0, 10), REPORT, {}, {"method": "gauss8", "t_eval": MANY}),
-    "constraints": (four_bar, (0, 5), {"phi": 1.0}, {}, {"method": "verner98"}),
+    # with tighter tolerances, roundings decide how many steps are rejected
+    "constraints": (
+        *(four_bar, (0, 5), {"phi": 1.0}, {}),
+        {"method": "verner98", "rtol": 1e-8, "atol": 1e-8},
+    ),
     "events": (
         *(duffing, (0, 100), (1.0, 0.0), {}),
         {"method": "verner98", "events": [Event(duffing, "x", 0.0), Event(duffing, "x_dot", 0.2)]},
