@@ -159,10 +159,6 @@ class Judges:
         verdicts = (one.verdict for _, one in self.verdicts(candidate))
         return [one for one in verdicts if one.verdict not in CORRECT]
 
-    def refuted(self, candidate: SystemCandidate) -> list[Verdict]:
-        """The verdicts on formulas that are wrong."""
-        return [one for one in self.incorrect(candidate) if one.verdict == "wrong"]
-
     def count_wrong(self, candidate: SystemCandidate) -> int:
         """The number of formulas that are wrong."""
         return len(self.wrong(candidate))
@@ -247,10 +243,12 @@ def contradictions_of(best: Match, matches: Sequence[Match], judges: Judges) -> 
         return all(len(one.corrections) == 1 for one in wrong) and len(wrong) <= len(own)
 
     def is_less_likely(match: Match) -> bool:
-        are_equations = match.candidate.is_of_equations and best.candidate.is_of_equations
-        has_slips = all(is_change(one.corrections) for one in judges.refuted(best.candidate))
-        unexplained = are_equations and has_slips and match.unexplained
-        return bool(unexplained and unexplained & {*judges.wrong(match.candidate)})
+        is_unexplained = bool(match.unexplained) and match.candidate.is_of_equations
+        if not (is_unexplained and best.candidate.is_of_equations):
+            return False
+        wrong = (one for one in judges.incorrect(best.candidate) if one.verdict == "wrong")
+        has_slips = all(is_change(one.corrections) for one in wrong)
+        return has_slips and not match.unexplained.isdisjoint(judges.wrong(match.candidate))
 
     others = (one for one in matches if one.candidate.stating and best.failed - one.failed)
     ranked = sorted(others, key=lambda one: one.score)

@@ -152,7 +152,8 @@ def best_matches(
         return []  # even if all others hold but for one term
     near, unexplained = np.zeros_like(agreeing), np.zeros_like(agreeing)
     uses_letters = cache(partial(_uses_letters, tried))
-    if len(votes) <= FEW or len(tried) == 1:
+    are_few = len(votes) <= FEW
+    if are_few or (len(tried) == 1 and tried[0].is_of_equations):
         for row, (index, side, vote) in enumerate(votes):
             written = frozenset(formulas[index].words) & {*letters.parameters}
             possible = ~vote & uses_letters(written)
@@ -162,8 +163,7 @@ def best_matches(
                 possible, sides = ~vote, (rest.sides[0].text, rest.sides[1].text)
             if possible.any() and (hits := numbers.is_near(*sides)) is not None:
                 near[row], unexplained[row] = hits & possible, possible & ~hits
-    if len(votes) > FEW:
-        near[:] = False
+    near &= are_few
     holding = agreeing.sum(axis=0) + NEARLY * near.sum(axis=0)
     usual = np.array([one.is_usual for one in tried])
     score = holding - UNUSUAL * ~usual
