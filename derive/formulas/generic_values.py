@@ -7,7 +7,7 @@ J. Spencer, Discrete Math. 6 (1973) 255).
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import cache
+from functools import cache, lru_cache
 from itertools import combinations
 from random import Random
 from typing import Any
@@ -83,6 +83,7 @@ def changes_of_sign(number: sp.Expr, symbol: sp.Symbol) -> Iterator[sp.Expr]:
                     yield Approximation(mp.findroot(value, (a, b), solver="anderson")).rounded()
 
 
+@lru_cache(maxsize=4096)  # documents repeat their divisors
 def check_value(expression: sp.Expr) -> None:
     """Raise `NoValueError` if `expression` has no value at one of the states."""
     with suppress(NotImplementedError):

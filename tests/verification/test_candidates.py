@@ -51,6 +51,13 @@ def test_two_fifths_of_the_formulas_hold_for_a_known_system(failed: int, is_enou
     assert letter_meanings._is_supported(stated, letter_meanings.LEAST)
 
 
+def test_parameters_can_be_required_to_have_letters() -> None:
+    letters = replace(LETTERS, parameters=("g", "m"))
+    assert {one.lacking for one in candidates(USUAL.system, letters)} == {1}
+    assert not [*candidates(USUAL.system, letters, has_all=True)]
+    assert {one.lacking for one in candidates(USUAL.system, LETTERS, has_all=True)} == {0}
+
+
 @pytest.mark.parametrize("text", ["-g*sin(phi)/l", "g*sin(phi)/l", "-g*sin(phi)/l**2", "0"])
 def test_a_system_is_left_out_only_if_all_its_candidates_have_less_support(text: str) -> None:
     equation = ProgramEquation(1, "acceleration", "phi", "", f"phi_ddot = {text}")

@@ -2,8 +2,9 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import chain, islice
 from math import inf
 
@@ -128,11 +129,11 @@ def _interpretation(
     if hints:
         return _best(judges, hints.candidates(letters), work, 0)
     is_further = not {*letters.coordinates} <= {*known}
-    tried = _of_templates(letters, statements) if is_further else ()
-    result = _best(judges, chain(_stated(letters, statements), tried), work)
+    known_systems = partial(_of_templates, letters, statements) if is_further else None
+    result = _best(judges, _stated(letters, statements), work, known_systems=known_systems)
     if is_further and _lacks_numbers(result.match, letters):
         numbers = {"gravity": _gravity(statements)}
-        other = _best(judges, _of_templates(letters, statements, numbers), work)
+        other = _best(judges, _of_templates(letters, statements, numbers=numbers), work)
         if other.match and (result.match is None or other.match.score > result.match.score):
             result = other
     odd = inhomogeneous_formulas(
@@ -223,8 +224,12 @@ def _best(
     groups: Iterable[Sequence[SystemCandidate]],
     work: Work,
     least: float = LEAST,
+    known_systems: Callable[[bool], Iterable[Sequence[SystemCandidate]]] | None = None,
 ) -> Interpretation:
-    """The candidate that most formulas support, if a part of them does, and its rivals."""
+    """The candidate that most formulas support, if a part of them does, and its rivals.
+
+    Known systems are tried last; beside a stated one, no parameter of these lacks a letter.
+    """
     letters, statements = judges.letters, judges.statements
     formulas, derivatives = statements.formulas, statements.derivatives
     trivial = trivial_comparisons(letters, formulas, derivatives)
@@ -232,7 +237,13 @@ def _best(
     stated: list[Match] = []
     circular: list[Match] = []
     has_matrix = "mass_matrix" in letters.quantities.values()
-    for tried in (tried for group in groups for tried in _alike(group)):
+
+    def all_groups() -> Iterator[Sequence[SystemCandidate]]:
+        yield from groups
+        if known_systems:
+            yield from known_systems(any(_is_supported(one, least) for one in matches))
+
+    for tried in (tried for group in all_groups() for tried in _alike(group)):
         if not work.take(tried, letters, formulas):
             break
         least_support = _least_support(matches, least)
@@ -351,14 +362,17 @@ def _stated(letters: Letters, statements: Translated) -> Iterator[Sequence[Syste
 
 
 def _of_templates(
-    letters: Letters, statements: Translated, numbers: Mapping[str, str] | None = None
+    letters: Letters,
+    statements: Translated,
+    has_all: bool = False,
+    numbers: Mapping[str, str] | None = None,
 ) -> Iterator[Sequence[SystemCandidate]]:
     """Candidates of one known system after another."""
     has_time = any("t" in formula.words for formula in statements.formulas)
     has_rods = any(THIRD.search(formula.text) for formula in statements.formulas)
     for count in range(len(letters.coordinates), 0, -1):
         for system in templates(letters, count, has_rods, has_time):
-            yield [*candidates(system, letters, numbers)]
+            yield [*candidates(system, letters, numbers, has_all)]
 
 
 def _gravity(statements: Translated) -> str:

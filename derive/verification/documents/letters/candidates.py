@@ -153,11 +153,15 @@ def kind_of(parameter: Parameter) -> str:
 
 
 def candidates(
-    system: System, letters: Letters, numbers: Mapping[str, str] | None = None
+    system: System,
+    letters: Letters,
+    numbers: Mapping[str, str] | None = None,
+    has_all: bool = False,
 ) -> Iterator[SystemCandidate]:
     """Yield the candidates of a system, the likeliest first.
 
-    With `numbers`, by kinds of parameters, these have the numbers instead of letters.
+    With `numbers`, by kinds of parameters, these have the numbers instead of letters. With
+    `has_all`, no parameter lacks a letter.
     """
     n = len(system.coordinates)
     is_constrained = bool(system.conditions or letters.constraints)
@@ -182,6 +186,7 @@ def candidates(
                 frozenset(one.values()),
             )
             for one in islice(_parameters(system, letters), MAX_CHOICES)
+            if not has_all or len({*one, *_absent(system, one)}) == len(system.parameters)
         ],
         [(one, {*dict(one)}) for one in loads(letters, "force", n)],
         [(one, {*dict(one)}) for one in frictions(letters, n, {*kinds.values()})],

@@ -17,6 +17,8 @@ from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.judging.reference_system import depends_on
 
+#: Most operations of a value of a name that is reduced.
+MAX_OPERATIONS = 400
 #: Formulas that must agree on the value of a name, unless its slip is one of a factor.
 AGREEING = 2
 
@@ -74,7 +76,10 @@ class Abbreviations:
                 slope = difference.diff(symbol)
                 if slope == 0 or slope.has(symbol):
                     continue
-                value = sp.cancel(-difference.xreplace({symbol: sp.S.Zero}) / slope)
+                value = -difference.xreplace({symbol: sp.S.Zero}) / slope
+                if sp.count_ops(value) > MAX_OPERATIONS:
+                    continue
+                value = sp.cancel(value)
                 if (value.free_symbols & moving) <= allowed:
                     yield sp.factor_terms(value)
 

@@ -156,7 +156,7 @@ class Judge:
                     continue
                 for letter in dict.fromkeys(WORD.findall(correction.wrong)):
                     text = re.sub(rf"\b{letter}\b", name, correction.wrong)
-                    if sp.expand(self._namespace.value(text) - required) == 0:
+                    if self._model.context.is_zero(self._namespace.value(text) - required):
                         own = replace(correction, correct=text)
                         return replace(verdict, corrections=(own,))
         return verdict
@@ -166,7 +166,7 @@ class Judge:
         with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
             values = map(self._namespace.value, (correction.wrong, correction.correct))
             is_product = len(summands(syntax_tree(correction.wrong))) == 1
-            return is_product and bool(sp.expand(sum(values)) == 0)
+            return is_product and self._model.context.is_zero(sum(values))
         return False
 
     def _verdict(self, formula: DocumentFormula) -> SideVerdict:
