@@ -252,6 +252,7 @@ def check_witness(result: Verdict) -> None:
             assert abs(value(result.correction, state) - derived) < close
 
 
+@pytest.mark.long("other tests reach its code")
 def test_witnesses_in_documents_are_computed_again(tmp_path: Path) -> None:
     # oracle: the wrong equations by hand, left minus right
     path = tmp_path / "skate.md"

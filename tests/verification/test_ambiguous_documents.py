@@ -42,6 +42,7 @@ def test_a_document_with_one_meaning_has_no_remarks(text: str, tmp_path: Path) -
     assert judged(tmp_path, text).remarks == ()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_that_are_both_wrong_hold_with_another_convention(tmp_path: Path) -> None:
     document = judged(tmp_path, f"{WRONG_FIRST}\n\n{WRONG_SECOND}")
     assert verdicts(document) == ["verified", "verified"]
@@ -79,6 +80,7 @@ def test_a_formula_that_each_meaning_refutes_is_wrong_if_terms_differ(tmp_path: 
     assert changed.correction not in ("", document.formulas[1].correction)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_term_that_each_meaning_refutes_is_wrong_with_two_corrections(tmp_path: Path) -> None:
     document = judged(tmp_path, f"{CART}\n$$V = m g\\cos\\theta$$")
     assert verdicts(document) == ["verified", "wrong"]

@@ -131,6 +131,7 @@ def test_loads_are_those_that_other_equations_state(old: str, new: str, tmp_path
     assert found[2].correction.replace(" ", "") == right[2].latex.replace(" ", "")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_two_equations_with_contrary_loads_none_is_wrong(tmp_path: Path) -> None:
     text, *_ = WHEEL.partition(r"$$\ddot\beta")
     found = judged(tmp_path, text.replace(r"\sin\alpha - \tau", r"\sin\alpha + \tau"))[2:]

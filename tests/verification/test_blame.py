@@ -38,7 +38,7 @@ def test_a_side_with_a_letter_of_its_own_is_not_judged(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, FURUTA)} == {"verified", "definition"}
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("right", "slip", "term"), [
     (r"\dot\theta + K\cos\alpha\,\dot\alpha", r"\dot\theta + K\sin\alpha\,\dot\alpha",
      r"K\sin\alpha\,\dot\alpha"),
@@ -102,6 +102,7 @@ def test_a_load_has_not_the_value_of_the_first_wrong_equation(tmp_path: Path) ->
     assert [one.verdict for one in equations] == ["wrong", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_force_between_bodies_has_the_inertia_of_one(tmp_path: Path) -> None:
     energies = r"""
 $$T=\frac12(M+m+\frac{J}{R^2})\dot x^2+m l\dot x\dot\theta\cos\theta+\frac12 m l^2\dot\theta^2$$
@@ -123,6 +124,7 @@ $$V = - m g l\cos\theta$$ $$L = T - V$$ The force of the rod is """
     assert judged(tmp_path, energies + whole + force)[-1].verdict == "wrong"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_stiffness_is_no_applied_force_and_a_moment_of_a_coordinate_is_one(
     tmp_path: Path,
 ) -> None:
@@ -248,6 +250,7 @@ def test_nothing_decides_between_an_energy_and_equations_with_another_sign(tmp_p
     assert not wrong_terms(tmp_path, ROD)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_all_letters_of_a_chain_of_equal_ones_are_one(tmp_path: Path) -> None:
     text = r"""$$m_1=m_2=m$$ $$k_1=k_2=k_3=k$$ $$m_1\ddot x_1+(k_1+k_2)x_1-k_2x_2=0$$
 $$m_2\ddot x_2+(k_3+k_2)x_2-k_2x_1=0$$ $$\begin{bmatrix}-2\frac km&\frac km\\
@@ -265,6 +268,7 @@ $$\ddot\theta = (\Omega^2\cos\theta-\frac ga)\sin\theta$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_beside_the_momentum_p_a_power_is_p_as_well(tmp_path: Path) -> None:
     power = r"$$P = -2m a^2\Omega^2\dot\theta\cos\theta\sin\theta$$"
     assert judged(tmp_path, HOOP + power)[-1].verdict == "definition"
@@ -311,6 +315,7 @@ $$\frac{d}{dt}\left(\frac{\partial L}{\partial\dot\theta}\right) = I\ddot\theta$
     assert [one.verdict for one in judged(tmp_path, text)][1:] == ["verified", "context"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_frequency_decides_which_equation_is_wrong(tmp_path: Path) -> None:
     text = r"""$$-k x = m\ddot x$$ $$\ddot x - \frac km x = 0$$ $$\omega_0^2 = \frac km$$
 $$\omega_0 = \sqrt{\frac km}$$ $$T_0 = \frac{2\pi}{\omega_0}$$"""
@@ -393,6 +398,7 @@ $$(m\ddot x+\frac23 k x)\dot x=0$$ $$m\ddot x+\frac23 k x=0$$"""
     assert [*wrong_terms(tmp_path, slip).values()] == [r"\frac23kx"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_equation_of_velocities_can_hold_for_some_constants_of_the_motion(
     tmp_path: Path,
 ) -> None:

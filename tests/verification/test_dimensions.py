@@ -101,6 +101,7 @@ def test_a_canonical_equation_in_other_units_is_not_wrong(tmp_path: Path) -> Non
     assert [one.verdict for one in results] == ["verified"] * 3 + ["context"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_potential_with_a_square_of_a_sine_is_corrected_in_one_term(tmp_path: Path) -> None:
     # that of the equation contains cos(2 theta), and differs by a constant
     kinetic = r"T = \frac{1}{2} m R^2 \dot\theta^2"
@@ -302,7 +303,7 @@ CENTRAL = (
 )  # fmt: skip
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("number", "old", "new"), [
     (1, "2 m r^2", "2 m r"), (2, "m r^3", "m r^2"), (2, "m r^3", "m r^4"), (2, "p^2", "p"),
 ])  # fmt: skip
@@ -333,6 +334,7 @@ def test_two_formulas_that_agree_with_two_others_each_are_not_wrong(tmp_path: Pa
     assert "wrong" not in [one.verdict for one in results]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_two_formulas_with_a_wrong_power_each_are_wrong(tmp_path: Path) -> None:
     results = judged(
         tmp_path, CENTRAL[0], r"p^2 = m k r", r"\ddot r = r \dot\phi^2 - \frac{k}{m r^2}",
@@ -379,6 +381,7 @@ def test_a_factor_of_all_other_terms_is_lost(terms: str, correction: str, tmp_pa
     assert "wrong" not in [one.verdict for one in results[1:]]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_mu_is_no_mass(tmp_path: Path) -> None:
     orbit = (
         r"\ddot r - r\dot\theta^2 = -\frac{\mu}{r^2}", r"r\ddot\theta + 2\dot r\dot\theta = 0",

@@ -329,6 +329,7 @@ def test_a_sign_that_only_a_position_and_its_rate_have_accuses_none(
     assert used or "it contradicts line 1" in rate.note
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_sign_of_a_wrong_component_is_that_of_its_rate(tmp_path: Path) -> None:
     text = r"""$$ x = l\sin\theta\cos\phi, \quad y = l\sin\theta\sin\phi $$ $$ z = l\sin\theta $$
     $$ \dot z = -l\dot\theta\sin\theta $$

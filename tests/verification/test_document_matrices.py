@@ -53,7 +53,7 @@ def wrong(folder: Path, text: str) -> list[str]:
     return [one.wrong_term for one in formulas if one.verdict == "wrong"]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("text", [CART + STATES, CART + PAIRS, ENTRIES, ENTRIES + SMALL])
 def test_matrices_of_the_system_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
@@ -196,7 +196,7 @@ $$\Delta = M_{11} M_{22} - M_{12} M_{21} = (a - d) d - b^2\cos^2 q_2 > 0$$
 """
 
 
-@pytest.mark.long("entries alone have this basis", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("right", "slip"), [
     (r"-2\dot q_1\dot q_2 - ", r"-\dot q_1\dot q_2 - "),
     (r"- b^2\cos^2 q_2 > 0", r"- b\cos^2 q_2 > 0"),

@@ -87,6 +87,7 @@ def test_conserved_momenta_are_constants_of_an_effective_potential(tmp_path: Pat
     assert last(tmp_path, SPHERE + potential.replace("SCALE", "2")) == "wrong"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_conserved_momenta_by_mass_are_constants_of_an_effective_potential(tmp_path: Path) -> None:
     orbit = r"""$$L = \frac m2(\dot r^2 + r^2\dot\theta^2) - V, \quad V = -\frac{G M m}{r}$$
 $$h = r^2\dot\theta, \quad W = V + \frac{m h^2}{2 r^2}$$ $$m\ddot r = - SCALE\frac{d W}{d r}$$"""
@@ -213,7 +214,7 @@ $$m\ddot x=\lambda\sin(\omega t),\quad m\ddot y=-mg-\lambda\cos(\omega t)$$
 """
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     ("text", "old", "new"),
     [

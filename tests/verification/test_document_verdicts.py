@@ -244,6 +244,7 @@ def test_wrong_hints_are_refused(text: str, message: str, tmp_path: Path) -> Non
         hints(None, tmp_path / "names.toml")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_formulas_that_follow_from_a_wrong_one_are_reported_as_such(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12 m l^2\dot\theta^2,\quad V = -m g\cos\theta$$

@@ -106,6 +106,7 @@ def test_a_square_is_not_verified_by_itself(tmp_path: Path) -> None:
     assert judged(tmp_path, text)[-1].verdict == "definition"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_solution_does_not_hide_the_equation(tmp_path: Path) -> None:
     text = r"""$$ -m g L \sin\theta = m L^2 \ddot\theta $$ $$ -\frac{g}{L}\theta = \ddot\theta $$
 $$ \theta(t) = \theta_{max}\cos(\omega t + \phi) $$"""
@@ -122,6 +123,7 @@ $$-m\omega^2 A\cos(\omega t + \alpha) + (k + c) A\cos(\omega t + \alpha)
 $$(k + c - m\omega^2) B\cos(\omega t + \beta) = c A\cos(\omega t + \alpha)$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_of_amplitudes_follow_from_stated_functions(tmp_path: Path) -> None:
     assert [one.verdict for one in judged(tmp_path, SWINGS)][4:] == ["verified"] * 2
     found = judged(tmp_path, SWINGS.replace("(k + c - m", "(k - c - m"))
@@ -132,6 +134,7 @@ MATRICES = r"""$$M = \begin{bmatrix} m & 0 \\ 0 & m \end{bmatrix}$$
 $$K = \begin{bmatrix} k + c & -c \\ -c & k + c \end{bmatrix}$$ $$(K - \omega^2 M)\mathbf{A} = 0$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_columns_of_amplitudes_are_not_compared(tmp_path: Path) -> None:
     assert judged(tmp_path, SWINGS + MATRICES)[-1].verdict == "context"
 
@@ -148,6 +151,7 @@ $$u_2 = A\sin(\omega t + \alpha) - B\sin(\Omega t + \beta)$$
 At the start, $$A\sin\alpha + B\sin\beta = a_0$$ $$A\sin\alpha - B\sin\beta = 0$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_modes_and_solutions_of_two_coordinates(tmp_path: Path) -> None:
     verdicts = {one.latex: one.verdict for one in judged(tmp_path, COUPLED)}
     assert list(verdicts.values()).count("verified") == 7
@@ -167,6 +171,7 @@ def test_slips_beside_modes(right: str, slip: str, verdict: str, tmp_path: Path)
     assert sum(one.verdict == "wrong" for one in after) == (verdict == "wrong")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_equation_of_one_coordinate_can_be_of_another_case(tmp_path: Path) -> None:
     text = rf"{COUPLED} While the other one rests, $$\ddot u_1 + (D + c)\frac{{u_1}}{{m}} = 0$$"
     assert judged(tmp_path, text)[-1].verdict == "context"
@@ -194,6 +199,7 @@ def test_an_equation_of_amplitudes_with_a_slip_is_wrong(
     assert sum(one.verdict == "verified" for one in formulas) == 4
 
 
+@pytest.mark.long("other tests reach its code")
 def test_one_frequency_of_equal_masses(tmp_path: Path) -> None:
     equal = MODES.replace("m_1", "m").replace("m_2", "m").replace("k_1", "k").replace("k_2", "k")
     found = {one.latex: one.verdict for one in judged(tmp_path, equal)}

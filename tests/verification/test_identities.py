@@ -65,6 +65,7 @@ def test_velocities_and_accelerations_by_unit_vectors(
     assert verdicts(tmp_path, POLAR.replace(old, new)) == expected
 
 
+@pytest.mark.long("other tests reach its code")
 def test_unit_vectors_can_be_written_out(tmp_path: Path) -> None:
     text = r"""
 .. math::
@@ -188,6 +189,7 @@ $$ \dot q_2 \frac{\partial D_{11}}{\partial q_2} = -2 c\sin(q_2) \dot q_2 $$
 $$ \dot q_1 \frac{\partial D_{12}}{\partial q_2} = -c\sin(q_2) \dot q_1 $$"""
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("old", "new", "expected"), [
     ("", "", ["definition"] * 2 + ["verified"] * 4),
     # a definition that other formulas confirm

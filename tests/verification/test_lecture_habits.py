@@ -79,6 +79,7 @@ $$U(\theta) = \frac{j^2}{2\sin^2\theta} - \frac{g}{a}\cos\theta$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_constants_of_the_motion_are_verified(tmp_path: Path) -> None:
     found = judged(tmp_path, BOWL)
     assert {one.verdict for one in found} == {"verified", "definition"}
@@ -140,6 +141,7 @@ $$\dot s_4 = \frac{\tau}{J}$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_rate_of_a_state_is_corrected_by_the_equations(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, STATES)} == {"definition", "verified"}
     found = judged(tmp_path, STATES.replace(r"\sin s_2", r"\cos s_2"))

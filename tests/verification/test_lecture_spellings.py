@@ -26,11 +26,13 @@ $$C\ddot q_1 + D\ddot q_2 + \frac12 B\sin q_2\,\dot q_1^2 + 2 k q_2 = 0$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_kinetic_energy_can_be_a_matrix_between_columns(tmp_path: Path) -> None:
     assert kinds(tmp_path, ARM) == ["definition", "definition", "verified", "verified"]
     assert kinds(tmp_path, ARM.replace(r"+ \frac12 B", "+ B"))[3] == "wrong"
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_letter_before_brackets_is_squared_with_them(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m (a(\dot\alpha + \dot\beta))^2
  = \frac12 m a^2 (\dot\alpha + \dot\beta)^2$$
@@ -48,6 +50,7 @@ $$B = \begin{bmatrix} 0 \\ \frac{1}{m a^2} \end{bmatrix}$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_column_of_numbers_is_a_place(tmp_path: Path) -> None:
     assert kinds(tmp_path, PENDULUM)[3] == "context"
     assert "wrong" not in kinds(tmp_path, PENDULUM)

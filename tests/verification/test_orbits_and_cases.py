@@ -29,6 +29,7 @@ At the apsis $$r = r_p = a (1 - e), \quad v_p = \frac{h}{r_p}$$
 and $$\xi = \frac12 v^2 - \frac{\mu}{r}, \quad v^2 = \mu(\frac{2}{r} - \frac{1}{a})$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_orbit_is_judged_beside_values_at_its_apsides(tmp_path: Path) -> None:
     found = verdicts(tmp_path, ORBIT)
     assert "wrong" not in found.values()
@@ -37,6 +38,7 @@ def test_an_orbit_is_judged_beside_values_at_its_apsides(tmp_path: Path) -> None
     assert next(one for text, one in found.items() if text.startswith(r"\dot r = -h")) == "verified"
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("right", "slip"), [
     (r"= -h\frac{du}{d\phi}", r"= h\frac{du}{d\phi}"),
     (r"+ u = \frac{\mu}{h^2}", r"+ u = \frac{2\mu}{h^2}"),
@@ -110,6 +112,7 @@ def test_positions_of_bodies_leave_a_mass_matrix_open(tmp_path: Path) -> None:
     assert "wrong" not in verdicts(tmp_path, BODIES).values()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_side_of_a_column_decides_its_sign(tmp_path: Path) -> None:
     slip = BODIES.replace(r"\\ -m_2 q_2\dot q_1^2", r"\\ m_2 q_2\dot q_1^2")
     (one,) = (one for one in judged(tmp_path, slip) if one.verdict == "wrong")
@@ -160,6 +163,7 @@ def test_columns_by_their_entries_are_judged(right: str, slip: str, tmp_path: Pa
     assert slip in one.latex
 
 
+@pytest.mark.long("other tests reach its code")
 def test_primes_can_be_derivatives_by_the_angle(tmp_path: Path) -> None:
     text = r"""$$L = \frac12 m (\dot r^2 + r^2\dot\phi^2) + \frac{k}{r}$$ $$\ell = m r^2\dot\phi$$
 $$m\ddot r - \frac{\ell^2}{m r^3} + \frac{k}{r^2} = 0$$ With $u = \frac{1}{r}$,

@@ -65,5 +65,6 @@ def test_other_bodies_can_be_chosen_by_a_condition() -> None:
     assert first == second
 
 
+@pytest.mark.long("other tests reach its code")
 def test_what_follows_a_jump_is_for_the_others() -> None:
     assert verdicts(SPRINGS, "Python") == ["verified"] * 2

@@ -171,6 +171,7 @@ def rates(t, y):
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_constants_that_follow_from_others_can_be_letters() -> None:
     (function,) = read_program(PLATE, "Python").functions
     assert "a**2 + b**2" in function.equations[0].text

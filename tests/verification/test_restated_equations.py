@@ -36,6 +36,7 @@ $$\dot r = \frac{b C_r - a C_f}{I_z u} v - \frac{a^2 C_f + b^2 C_r}{I_z u} r
 + \frac{a C_f}{I_z}\delta$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_of_velocities_state_a_system(tmp_path: Path) -> None:
     found = judged(tmp_path, VEHICLE)
     assert [one.verdict for one in found][-2:] == ["verified"] * 2
@@ -63,6 +64,7 @@ With $$I_1 = I_2, \quad \Omega = \frac{I_3 - I_1}{I_1}\omega_3$$ these are
 $$\dot\omega_1 = -\Omega\omega_2, \quad \dot\omega_2 = \Omega\omega_1$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_kinetic_energy_of_angular_velocities_contradicts_no_equation(tmp_path: Path) -> None:
     found = judged(tmp_path, TOP)
     assert not [one for one in found if one.verdict == "wrong"]
@@ -86,6 +88,7 @@ $$(I + m l^2)\ddot\theta + m g l\sin\theta = -m l\ddot x\cos\theta$$
 With $\theta = \pi + \phi$, $$(I + m l^2)\ddot\phi - m g l\phi = m l\ddot x$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_small_motions_about_a_turned_angle_are_judged(tmp_path: Path) -> None:
     found = judged(tmp_path, PARTS)
     assert not [one for one in found if one.verdict == "wrong"]
@@ -107,12 +110,14 @@ def test_quotients_have_a_value_where_a_sine_cancels(factor: sp.Expr) -> None:
         assert quotient.subs(x, 0) == 1 / (m + 1)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_wrong_sign_is_corrected_in_the_letters_of_its_term(tmp_path: Path) -> None:
     (one,) = wrong(tmp_path, PARTS.replace(r"+ m g l\sin", r"- m g l\sin"))
     assert one.wrong_term == r"- m g l\sin\theta"
     assert r"+ m g l \sin\left(\theta\right)" in one.correction
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_sum_is_not_wrong_for_a_sign_of_its_parts(tmp_path: Path) -> None:
     before, _, after = PARTS.partition(r"- m l\dot\theta^2")
     assert not wrong(tmp_path, rf"{before}+ m l\dot\theta^2{after}")
@@ -150,12 +155,14 @@ $$A = \begin{bmatrix} 0 & 1 & 0 & 0\\ 0 & 0 & \frac{m g}{M} & 0\\ 0 & 0 & 0 & 1\
 0 & 0 & \frac{(M + m) g}{M l} & 0\end{bmatrix}$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_mass_and_a_matrix_can_have_one_letter(tmp_path: Path) -> None:
     found = judged(tmp_path, CART)
     assert not [one for one in found if one.verdict == "wrong"]
     assert [one.verdict for one in found].count("verified") == 9
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_column_can_have_a_turned_angle_first(tmp_path: Path) -> None:
     other = CART.replace(r"x \\ \theta\end", r"\theta \\ x\end").replace(
         r"M + m & m l\cos\theta \\ m l\cos\theta & m l^2",
@@ -186,6 +193,7 @@ $$T = \frac{m}{2}(l^2\dot\theta^2 + a^2\omega^2\sin^2\omega t
 $$\ddot\theta = \frac{a\omega^2}{l}\sin\theta\cos\omega t - \frac{g}{l}\sin\theta$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_slip_in_a_position_is_not_that_of_what_follows(tmp_path: Path) -> None:
     assert not wrong(tmp_path, DRIVEN)
 
@@ -200,6 +208,7 @@ With other loads, $$M\ddot d = F - c d, \quad m R\ddot\theta_1 = F - c\theta_1 R
 m\ddot\theta_2 = F_2 - c d\theta_2$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_relation_of_defined_names_depends_on_no_system(tmp_path: Path) -> None:
     assert not wrong(tmp_path, SUMS)
     (one,) = wrong(tmp_path, SUMS.replace("{h^2 + q^2}", "{h^2 - q^2}"))
@@ -213,6 +222,7 @@ $$v_{2y} = l_1\dot\theta_1\sin\theta_1 + l_2\dot\theta_2\sin\theta_2$$
 $$T = \frac12 m_1 l_1^2\dot\theta_1^2 + \frac12 m_2 (v_{x2}^2 + v_{2y}^2)$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_components_of_velocities_are_rates_of_positions(tmp_path: Path) -> None:
     assert [one.verdict for one in judged(tmp_path, ARM)][4:] == ["verified"] * 3
     (one,) = wrong(tmp_path, ARM.replace(r"\sin\theta_1 + l_2\dot", r"\sin\theta_1 - l_2\dot"))

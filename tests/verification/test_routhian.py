@@ -106,7 +106,7 @@ def test_steps_end_with_the_routhian() -> None:
     assert "Routhian" not in [step.title for step in Derivation(load("double_pendulum")).steps]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("name", ["spherical_pendulum", "cart_1"])
 def test_documents_contain_it_and_are_verified(name: str, tmp_path: Path) -> None:
     (path,) = write_document(derivation(name), tmp_path / "document.tex")

@@ -171,6 +171,7 @@ $$\ddot y = -\frac{k}{m}y^5$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_energies_of_another_coordinate_begin_an_example(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, EXAMPLES)} == {"verified", "definition"}
     found = judged(tmp_path, EXAMPLES.replace(r"= -k y^5", r"= -5 k y^5"))
@@ -354,6 +355,7 @@ def test_formulas_of_special_motions_are_no_evidence_against_energies(tmp_path: 
         assert [one.verdict for one in verdicts[:2]] == ["definition"] * 2
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_lambda_in_a_potential_is_no_multiplier(tmp_path: Path) -> None:
     text = r"""
 $$ L = \frac12 m (\dot x^2 + \dot y^2) - \frac12 k (x^2 + y^2) - \lambda x y $$
@@ -404,6 +406,7 @@ $$ E = \frac12 m (\dot r^2 + r^2 \dot\phi^2) + V(r) $$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("old", "new", "number", "correction"), [
     (r"- \frac{dV}{dr}", r"+ \frac{dV}{dr}", 1, r"m \ddot r = m r \dot\phi^2 - \frac{dV}{dr}"),
     (r"- \frac{dV}{dr}", r"- 2 \frac{dV}{dr}", 1, r"m \ddot r = m r \dot\phi^2 - \frac{dV}{dr}"),
@@ -443,6 +446,7 @@ $$ E = \frac12 m l^2 \dot\theta^2 + V(\theta) = \frac12 m v_0^2 + V(0) $$
     ]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_known_system_without_letters_of_the_energies_accuses_nothing(tmp_path: Path) -> None:
     # a mass on a table, and one that hangs through a hole: no swinging Atwood machine
     text = r"""
@@ -494,6 +498,7 @@ $$ m \ddot x = - \frac{dV}{dx} $$
     assert (wrong.verdict, wrong.correction) == ("wrong", "")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_simplified_lagrangian_with_a_slip_begins_no_other_system(tmp_path: Path) -> None:
     verdicts = judged(tmp_path, r"""
 ## Energies
@@ -541,6 +546,7 @@ $$V = -m g l\cos\theta$$ $$l\ddot\theta + g\sin\theta = a\gamma^2\cos\gamma t\co
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_cases_with_positions_of_their_own_are_systems(tmp_path: Path) -> None:
     assert {one.verdict for one in judged(tmp_path, CASES)} == {"definition", "verified"}
     text = CASES.replace(r"= a\gamma^2\cos\gamma t\cos", r"= a\gamma^2\cos\gamma t\sin")

@@ -127,6 +127,7 @@ def test_documents_with_their_own_constraints_are_verified(name: str, tmp_path: 
     assert document.system.endswith("with the constraints that the document states")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_two_forms_of_a_constraint_the_multiplier_has_that_which_is_zero(tmp_path: Path) -> None:
     text = SKATE.replace("It cannot", "It has $\\dot y = \\dot x \\tan\\phi$, and cannot")
     document = judged(tmp_path, text)

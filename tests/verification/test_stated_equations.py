@@ -52,6 +52,7 @@ def test_forces_of_rods_are_eliminated(tmp_path: Path) -> None:
     assert verdicts(tmp_path, RODS) == ["definition"] * 3 + ["verified"] * 3
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_state_space_follows_from_equations_with_friction(tmp_path: Path) -> None:
     assert verdicts(tmp_path, CAR) == ["definition"] * 3 + ["verified"] * 3
 

@@ -56,6 +56,7 @@ $$m\ddot x = e B\dot y - k x$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_potential_can_leave_terms_of_velocities_to_the_lagrangian(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, STATIC)} <= CORRECT  # K is no kinetic energy beside T
     assert verdicts(tmp_path, STATIC.replace("V = ", "V = 2"))[2] == "wrong"
@@ -123,6 +124,7 @@ $$l\ddot\phi = a\gamma^2\sin(\gamma t)\cos\phi - g\sin\phi$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_kinetic_energies_can_have_terms_linear_in_velocities(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, SWUNG)} <= CORRECT
     assert verdicts(tmp_path, SWUNG.replace("= a", "= -a"))[-1] == "wrong"
@@ -188,6 +190,7 @@ $$\ddot x\left(1 + \frac{b^2}{a^2} e^{-2x/a}\right) - \frac{b^2}{a^3}\dot x^2 e^
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_powers_of_e_are_exponentials(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, EXPONENTIAL)} <= CORRECT
     (one,) = wrong(tmp_path, EXPONENTIAL.replace(r"{a^3}\dot x^2", r"{a^3} 2\dot x^2"))
@@ -204,6 +207,7 @@ MODES = r"""$$T = \frac12 m(\dot x^2 + \dot y^2)$$ $$V = \frac12 k(x^2 + y^2) + 
 Modes have $\omega = \sqrt{(k + 2 c)/m}$ or $\omega = \sqrt{k/m}$."""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_one_letter_can_be_the_frequency_of_several_modes(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, MODES)} <= CORRECT
 
@@ -233,6 +237,7 @@ $$(m + J/r^2)\ddot x + k x = \frac{\tau}{r}$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_slip_beside_a_load_is_found(tmp_path: Path) -> None:
     assert {*verdicts(tmp_path, DRIVEN)} <= CORRECT
     one = judged(tmp_path, DRIVEN.replace("+ k x", "- k x")).formulas[-1]
@@ -422,6 +427,7 @@ $$Q_x = F$$ $$Q_y = -F R$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_generalized_force_is_stated(tmp_path: Path) -> None:
     assert wrong(tmp_path, FORCED) == []
 
@@ -528,6 +534,7 @@ Let %s and $k_1 = k_2 = k_3 = k$, so that
 $$m\ddot x_1 = -2 k x_1 + k x_2$$ $$m\ddot x_2 = k x_1 - 2 k x_2$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("masses", ["$m_1 = m_2 = m$", "$m_1 = m$, $m_2 = m$"])
 def test_formulas_before_equal_parameters_hold_for_any(masses: str, tmp_path: Path) -> None:
     right = judged(tmp_path, EQUAL % ("k_2", masses)).formulas

@@ -42,7 +42,7 @@ def test_right_statements_hold(text: str, count: int) -> None:
     assert {*found} <= {"verified", "definition"}
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("text", "old", "new", "line"), [
     (SPRING, ", m*r*theta.diff", ", 2*m*r*theta.diff", 11),
     (SPRING, "-m*g*r*sp.sin", "-m*g*sp.sin", 12),

@@ -114,6 +114,7 @@ $$T = m g\cos\theta + m l\dot\theta^2$$ $$m l\ddot\theta = -m g\sin\theta$$"""
     assert "wrong" not in verdicts(tmp_path, text)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_derivative_by_an_angle_is_that_along_the_orbit(tmp_path: Path) -> None:
     text = r"""$$L = \frac12 m(\dot r^2 + r^2\dot\theta^2) + \frac{k}{r}$$
 $$\ell = m r^2\dot\theta$$
@@ -454,6 +455,7 @@ $$(1 + 16 a^2 x^6)\ddot x + 48 a^2 x^5\dot x^2 + 4 g a x^3 = 0$$"""
     assert [k for k, one in enumerate(found) if one == "wrong"] == [4]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_name_has_another_value_at_a_right_angle(tmp_path: Path) -> None:
     text = r"""
 $$T = \frac12(M + m)\dot x^2 + m l\dot x\dot\theta\cos\theta + \frac12 m l^2\dot\theta^2$$
@@ -463,6 +465,7 @@ For the upright rod $D = M$, for the horizontal one $D = M + m$, and never is $D
     assert verdicts(tmp_path, text)[-4:] == ["verified", "context", "context", "wrong"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_units_in_which_parameters_are_1_keep_the_letter_of_a_force(tmp_path: Path) -> None:
     text = r"""
 $$L = \frac12 m l^2\dot\theta^2 - m g l\cos\theta$$
@@ -556,6 +559,7 @@ $$%s = \frac12 m(\ell^2\dot\theta^2 + w^2\dot\phi^2) %s m g w\cos\phi$$
 $$m(w^2\ddot\phi + 2 w\dot w\dot\phi) + m g w\sin\phi = 0$$"""
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_tension_without_accelerations_decides_nothing_either(tmp_path: Path) -> None:
     # a sign is wrong in its value, or in the equation before: nothing shows which
     expected = ["definition", "context", "verified", "context", "definition", "verified"]
@@ -568,6 +572,7 @@ $$h = r^2\dot\phi$$"""
     assert verdicts(tmp_path, text)[1:] == ["verified", "definition"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_kinetic_energy_beside_a_tension_has_an_index(tmp_path: Path) -> None:
     text = EDGE % ("T_{kin}", "$$ $$V = -")
     expected = ["definition", "context", "verified", "context"]
@@ -747,6 +752,7 @@ def test_a_meaning_has_constraints_with_motions(
     assert "verified" not in verdicts(tmp_path, text)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_letter_of_one_side_alone_is_not_judged(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 I\dot\theta^2 = \frac12 m l^2\dot\theta^2$$ $$V = -m g l\cos\theta$$
 $$-(m g l\sin\theta + m l^2\ddot\theta) = 0$$ $$-\frac gl\sin\theta = \ddot\theta$$"""
@@ -861,6 +867,7 @@ $$a = -b$$ or $$a = b$$ with $$\omega = \sqrt{\frac km}$$ and $$\omega = \sqrt{\
     assert verdicts(tmp_path, text)[:5] == expected
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_acceleration_of_another_system_has_no_value_of_its_own(tmp_path: Path) -> None:
     text = r"""$$\ddot x = -g\sin\theta$$ $$\ddot x = g\sin\theta$$
 $$T = \frac12 m\dot r^2 + \frac12 m (r\dot\theta)^2$$"""
@@ -898,6 +905,7 @@ $$(m_1 + m_2)\ddot x_2 = (m_2 - m_1) g$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_place_in_brackets_behind_g_is_a_factor(tmp_path: Path) -> None:
     # the side with x_1, which has no meaning without its rope, is not judged
     assert verdicts(tmp_path, GRAVITY) == ["verified", "equivalent", "equivalent", "verified"]
@@ -928,6 +936,7 @@ $$\frac{d}{dt}\frac{\partial A}{\partial\dot y} = m\ddot y$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_derivative_by_a_velocity_is_no_rate_of_one_by_a_coordinate(tmp_path: Path) -> None:
     expected = ["verified", "verified", "verified", "definition", "definition", "verified"]
     assert verdicts(tmp_path, VELOCITY) == expected

@@ -97,6 +97,7 @@ def test_json_has_the_formulas_of_each_document(
     }  # fmt: skip
 
 
+@pytest.mark.long("other tests reach its code")
 def test_documents_stand_beside_derivations(
     pendulum: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -172,6 +173,7 @@ def test_files_of_unknown_kinds_are_refused(
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_run_without_a_verdict_names_what_was_missing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
