@@ -11,7 +11,7 @@ from derive.formulas.syntax import ExpressionError
 from derive.system.parts import Coordinate, Parameter, PointMass, SystemDefinitionError
 from derive.system.symbols import TIME, velocity
 from derive.system.system import System
-from derive.verification.documents.formula_translation import order
+from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import (
     STATED,
     UNITS,
@@ -31,6 +31,12 @@ from derive.verification.documents.statements import POINT, WORD, DocumentFormul
 
 #: Names of Cartesian components.
 AXES = ("x", "y", "z")
+#: Unit vectors along Cartesian axes, and the numbers of these.
+UNIT_VECTOR = re.compile(
+    r"(?:(?:e|u|\w*hat)_([ijkxyz])(?:_column)?|(i|j|k|imath|jmath|x|y|z)hat(?:_column)?"
+    r"|([ijk])_column)\Z"
+)
+AXIS_NUMBERS = {"i": 0, "imath": 0, "x": 0, "j": 1, "jmath": 1, "y": 1, "k": 2, "z": 2}
 COLUMN = re.compile(r"(?:vec)?[rRxXpq](?:_(\w+?))?(?:_column)?\Z")
 
 
@@ -107,13 +113,28 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[SystemCandid
             yield from constrained(one, letters)
 
 
+def unit_vectors(formulas: Sequence[DocumentFormula]) -> dict[str, sp.ImmutableDenseMatrix]:
+    """The unit vectors of fixed Cartesian axes in formulas; none if one of them is defined."""
+    words = {word for one in formulas for word in one.words}
+    matches = {word: match for word in words if (match := UNIT_VECTOR.match(stem(word)))}
+    axes = {name: AXIS_NUMBERS[match[match.lastindex or 0]] for name, match in matches.items()}
+    moving = {one.subject for one in formulas} | {one for one in words if order(one)}
+    if len({*axes.values()}) < 2 or not moving.isdisjoint(axes):
+        return {}
+    size = 1 + max(axes.values())
+    return {
+        name: sp.ImmutableDenseMatrix([int(k == axis) for k in range(size)])
+        for name, axis in axes.items()
+    }
+
+
 def _points(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> dict[str, tuple[sp.Expr, ...]]:
     """The positions that formulas define, by the index of their names."""
     known: dict[str, sp.Expr] = {}
     columns: dict[str, tuple[sp.Expr, ...]] = {}
-    namespace = {**FUNCTIONS, **symbols, "t": TIME}
+    namespace = {**FUNCTIONS, **symbols, **unit_vectors(formulas), "t": TIME}
     moving = {symbols[q] for q in letters.coordinates}
     stated = {one.subject: one.words for one in formulas}
     for formula in formulas:

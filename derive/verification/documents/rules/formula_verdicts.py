@@ -239,7 +239,9 @@ class Judge:
             return self._not_understood(formula, unknown)
         if unknown:  # of a step between
             note = f"the side with {', '.join(unknown)} is not judged"
-            results.append(plain("verified", formula, note))
+            is_definition = all(one.verdict.verdict == "definition" for one in results)
+            kind = "definition" if is_definition else "verified"
+            results.append(plain(kind, formula, note))
         notes = dict.fromkeys(one.verdict.note for one in results)
         best = next((one for one in results if one.verdict.verdict != "definition"), results[0])
         return replace(best, verdict=replace(best.verdict, note=joined(*notes)))

@@ -236,10 +236,11 @@ class Amplitudes:
         rows = [[one.diff(name) for name in names] for one in self._equations]
         pairs = combinations(rows, 2)
         rows += [[a + s * b for a, b in zip(*pair, strict=True)] for pair in pairs for s in (1, -1)]
+        columns = [*combinations(range(len(names)), 2)]
         return any(
-            all(is_small(row[i] * one[j] - row[j] * one[i]) for i, j in combinations(columns, 2))
+            all(is_small(row[i] * one[j] - row[j] * one[i]) for i, j in columns)
             for one in rows
-            if (columns := range(len(names)))
+            if not all(map(is_small, one))  # such as the difference of two equal equations
         )
 
     def _value(self, text: str) -> sp.Expr:

@@ -26,7 +26,11 @@ from derive.verification.documents.letters.document_system import (
     valid_name,
 )
 from derive.verification.documents.letters.letters import Letters, composed
-from derive.verification.documents.letters.stated_positions import AXES, COLUMN
+from derive.verification.documents.letters.stated_positions import (
+    AXES,
+    COLUMN,
+    unit_vectors,
+)
 from derive.verification.documents.statements import (
     WORD,
     DocumentFormula,
@@ -87,6 +91,9 @@ class DocumentNamespace:
             operand, _ = derivatives.get(name, ("", ()))
             if name not in own and operand not in defined - {""}:
                 self._add(name, constants[name] if name in constants else self.value(text))
+        for name, value in unit_vectors(formulas).items():
+            if name not in self.all_names:
+                self._add(name, value)
         #: Names of matrices and columns whose entries are defined one by one, and of columns of
         #: small displacements.
         self.composed, self.displacements = set[str](), set[str]()
