@@ -219,3 +219,16 @@ def test_a_canonical_equation_with_time_prescribes_no_coordinate(tmp_path: Path)
 $$\dot x = \frac{\partial H}{\partial p} = \frac{p - m b\sin(w t)}{m}$$
 $$\dot p = -k x$$"""
     assert [one.verdict for one in judged(tmp_path, text)][1:] == ["verified"] * 2
+
+
+def test_amplitudes_of_a_mode_can_contradict_an_equation(tmp_path: Path) -> None:
+    """With its frequency, both equations of motion are the same, and their difference is zero."""
+    text = r"""$$T=\frac12 m\dot x_1^2+\frac12 m\dot x_2^2$$
+$$V=\frac12 k x_1^2+\frac12 k(x_2-x_1)^2+\frac12 k x_2^2$$
+$$m\ddot x_1 = -k x_1 + k(x_2 - x_1)$$
+$$x_1(t) = A_1\cos(\omega t + \phi_1)$$ $$x_2(t) = A_2\cos(\omega t + \phi_2)$$
+$$\left(\frac{2k}{m}-\omega^2\right)A_1\cos(\omega t + \phi_1) = \frac km A_2\cos(\omega t + \phi_2)$$
+$$\omega = \sqrt{\frac{3k}{m}}$$"""
+    assert judged(tmp_path, text)[5].verdict == "verified"
+    slip = text.replace(r"\frac{2k}{m}-", r"\frac km-")
+    assert judged(tmp_path, slip)[5].verdict == "context"

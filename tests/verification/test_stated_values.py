@@ -560,3 +560,13 @@ def test_an_interval_is_no_row(tmp_path: Path) -> None:
     text = r"""$$T = \frac12 m\dot r^2$$ $$V = \frac12 k r^2$$ $$m r^2\ddot r = -k r^3$$
 for $r \in [a, 2a]$."""
     assert verdicts(tmp_path, text)[:3] == ["verified"] * 3
+
+
+def test_a_definition_is_not_verified_beside_a_side_that_is_not_judged(tmp_path: Path) -> None:
+    text = r"""$$V_g = m g z = -m g s\sin\alpha$$
+$$L = \frac12 m(\dot s^2 + s^2\sin^2\alpha\,\dot\phi^2) + m g s\cos\alpha$$
+$$m\ddot s = m s\sin^2\alpha\,\dot\phi^2 + m g\cos\alpha$$"""
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    first, *_ = judge_document(read_document(tmp_path / "a.md")).formulas
+    assert first.verdict == "definition"
+    assert first.note == "the side with z is not judged"

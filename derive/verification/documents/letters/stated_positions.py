@@ -37,7 +37,9 @@ UNIT_VECTOR = re.compile(
     r"|([ijk])_column)\Z"
 )
 AXIS_NUMBERS = {"i": 0, "imath": 0, "x": 0, "j": 1, "jmath": 1, "y": 1, "k": 2, "z": 2}
+#: The names of columns of positions, and of those that are called r.
 COLUMN = re.compile(r"(?:vec)?[rRxXpq](?:_(\w+?))?(?:_column)?\Z")
+RADIUS = re.compile(r"(?:vec)?[rR](?:_\w+?)?(?:_column)?\Z")
 
 
 def stated_systems(letters: Letters, formulas: Sequence[DocumentFormula]) -> Iterator[System]:
@@ -128,13 +130,19 @@ def unit_vectors(formulas: Sequence[DocumentFormula]) -> dict[str, sp.ImmutableD
     }
 
 
+def is_turning(position: sp.MatrixBase) -> bool:
+    """Whether a position has an angle, unlike x and y along unit vectors of a turning frame."""
+    return bool(position.has(sp.sin, sp.cos))
+
+
 def _points(
     letters: Letters, formulas: Sequence[DocumentFormula], symbols: Mapping[str, sp.Symbol]
 ) -> dict[str, tuple[sp.Expr, ...]]:
     """The positions that formulas define, by the index of their names."""
     known: dict[str, sp.Expr] = {}
     columns: dict[str, tuple[sp.Expr, ...]] = {}
-    namespace = {**FUNCTIONS, **symbols, **unit_vectors(formulas), "t": TIME}
+    units = unit_vectors(formulas)
+    namespace = {**FUNCTIONS, **symbols, **units, "t": TIME}
     moving = {symbols[q] for q in letters.coordinates}
     stated = {one.subject: one.words for one in formulas}
     for formula in formulas:
@@ -154,7 +162,8 @@ def _points(
             if not value.free_symbols & moving and value != 0:  # a cart has y_0 = 0
                 continue
             if isinstance(value, sp.MatrixBase) and value.cols == 1 and 1 < value.rows < 4:
-                if match := COLUMN.match(name):
+                in_fixed_frame = units.keys().isdisjoint(formula.words) or is_turning(value)
+                if in_fixed_frame and (match := COLUMN.match(name)):
                     columns[match[1] or ""] = tuple(value)
             elif POINT.match(name) and name not in letters.coordinates:
                 known[name] = value

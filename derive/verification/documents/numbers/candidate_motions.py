@@ -33,6 +33,8 @@ NEWTON_STEPS, TINY = 20, 1e-14
 class ArbitraryMotion:
     """Random values in place of those of a motion: formulas that hold with them say nothing."""
 
+    are_of_positions = False
+
     def __init__(self, letters: Letters) -> None:
         self._random = np.random.default_rng(1)
         self.shape = (1, STATES)
@@ -90,6 +92,8 @@ class CandidateMotions:
         #: Gradients of energies by coordinates (order 0) or velocities (1), as far as needed.
         self._gradients: dict[tuple[str, int], Mapping[str, Array]] = {}
         self._names = self._system_names(own)
+        #: Whether the document states the positions.
+        self.are_of_positions = tried[0].basis == "positions"
         if tried[0].condition_count:
             self._move(own)
 

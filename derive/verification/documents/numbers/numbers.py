@@ -1,6 +1,6 @@
 """Values of the names of a document for several meanings of its letters, in numbers."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -17,6 +17,7 @@ from derive.verification.documents.jets import (
     evaluated,
 )
 from derive.verification.documents.letters.letters import MATRICES, OPERATORS, Letters
+from derive.verification.documents.letters.stated_positions import RADIUS, unit_vectors
 from derive.verification.documents.numbers.candidate_motions import (
     ArbitraryMotion,
     CandidateMotions,
@@ -90,6 +91,10 @@ class Numbers:
 
     def define(self, formulas: Sequence[DocumentFormula]) -> None:
         """Set the values of names that formulas define, also of coordinates of no candidate."""
+        units = unit_vectors(formulas) if self._motions.are_of_positions else {}
+        for name, column in units.items():
+            entries = [[Jet.of(np.array([[float(one)]]))] for one in column]
+            self.values[name] = np.array(entries, dtype=object)
         subjects = {stem(one.subject) for one in formulas} - {*self._letters.accelerated}
         for name in subjects & ({*self._letters.coordinates} - {*self._motions.coordinates}):
             for ending in RATES[:3]:
@@ -134,8 +139,12 @@ class Numbers:
                     vanishes = self._vanishes(entry.value, kind in UP_TO_A_CONSTANT)
                     if entry.value.size > 1 or vanishes.any():  # not those of initial values
                         yield side.text, vanishes
-            if formula.subject and kind is None and isinstance(right, Jet):
-                yield from ((side.text, vote) for vote in self._position(right.value))
+            if formula.subject and kind is None:
+                entries: Iterable[Jet] = (right,) if isinstance(right, Jet) else ()
+                if isinstance(right, np.ndarray) and self._motions.are_of_positions:
+                    entries = right.flat if RADIUS.match(formula.subject) else ()
+                votes = (vote for one in entries for vote in self._position(one.value))
+                yield from ((side.text, vote) for vote in votes)
 
     def is_near(self, *sides: str) -> Votes | None:
         """Whether two sides are equal but for one term."""

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from copy import copy
 from dataclasses import replace
-from itertools import takewhile
+from itertools import product, takewhile
 from typing import Any, Self
 
 import sympy as sp
@@ -29,6 +29,8 @@ from derive.verification.documents.letters.letters import Letters, composed
 from derive.verification.documents.letters.stated_positions import (
     AXES,
     COLUMN,
+    RADIUS,
+    is_turning,
     unit_vectors,
 )
 from derive.verification.documents.statements import (
@@ -91,9 +93,13 @@ class DocumentNamespace:
             operand, _ = derivatives.get(name, ("", ()))
             if name not in own and operand not in defined - {""}:
                 self._add(name, constants[name] if name in constants else self.value(text))
-        for name, value in unit_vectors(formulas).items():
-            if name not in self.all_names:
-                self._add(name, value)
+        units = unit_vectors(formulas)
+        for name, value in units.items():
+            self._set(name, value)
+        self._has_unit_vectors = bool(units)
+        radii = (one.subject for one in formulas if RADIUS.match(one.subject))
+        #: The names of position vectors, such as r_P; components of a single one have no index.
+        self._radii = [*dict.fromkeys(radii)]
         #: Names of matrices and columns whose entries are defined one by one, and of columns of
         #: small displacements.
         self.composed, self.displacements = set[str](), set[str]()
@@ -377,10 +383,24 @@ class DocumentNamespace:
             self.defining[name] = formula, text
             self._add(name, value)
             point = COLUMN.match(name.removesuffix("_column"))
-            if point and point[1] and isinstance(value, sp.MatrixBase) and value.cols == 1:
-                for axis, entry in zip(AXES, value, strict=False):
-                    if (component := f"{axis}_{point[1]}") not in self.all_names:
+            if point and isinstance(value, sp.MatrixBase) and value.cols == 1:
+                endings = [f"_{point[1]}"] if point[1] else []
+                endings += [""] * ([name] == self._radii)
+                for (axis, entry), ending in product(zip(AXES, value, strict=False), endings):
+                    if (component := axis + ending) not in self.all_names:
                         self._add(component, entry)
+                if self._has_unit_vectors and name in self._radii and is_turning(value):
+                    self._add_vector_rates(name)
+
+    def _add_vector_rates(self, name: str) -> None:
+        """Add the velocity and the acceleration of a position vector, such as v_P of r_P."""
+        endings = [name.removeprefix("vec")[1:]]
+        if [name] == self._radii:
+            endings.append("_column")
+        for letter, ending in product("va", endings):
+            rate = self.names.get(name + RATES[1 + (letter == "a")])
+            if rate is not None and letter + ending not in self.all_names:
+                self._add(letter + ending, rate)
 
     def _is_reaction(self, formula: DocumentFormula, value: Value) -> bool:
         """Whether a formula solves an equation before it for its subject.
