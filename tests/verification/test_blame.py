@@ -487,3 +487,15 @@ def test_a_hamiltonian_is_wrong_whatever_formula_states_its_momentum(tmp_path: P
     terms = wrong_terms(tmp_path, slips)
     assert [*terms.values()][-1] == r"\frac{\omega^2}{2}"
     assert len(terms) == 2
+
+
+def test_a_sum_is_not_wrong_for_a_term_that_its_parts_can_lack(tmp_path: Path) -> None:
+    text = r"""$$T = \frac12 m l^2\dot\phi^2$$ $$V = \frac12 k\phi^2 - m g l\cos\phi$$
+$$p_\phi = m l^2\dot\phi$$
+$$H = \frac{p_\phi^2}{2 m l^2} + \frac12 k\phi^2 - m g l\cos\phi$$
+$$H_0 = \frac{p_\phi^2}{2 m l^2}$$ $$H_1 = - m g l\cos\phi$$
+$$H = H_0 + \epsilon H_1$$ $$\epsilon = 1$$
+$$\ddot\phi = -\frac gl\sin\phi - \frac{k}{m l^2}\phi$$"""
+    assert not wrong_terms(tmp_path, text)
+    whole = text.replace("H_0 + ", r"\frac{p_\phi^2}{2 m l^2} + ")
+    assert [*wrong_terms(tmp_path, whole)] == [r"H=\frac{p_\phi^2}{2ml^2}+\epsilonH_1"]

@@ -227,7 +227,8 @@ def test_amplitudes_of_a_mode_can_contradict_an_equation(tmp_path: Path) -> None
 $$V=\frac12 k x_1^2+\frac12 k(x_2-x_1)^2+\frac12 k x_2^2$$
 $$m\ddot x_1 = -k x_1 + k(x_2 - x_1)$$
 $$x_1(t) = A_1\cos(\omega t + \phi_1)$$ $$x_2(t) = A_2\cos(\omega t + \phi_2)$$
-$$\left(\frac{2k}{m}-\omega^2\right)A_1\cos(\omega t + \phi_1) = \frac km A_2\cos(\omega t + \phi_2)$$
+$$\left(\frac{2k}{m}-\omega^2\right)A_1\cos(\omega t + \phi_1)
+= \frac km A_2\cos(\omega t + \phi_2)$$
 $$\omega = \sqrt{\frac{3k}{m}}$$"""
     assert judged(tmp_path, text)[5].verdict == "verified"
     slip = text.replace(r"\frac{2k}{m}-", r"\frac km-")

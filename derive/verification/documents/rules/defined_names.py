@@ -37,19 +37,28 @@ class Abbreviations:
         self._namespace = namespace
         #: Correct values of wrongly defined names.
         self._required: dict[str, sp.Expr] = {}
+        found: dict[str, tuple[sp.Expr, list[sp.Expr], sp.Expr]] = {}
         for name in [*namespace.defining]:
             own = namespace.names[name]
             if not isinstance(own, sp.MatrixBase):
                 values = [*self._values(name, formulas)]
-                shortest = min(values, key=sp.count_ops, default=own)
-                others = {*namespace.defining} - {name}
-                is_alone = not any(name in one.words and others & {*one.words} for one in formulas)
-                is_slip = is_alone and differs_by_one_factor(own, shortest)
-                is_shown = len(values) >= AGREEING or is_slip
-                is_agreed = is_shown and self._are_equal([shortest, *values])
-                # a name that must be 0 is one that a known system has not
-                if is_agreed and shortest != 0 and not self._are_equivalent(own, shortest):
-                    self._required[name] = shortest
+                found[name] = own, values, min(values, key=sp.count_ops, default=own)
+        momenta = namespace.model.momenta
+        slips = {
+            name
+            for name, (own, _, value) in found.items()
+            if differs_by_one_factor(own.xreplace(momenta), value.xreplace(momenta))
+        }
+        for name, (own, values, shortest) in found.items():
+            others = slips - {name}  # each of which can be the slip as well
+            is_slip = name in slips and not any(
+                name in one.words and others & {*one.words} for one in formulas
+            )
+            is_shown = len(values) >= AGREEING or is_slip
+            is_agreed = is_shown and self._are_equal([shortest, *values])
+            # a name that must be 0 is one that a known system has not
+            if is_agreed and shortest != 0 and not self._are_equivalent(own, shortest):
+                self._required[name] = shortest
         if self._required:
             namespace.correct(self._required)
 

@@ -1,5 +1,6 @@
 """How well a system that is known from elsewhere fits the formulas of a document."""
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
@@ -26,6 +27,8 @@ OF_ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "ha
 MANY = 4
 #: Formulas that do not hold, which can be slips even if as few hold.
 FEW = 3
+#: Signs between terms.
+TERMS = re.compile(r"\s[-+]\s")
 #: Letters outside of wrong terms from which on a formula speaks for a system by itself.
 AGREEING = 6
 
@@ -77,6 +80,23 @@ class Support:
         } - coordinates
         is_one = is_change(result.verdict.corrections)
         return is_one and bool(own & defined) and own <= coordinates | defined
+
+    def defining_a_part(self, formula: DocumentFormula, result: SideVerdict) -> int | None:
+        """The line that defines a part of a sum of parts, where a lost term is none of these.
+
+        The lost term can be one of the part, as of H_0 in H = H_0 + H_1.
+        """
+        defined = {
+            one.subject: one.occurrence.line
+            for one, other in self._results
+            if other.verdict.verdict == "definition" and one.subject and one is not formula
+        }
+        corrections = result.verdict.corrections
+        terms = [WORD.findall(one) for one in TERMS.split(formula.sides[-1].text)]
+        lines = [defined[word] for term in terms for word in term if word in defined]
+        is_lost = len(corrections) == 1 and not corrections[0].wrong
+        are_all = len(terms) > 1 and all(any(word in defined for word in term) for term in terms)
+        return min(lines) if is_lost and are_all else None
 
     @cached_property
     def _is_rest_right(self) -> bool:

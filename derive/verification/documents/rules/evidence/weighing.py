@@ -176,6 +176,8 @@ class _Evidence:
             return f"it contradicts {self._given or 'the system'}{beside}: {UNDECIDED}"
         if self._support.is_of_definitions(formula, result):
             return ""
+        if (line := self._support.defining_a_part(formula, result)) is not None:
+            return opposed(line)
         if formula.subject in self._unused:
             return opposed(self._unused[formula.subject])
         if number in self._undecided:
