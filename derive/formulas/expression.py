@@ -40,8 +40,9 @@ def parse(text: str, namespace: Namespace, budget: Budget | None = None) -> Valu
     Its value is finite.
 
     Numbers are exact (``1/2`` is one half, ``9.81`` is 981/100), ``(a, b)`` is a
-    column, also of columns below each other, and ``[[a, b], [c, d]]`` a matrix. `budget` is
-    that of all formulas of a file.
+    column, also of columns below each other, and ``[[a, b], [c, d]]`` a matrix. The product of
+    two columns with two or three entries is their scalar product. `budget` is that of all formulas
+    of a file.
     """
     text, budget = text.strip(), budget or Budget()
     try:
@@ -98,9 +99,7 @@ class _Evaluator:
                 has_matrix = any(isinstance(term, sp.MatrixBase) for term in terms)
                 return reduce(operator.add, terms) if has_matrix else sp.Add(*terms)
             case ast.BinOp(left=left, op=ast.Mult(), right=right):
-                a, b = self.value(left), self.value(right)
-                self._budget.check_product(a, b)
-                return a * b
+                return self._product(self.value(left), self.value(right))
             case ast.BinOp(left=left, op=ast.Div(), right=right):
                 return self.value(left) / _divisor(self.value(right))
             case ast.Call(func=ast.Name(id="Piecewise"), args=[_, *_] as pieces, keywords=[]):
@@ -172,7 +171,16 @@ class _Evaluator:
             check_value(result)
         return result
 
+    def _product(self, a: Value, b: Value) -> Value:
+        first_shape, shape = (getattr(one, "shape", ()) for one in (a, b))
+        is_scalar = first_shape == shape and shape in ((2, 1), (3, 1))
+        first = a.T if is_scalar else a
+        self._budget.check_product(first, b)
+        return (first * b)[0] if is_scalar else first * b
+
     def _power(self, base: Value, exponent: Value) -> Value:
+        if isinstance(base, sp.MatrixBase) and base.cols == 1 and exponent == 2:
+            return self._product(base, base)
         if isinstance(base, sp.MatrixBase) or isinstance(exponent, sp.MatrixBase):
             raise ExpressionError("powers of matrices are not supported: write out the product")
         self._budget.check_exponent(exponent)

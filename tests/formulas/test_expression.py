@@ -21,6 +21,8 @@ SCOPE = {"x": x, "y": y, "sin": sp.sin}
         ("-x**2 + 2*sin(x - y)", -(x**2) + 2 * sp.sin(x - y)),
         ("(x, y)", sp.Matrix([x, y])),
         ("[[1, x], [y, 2]]*(x, y)", sp.Matrix([x + x * y, x * y + 2 * y])),
+        ("(x, y)*(y, 2)", x * y + 2 * y),
+        ("2*(x, y)**2", 2 * x**2 + 2 * y**2),
     ],
 )
 def test_formulas_are_parsed_exactly(text: str, value: sp.Expr) -> None:

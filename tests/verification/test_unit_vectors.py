@@ -69,3 +69,13 @@ $$\vec v = (l\cos\theta\,\dot\theta + \Omega l\cos\theta)\,\hat i
 + (l\sin\theta\,\dot\theta + \Omega l\sin\theta)\,\hat j$$
 $$T = \frac12 m l^2(\dot\theta + \Omega)^2$$ $$\ddot\theta = 0$$"""
     assert "wrong" not in {verdict for verdict, _ in judged(tmp_path, text)}
+
+
+@pytest.mark.parametrize("velocity", [r"\dot{\vec r}^2", r"\dot{\vec r}\cdot\dot{\vec r}"])
+def test_the_square_of_a_vector_is_that_of_its_length(velocity: str, tmp_path: Path) -> None:
+    text = rf"""$$\vec r = \begin{{pmatrix}} l\sin\phi \\ -l\cos\phi \end{{pmatrix}}$$
+$$T = \frac12 m{velocity} = \frac12 m l^2\dot\phi^2$$ $$V = -m g l\cos\phi$$
+$$\ddot\phi = -\frac gl\sin\phi$$"""
+    assert judged(tmp_path, text) == [("definition", ""), *[("verified", "")] * 3]
+    verdict, term = judged(tmp_path, text.replace("m l^2", "m l"))[1]
+    assert (verdict, term.replace(" ", "")) == ("wrong", r"\frac12ml\dot\phi^2")

@@ -207,13 +207,15 @@ def _value(node: ast.expr, values: Mapping[str, Value]) -> Value:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return -_value(operand, values)
         case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int() | float() as n)):
-            return _value(base, values).power(float(n))
+            value = _value(base, values)
+            is_square = isinstance(value, np.ndarray) and n == 2
+            return _of_matrices(value, value) if is_square else value.power(float(n))
         case ast.BinOp(left=base, op=ast.Pow(), right=exponent):
             return _raised(_value(base, values), _value(exponent, values))
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             a, b = _value(left, values), _value(right, values)
             if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
-                return a @ b
+                return _of_matrices(a, b)
             return _product(b, a) if isinstance(b, np.ndarray) else _product(a, b)
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             return _value(left, values) / _value(right, values)
@@ -259,6 +261,12 @@ def _entry(value: Value) -> Jet:
     if isinstance(value, np.ndarray):
         raise UnknownNameError("a matrix of matrices")
     return value
+
+
+def _of_matrices(a: Value, b: Value) -> Value:
+    """A product of matrices; that of two columns is their scalar product."""
+    is_scalar = a.shape == b.shape in ((2, 1), (3, 1))
+    return (a.T @ b)[0, 0] if is_scalar else a @ b
 
 
 def _product(value: Value, factor: Jet) -> Value:

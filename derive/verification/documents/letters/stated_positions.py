@@ -115,11 +115,16 @@ def stated_candidates(system: System, letters: Letters) -> Iterator[SystemCandid
             yield from constrained(one, letters)
 
 
+def axis_of(name: str) -> int | None:
+    """The number of the Cartesian axis along which a name is the unit vector; None for others."""
+    match = UNIT_VECTOR.match(name)
+    return AXIS_NUMBERS[match[match.lastindex or 0]] if match else None
+
+
 def unit_vectors(formulas: Sequence[DocumentFormula]) -> dict[str, sp.ImmutableDenseMatrix]:
     """The unit vectors of fixed Cartesian axes in formulas; none if one of them is defined."""
     words = {word for one in formulas for word in one.words}
-    matches = {word: match for word in words if (match := UNIT_VECTOR.match(stem(word)))}
-    axes = {name: AXIS_NUMBERS[match[match.lastindex or 0]] for name, match in matches.items()}
+    axes = {word: axis for word in words if (axis := axis_of(stem(word))) is not None}
     moving = {one.subject for one in formulas} | {one for one in words if order(one)}
     if len({*axes.values()}) < 2 or not moving.isdisjoint(axes):
         return {}
@@ -130,8 +135,11 @@ def unit_vectors(formulas: Sequence[DocumentFormula]) -> dict[str, sp.ImmutableD
     }
 
 
-def is_turning(position: sp.MatrixBase) -> bool:
-    """Whether a position has an angle, unlike x and y along unit vectors of a turning frame."""
+def has_angle(position: sp.MatrixBase) -> bool:
+    """Whether a position contains an angle.
+
+    Unit vectors beside one without can be those of a frame that turns.
+    """
     return bool(position.has(sp.sin, sp.cos))
 
 
@@ -162,7 +170,7 @@ def _points(
             if not value.free_symbols & moving and value != 0:  # a cart has y_0 = 0
                 continue
             if isinstance(value, sp.MatrixBase) and value.cols == 1 and 1 < value.rows < 4:
-                in_fixed_frame = units.keys().isdisjoint(formula.words) or is_turning(value)
+                in_fixed_frame = units.keys().isdisjoint(formula.words) or has_angle(value)
                 if in_fixed_frame and (match := COLUMN.match(name)):
                     columns[match[1] or ""] = tuple(value)
             elif POINT.match(name) and name not in letters.coordinates:

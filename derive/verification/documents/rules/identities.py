@@ -22,6 +22,7 @@ from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
 from derive.verification.documents.formula_translation import RATES, identifier, order, stem
 from derive.verification.documents.letters.energies import StatedInertia
+from derive.verification.documents.letters.stated_positions import axis_of
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.statements import (
     WORD,
@@ -36,8 +37,6 @@ from derive.verification.quantity_verdicts import judge_formula
 #: Unit vectors of polar coordinates, along r and along an angle.
 UNIT = re.compile(r"(?:(?:e|ehat|u|uhat)_([a-zA-Z]+)|([a-zA-Z]+)hat)(?:_column)?\Z")
 RADII, ANGLES = ("r", "R", "rho", "s"), ("theta", "phi", "varphi", "alpha", "vartheta")
-#: Those along Cartesian axes, by their number.
-AXES = {"i": 0, "imath": 0, "x": 0, "j": 1, "jmath": 1, "y": 1, "k": 2, "z": 2}
 #: A component of a vector, such as v_theta.
 COMPONENT = re.compile(r"(\w+)_([a-zA-Z]+)\Z")
 #: Vectors that are rates of others.
@@ -62,7 +61,7 @@ class Identities:
         self._moving = {stem(word) for word in words if order(word)}
         matches = {name: match for name in map(stem, words) if (match := UNIT.match(name))}
         units = {name: match[1] or match[2] for name, match in matches.items()}
-        axes = {name: AXES[letter] for name, letter in units.items() if letter in AXES}
+        axes = {name: axis for name in map(stem, words) if (axis := axis_of(name)) is not None}
         turned = {one.subject for one in formulas if {*axes} & {*one.words}}  # by their definitions
         angles = {one for one in units.values() if one in ANGLES}
         #: Unit vectors, and those that belong to components such as v_r.

@@ -30,7 +30,7 @@ from derive.verification.documents.letters.stated_positions import (
     AXES,
     COLUMN,
     RADIUS,
-    is_turning,
+    has_angle,
     unit_vectors,
 )
 from derive.verification.documents.statements import (
@@ -389,7 +389,7 @@ class DocumentNamespace:
                 for (axis, entry), ending in product(zip(AXES, value, strict=False), endings):
                     if (component := axis + ending) not in self.all_names:
                         self._add(component, entry)
-                if self._has_unit_vectors and name in self._radii and is_turning(value):
+                if self._has_unit_vectors and name in self._radii and has_angle(value):
                     self._add_vector_rates(name)
 
     def _add_vector_rates(self, name: str) -> None:
