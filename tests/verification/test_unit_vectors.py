@@ -48,6 +48,15 @@ def test_slips_beside_positions_by_unit_vectors_are_found(
     assert found[number][1].replace(" ", "") == term.replace(" ", "")
 
 
+def test_a_position_decides_between_an_energy_and_an_equation(tmp_path: Path) -> None:
+    before, _, rest = CONE.partition(r"$$\vec v")
+    energies = "$$T" + rest.partition("$$T")[2]
+    text = before + energies.replace(r"m g z = -m g s\cos", r"-m g s\sin")
+    assert [verdict for verdict, _ in judged(tmp_path, text)] == [
+        "definition", "verified", "wrong", "verified",
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize("velocity", [
     r"(\dot x - \omega y)\,\hat i + (\dot y + \omega x)\,\hat j",
     r"\dot x\,\hat i + \dot y\,\hat j",
