@@ -70,6 +70,16 @@ $$m\ddot x - 2 m\omega\dot y - m\omega^2 x + k x = 0$$"""
     assert found[-1][0] == "verified"
 
 
+def test_unit_vectors_can_turn_with_a_hoop(tmp_path: Path) -> None:
+    text = r"""$$\vec r = R\sin\theta\,\hat i - R\cos\theta\,\hat k$$
+$$\vec v = R\dot\theta\cos\theta\,\hat i + R\Omega\sin\theta\,\hat j
++ R\dot\theta\sin\theta\,\hat k$$
+$$T = \frac12 m R^2(\dot\theta^2 + \Omega^2\sin^2\theta)$$ $$V = -m g R\cos\theta$$
+$$\ddot\theta = \Omega^2\sin\theta\cos\theta - \frac gR\sin\theta$$"""
+    found = [verdict for verdict, _ in judged(tmp_path, text)]
+    assert found == ["context"] * 2 + ["verified"] * 3
+
+
 def test_unit_vectors_that_a_document_defines_are_not_those_of_fixed_axes(tmp_path: Path) -> None:
     text = r"""$$\hat i = \cos\Omega t\,\hat X + \sin\Omega t\,\hat Y$$
 $$\hat j = -\sin\Omega t\,\hat X + \cos\Omega t\,\hat Y$$

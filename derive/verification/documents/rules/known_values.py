@@ -20,6 +20,7 @@ from derive.system.parts import Parameter
 from derive.system.symbols import TIME, acceleration, velocity
 from derive.system.system import System
 from derive.verification.documents.formula_translation import RATES, stem
+from derive.verification.documents.letters.candidates import STATED
 from derive.verification.documents.letters.document_system import (
     SystemLetters,
     energies_of,
@@ -93,7 +94,8 @@ class DocumentNamespace:
             operand, _ = derivatives.get(name, ("", ()))
             if name not in own and operand not in defined - {""}:
                 self._add(name, constants[name] if name in constants else self.value(text))
-        units = unit_vectors(formulas)
+        # beside other systems, they can be those of a frame that turns
+        units = unit_vectors(formulas) if self._system.name == STATED else {}
         for name, value in units.items():
             self._set(name, value)
         self._has_unit_vectors = bool(units)
