@@ -29,6 +29,7 @@ def evidence() -> Evidence:
     return Evidence(PROSE, FIRST, SECOND, THIRD)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_each_claim_has_its_verdict_and_a_number_or_a_reason(evidence: Evidence) -> None:
     found = [*objectives(evidence, EQUATIONS), *claims(evidence), *recommendations(evidence)]
     assert {claim.id: claim.verdict for claim in found} == {
@@ -100,6 +101,7 @@ def by_hand(scene: Scene, h: float, order: int) -> np.ndarray:
     return np.transpose(states)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_numbers_in_the_verdicts_are_those_of_another_program(evidence: Evidence) -> None:
     texts = {claim.id: claim.number for claim in claims(evidence)}
 
@@ -130,6 +132,7 @@ def test_numbers_in_the_verdicts_are_those_of_another_program(evidence: Evidence
     assert shown("4.3", "5 s is") == pytest.approx(rough, rel=0.05)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_figures_that_verdicts_name_are_drawn_by_the_commands_they_name(
     evidence: Evidence,
 ) -> None:
@@ -188,6 +191,7 @@ def test_right_hand_sides_are_counted_to_an_error(evidence: Evidence) -> None:
         evidence.calls("dp54", 0.0)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_verdicts_change_with_the_facts() -> None:
     # had all programs been set to what the prose says, these claims would stand
     honest = Evidence(PROSE, PROSE, PROSE, THIRD)

@@ -51,6 +51,7 @@ def swing(potential: Any) -> System:
     )
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.usefixtures("predictable_times")
 def test_only_functions_that_are_used_are_generated(generated: list[str]) -> None:
     module = load("chain_4")

@@ -128,6 +128,7 @@ def test_states_are_saved_and_restored(path: Path) -> None:
     assert unit.values(*dp.STATE) == pytest.approx(START, abs=1e-15)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_inputs_act_between_steps(tmp_path: Path) -> None:
     start = (0.1, 0.2, 0.0, 0.0)
     of = Simulation(METHOD, arm.DEFAULTS, start, 1.0, samples=2, rtol=1e-11, atol=1e-11)

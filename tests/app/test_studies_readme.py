@@ -46,6 +46,7 @@ def test_the_growth_of_oscillations_is_true(report_steps: dict[str, CriticalStep
     assert f"by {growth['verner853']:.0e} per step with".replace("e-09", "e-9") in PROSE
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_exponent_and_the_horizons_are_true() -> None:
     exponent, error = map(float, re.findall(r"is (0\.\d+) ± (0\.\d+) per s", PROSE)[0])
     found = lyapunov(dp, dp.DEFAULTS, CHAOTIC, 5000)
@@ -89,6 +90,7 @@ def test_the_calls_are_those_of_the_verdict() -> None:
     assert verdicts[2].number.removeprefix("for ") in PROSE.replace("`", "")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_loss_of_energy_beyond_the_horizon_is_true() -> None:
     run = statistics(dp, 5e4, LONG_RUNS[-1])
     assert f"gives {run.kinetic.value:.0f} J; it loses {-100 * run.energy_error:.0f} %" in PROSE

@@ -92,6 +92,7 @@ def test_files_contain_no_path_version_or_date() -> None:
             assert foreign not in text
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_changed_character_is_detected_shown_and_restored(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -225,6 +226,7 @@ def test_the_next_run_removes_files_of_a_killed_run_but_not_of_an_active_one(
     assert not temporary.exists()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_kill_at_any_moment_leaves_complete_files(tmp_path: Path) -> None:
     old = {f"m{k}.py": "old\n" * 20_000 for k in range(8)}
     code = (

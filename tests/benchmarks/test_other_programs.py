@@ -56,6 +56,7 @@ def test_installed_programs_have_curves(truth: Reference) -> None:
     assert other_curves(REPORT, truth, lambda _: None) == ([], {})
 
 
+@pytest.mark.long("other tests reach its code")
 def test_lsoda_gets_no_tolerance_of_which_it_warns(truth: Reference) -> None:
     end = Form(dp, "rational", dp.DEFAULTS).from_ordinary(0.0, truth.end)
     settings: dict[str, list[float]] = {"lsoda": [], "dop853": []}

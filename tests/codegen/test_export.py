@@ -397,6 +397,7 @@ def test_opencl_has_a_kernel_if_there_are_steps(simulation: Simulation | None) -
     assert text.count("__kernel void integrate(") == (simulation is not None)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_headers_are_code_for_a_gpu(folder: Path) -> None:
     if shutil.which("nvcc") is None:
         pytest.skip("needs nvcc")

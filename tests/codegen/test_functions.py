@@ -198,6 +198,7 @@ def test_names_of_functions_are_reserved(tmp_path: Path) -> None:
             load(str(tmp_path / "named.toml"))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_documents_with_kinks_are_judged(tmp_path: Path) -> None:
     file, document = tmp_path / "stop.toml", tmp_path / "stop.md"
     stop = SYSTEM.replace("a = {{ value = 0.7 }}", "F = {{ value = 1.0, unit = 'N' }}")

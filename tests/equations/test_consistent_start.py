@@ -153,6 +153,7 @@ def test_velocities_without_constraints_remain() -> None:
     assert consistent_start(disc, given, {}, guess=guess).y[disc.STATE.index("psi_dot")] == 0.2
 
 
+@pytest.mark.long("other tests reach its code")
 def test_many_starts_are_those_of_each(crank: GeneratedModule) -> None:
     angles = np.linspace(-3, 3, 5)
     batch = ensemble(crank, (0, 0.01), {"q1": angles, "q1_dot": 3.0}, {}, backend="python")

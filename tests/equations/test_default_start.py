@@ -32,6 +32,7 @@ def test_each_motion_of_an_ensemble_has_its_own_equilibrium() -> None:
     assert one.y[0] == pytest.approx(1.1962, rel=1e-15)
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(
     ("module", "start", "free"),
     [

@@ -63,7 +63,7 @@ def check_motion(seed: int) -> None:
     assert error <= solution.error_estimate <= scene.accuracy, (seed, scene.module.SYSTEM)
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("seed", range(500, 500 + len(SYSTEMS)))
 def test_errors_at_uneven_times_are_below_the_estimate(seed: int) -> None:
     check_motion(seed)
@@ -82,6 +82,7 @@ def test_a_motion_runs_backwards(accuracy: float) -> None:
     assert np.abs(motion.y - exact(dp, times)).max() <= motion.error_estimate <= accuracy
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_motion_backwards_in_longer_numbers() -> None:
     times = np.array([20.0, 13.0, 0.0])
     motion = integrate(dp, (20, 0), START, {}, accuracy=1e-11, t_eval=times)
@@ -101,6 +102,7 @@ def test_without_times_the_ends_of_steps_are_returned() -> None:
     assert np.abs(motion.y - exact(dp, motion.t)).max() <= motion.error_estimate <= 1e-8
 
 
+@pytest.mark.long("other tests reach its code")
 def test_long_motions_in_longer_numbers_have_times_of_steps() -> None:
     motion = integrate(dp, (0, 20), START, {}, accuracy=1e-11, energy=True)
     assert len(motion.t) > 50
@@ -202,7 +204,7 @@ def check_ensemble(motions: Ensemble, starts: np.ndarray, accuracy: float) -> No
         assert error <= motions.error_estimate[k] <= accuracy
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-8])
 def test_errors_of_all_motions_of_an_ensemble_are_below_the_estimates(accuracy: float) -> None:
     starts = np.random.default_rng(1).uniform(-2, 2, (4, 9))
@@ -210,6 +212,7 @@ def test_errors_of_all_motions_of_an_ensemble_are_below_the_estimates(accuracy: 
     check_ensemble(motions, starts, accuracy)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_chaotic_motions_of_an_ensemble_are_integrated_in_longer_numbers() -> None:
     starts = np.array([[0.1, 2.0], [0.0, 1.0], [0.0, 0.0], [0.0, 0.5]])
     motions = ensemble(dp, (0, 15), starts, {}, accuracy=1e-11, t_eval=[4.0, 15.0])
@@ -223,6 +226,7 @@ def test_motions_in_longer_numbers_end_after_the_requested_times() -> None:
     check_ensemble(motions, np.transpose([START]), 1e-14)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_motions_of_an_ensemble_have_their_own_ends_parameters_and_times() -> None:
     starts, lengths = {"theta": [0.5, 2.0], "theta_dot": 0.0}, np.array([0.7, 1.6])
     times = np.array([[0.3, 1.0], [0.4, 2.0]])
@@ -261,6 +265,7 @@ def test_estimates_of_ensembles_contain_the_errors_of_the_checks() -> None:
         assert motions.error_estimate[k] <= 1e-10
 
 
+@pytest.mark.long("other tests reach its code")
 def test_constant_inputs_are_those_of_motions_in_longer_numbers() -> None:
     arguments = furuta, (0, 0.1), (0.1, 0.2, 0.0, 0.0), {"tau": 0.1}
     motion = integrate(*arguments, accuracy=1e-15, t_eval=[0.02, 0.1])

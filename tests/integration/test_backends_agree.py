@@ -14,7 +14,7 @@ from solvers.integration.integrate import integrate
 FAST = duffing.params(F=3.0, Omega=20.0)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("span", [(0.3, 1.5), (0.3, -0.9)])
 @pytest.mark.parametrize("method", ["dp54", "dop853"])
 @ignore_predictability()

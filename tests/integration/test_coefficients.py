@@ -121,6 +121,7 @@ static inline void probe_rhs(
 """
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("name", PARALLEL)
 def test_coefficients_of_parallel_stages_are_read_back_from_the_running_loop(
     name: str, tmp_path: Path

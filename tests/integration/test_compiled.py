@@ -93,6 +93,7 @@ def test_compiled_implicit_steps_converge_where_fixed_point_iteration_does_not()
         assert lost.status is Status.NO_CONVERGENCE
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_motion_depends_on_no_other_motion_and_no_thread() -> None:
     starts, n = scatter(101).T, 101
     rng = np.random.default_rng(2)
@@ -200,6 +201,7 @@ def test_a_prepared_run_refuses_invalid_arguments_and_reports_where_it_stopped()
         fixed((1e15, 2e15), (1.0, 0.0))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_angles_are_unwrapped_even_where_a_step_turns_by_more_than_half() -> None:
     # 20 rad/s for 1000 s are about 3143 turns
     rough = integrate(
@@ -285,6 +287,7 @@ def test_compensated_sums_reduce_rounding_errors() -> None:
         assert errors[1] < errors[0] / 3, form
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")
 def test_time_does_not_drift_over_a_million_steps() -> None:
     run = prepare(sp, sp.DEFAULTS, method="rk1", h=0.1, max_steps=10**7)

@@ -38,6 +38,7 @@ def interrupted_after(seconds: float, run: Callable[[], object]) -> Interrupted:
     return stopped.value
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("backend", ["compiled", "python"])
 def test_an_interrupted_integration_returns_its_results_so_far(backend: str) -> None:
     def until(end: float) -> Solution:

@@ -128,6 +128,7 @@ def test_perturbations_stay_tangent(method: str, backend: str, rods: GeneratedMo
         assert np.abs(rods.constraints(t, y, rods.DEFAULTS)).max() < TANGENT
 
 
+@pytest.mark.long("other tests reach its code")
 def test_sensitivities_are_those_by_the_angle(rod: GeneratedModule) -> None:
     times, lowest = np.linspace(0, 50, 6)[1:], Event(pendulum, "theta", 0.0)
     by_angle = sensitivities(pendulum, (0, 50), (1.0, 0.0), SAME, ["l", "g", "theta"],
@@ -174,6 +175,7 @@ def cartesian(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return value(y).ravel(), slopes(y)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_transition_matrices_are_those_of_the_angles(rods: GeneratedModule) -> None:
     angles = np.array([2.0, 2.5, 0.0, 0.0])
     start, before = cartesian(angles)

@@ -111,7 +111,7 @@ def crossings(p: float, r: float, s: float, h: float) -> tuple[list[float], list
     return [t for t in w if 0 < t < h], [t for t in u if 0 < t < h]
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("backend", ["python", "compiled", "lanes"])
 @pytest.mark.parametrize(
     ("method", "h", "shallowest", "error"),
@@ -212,6 +212,7 @@ def test_no_crossing_near_an_extremum_is_missed(
         assert found == pytest.approx(grid[crossed] + fractions * grid[1], abs=1e-4)
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @ignore_predictability()
 def test_shallow_dips_are_found_where_polynomials_are_less_accurate(backend: str) -> None:

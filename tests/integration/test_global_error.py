@@ -41,7 +41,7 @@ RUNS: list[dict[str, Any]] = [
 ]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("module", "start", "duration"), MOTIONS)
 def test_the_estimate_is_within_a_factor_of_3(
     module: ModuleType, start: tuple[float, ...], duration: float

@@ -129,7 +129,7 @@ def test_orders_are_observed(name: str, steps: int) -> None:
     assert np.log2(errors[0] / errors[1]) == pytest.approx(load(name).order, abs=1.0)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("name", CONTROLLED)
 def test_errors_are_proportional_to_the_tolerance(name: str) -> None:
     exact = integrate(dp, (0, 5), START, dp.DEFAULTS, rtol=1e-13, atol=1e-15).y[:, -1]
@@ -139,7 +139,7 @@ def test_errors_are_proportional_to_the_tolerance(name: str) -> None:
         assert 1e-5 < np.abs(end - exact).max() / tolerance < 5
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("name", CONTROLLED)
 @pytest.mark.parametrize(("scene", "calls"), [(SPRING, 20_000), (SHORT_ROD, 700_000)])
 def test_stiff_scenes_have_errors_about_the_tolerance(

@@ -130,7 +130,7 @@ def test_integrals_are_constant_over_long_runs(
     assert change(module, lost.t, lost.y) > least
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 def test_an_integrable_constraint_beside_one_that_is_not(backend: str) -> None:
     # a skate, which drives a wheel by its heading
@@ -155,6 +155,7 @@ def test_an_integrable_constraint_beside_one_that_is_not(backend: str) -> None:
     assert np.abs(one.constraints_many(0.0, motion.y, one.DEFAULTS)).max() < 1e-14
 
 
+@pytest.mark.long("other tests reach its code")
 def test_lanes_single_motions_and_python_agree() -> None:
     module, y0 = by_velocity("yoke")
     starts = np.tile(y0[:, np.newaxis], 20)
@@ -171,6 +172,7 @@ def test_lanes_single_motions_and_python_agree() -> None:
     assert np.abs(slow.y[:, -1] - many.y[:, 7]).max() < 1e-10
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 def test_constants_are_kept_while_inputs_and_signs_change(backend: str) -> None:
     u = sp.Symbol("u", real=True)

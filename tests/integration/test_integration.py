@@ -201,7 +201,7 @@ def report_hamiltonian(y: np.ndarray) -> np.ndarray:
     ])  # fmt: skip
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("form", ["lagrangian", "hamiltonian"])
 def test_the_report_s_runge_kutta_is_reproduced_step_for_step(form: str, backend: str) -> None:

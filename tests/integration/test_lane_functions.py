@@ -83,6 +83,7 @@ def test_numbers_without_a_sine_have_none(many: ctypes.CDLL) -> None:
     assert (sine[0], cosine[0]) == (0.0, 1.0)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_motions_in_lanes_equal_those_in_python(tmp_path: Path) -> None:
     (tmp_path / "called.toml").write_text(SYSTEM.format(FORCE))
     module = load_module(str(tmp_path / "called.toml"))

@@ -57,7 +57,7 @@ def test_a_blow_up_in_finite_time_ends_with_the_results_so_far(lanes: int, tmp_p
         assert np.isfinite(alone.y).all()
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("form", FORMS)
 @ignore_predictability()
 def test_coarse_fixed_steps_never_return_nan(form: str) -> None:
@@ -227,7 +227,7 @@ def test_of_events_at_the_same_time_the_first_in_the_list_counts(backend: str) -
         assert [len(times) for times in solution.t_events] == expected
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(
     ("method", "rtol"),
     [("bs32", 1e-6), ("dp54", 1e-6), ("tsit54", 1e-6), ("dop853", 1e-1), ("verner98", 1e-1)],

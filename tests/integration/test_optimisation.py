@@ -20,7 +20,7 @@ def libraries(cache: Path) -> set[bytes]:
     return {path.read_bytes() for path in cache.rglob("*.so")}
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("method", "module"), [("verner853", dp), ("gauss8", ep), ("radau5", dp)])
 def test_levels_of_optimisation_agree_to_rounding(
     method: str, module: GeneratedModule, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

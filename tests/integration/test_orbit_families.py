@@ -76,6 +76,7 @@ def test_a_family_ends_at_a_bound_close_to_an_equilibrium(bound: float) -> None:
     assert family.energy[0] == pytest.approx(bound, rel=1e-13)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_backbone_of_duffings_oscillator_is_an_elliptic_integral() -> None:
     start = periodic_orbit(duffing, {"x": 0.5}, 2.5, FREE)
     assert start.multipliers.tolist() == [1.0, 1.0]  # no force, no explicit time
@@ -125,6 +126,7 @@ def test_families_are_born_at_both_normal_modes_of_the_double_pendulum() -> None
         assert orbit.y[k] == pytest.approx(0.2, rel=1e-14)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_slopes_at_birth_of_closed_forms() -> None:
     rest = linearise(single, {"theta": 0.0}, {"l": 1.0})
     exact = np.pi / 8 / np.sqrt(9.81)

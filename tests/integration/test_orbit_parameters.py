@@ -77,6 +77,7 @@ def branch(point: SpecialOrbit, high: float) -> SpecialOrbit:
     return next(found for found in family.special if found.kind != "turning point")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_period_of_the_driven_pendulum_doubles() -> None:
     rest = periodic_orbit(driven, {"theta": 0.0}, 2 * np.pi / 6, DAMPED)
     (loses_rest,) = orbit_family(driven, rest, "a", (0.0, 0.2)).special
@@ -113,6 +114,7 @@ def test_the_period_of_the_driven_pendulum_doubles() -> None:
     assert a == pytest.approx(exact, abs=1e-9)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_response_of_duffings_oscillator_turns_twice() -> None:
     params = {"Omega": 0.9, "F": 0.3}
     start = periodic_orbit(duffing, {"x": 0.3}, 2 * np.pi / 0.9, params)

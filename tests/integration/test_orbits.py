@@ -81,6 +81,7 @@ def test_a_motion_that_stops_has_no_transition_matrix() -> None:
     assert raised.value.t < 0.1
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_transition_matrix_of_two_springs() -> None:
     x = sp.Symbol("x", real=True)
     system = System(
@@ -251,7 +252,7 @@ def kepler() -> ModuleType:
     return build(System("planet", "", coordinates, parameters, [PointMass(1, (x, y))], potential))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.6, 0.9])
 def test_keplers_orbits_are_all_periodic(kepler: ModuleType, eccentricity: float) -> None:
     start = [1 - eccentricity, 0.0, 0.0, np.sqrt((1 + eccentricity) / (1 - eccentricity))]

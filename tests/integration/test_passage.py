@@ -63,7 +63,7 @@ def pendulum(end: float, rate: float = -1.0, **options: Any) -> Any:
     return solve_ivp(rhs, (0, end), [np.pi / 2, rate], **tight, **options)
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("method", "backend"), [
     *((method, None) for method in ("verner853", "verner98", "gauss8", "radau3")),
     *((method, "python") for method in ("dop853", "gauss4", "DOP853")),
@@ -139,6 +139,7 @@ def test_a_parallelogram_with_held_inputs_remains_one(
     assert run.inputs.shape == (1, 11)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_motions_with_a_table_of_inputs_are_passed_together_and_one_by_one(
     driven_bars: GeneratedModule,
 ) -> None:

@@ -90,7 +90,7 @@ def test_a_chaotic_run_beyond_its_predictable_time_warns() -> None:
     assert 2 * limit < 50
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9])
 def test_the_predictable_time_does_not_depend_on_the_duration_of_the_run(tolerance: float) -> None:
     limits = []

@@ -198,6 +198,7 @@ def test_products_of_signs_determine_no_motion(backend: str) -> None:
     assert motion.t[-1] == 0.0
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_regulator_with_saturation_and_dry_friction() -> None:
     force = sp.Symbol("F", real=True)
     limited = sp.Min(sp.Max(force, -8), 8) - 0.5 * sp.sign(v)

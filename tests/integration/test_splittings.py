@@ -36,7 +36,7 @@ def exact() -> np.ndarray:
     return integrate(hh, (0, DURATION), START, {}, method="gauss8", rtol=1e-14, atol=1e-15).y[:, -1]
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("name", SPLITTINGS)
 @pytest.mark.parametrize("backend", ["python", "compiled", "lanes"])
 def test_every_loop_has_the_order(name: str, backend: str, exact: np.ndarray) -> None:
@@ -52,7 +52,7 @@ def test_every_loop_has_the_order(name: str, backend: str, exact: np.ndarray) ->
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.4)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("name", SPLITTINGS)
 def test_loops_agree_with_samples_and_events(name: str) -> None:
     events = [Event(hh, "x", 0.0), Event(hh, "y_dot", 0.1, direction=1)]
@@ -214,6 +214,7 @@ def energy_errors(periods: float, **options: object) -> np.ndarray:
     return (run.energy - run.energy[0]) / (run.energy[0] - depth)
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("name", SPLITTINGS)
 @pytest.mark.parametrize(
     "periods",
@@ -229,6 +230,7 @@ def test_the_energy_error_stays_bounded_while_that_of_rk4_grows(name: str, perio
     assert drifting[-1] > 5 * max(drifting[100], error.max())
 
 
+@pytest.mark.long("other tests reach its code")
 def test_hoop_and_pendulums_keep_their_energies() -> None:
     for module, start in ((hoop, (1.0, 0.3)), (cp, (0.5, -0.2, 0.0, 0.1))):
         run = integrate(module, (0, 200), start, {}, method="leapfrog6", h=0.1, energy=True)

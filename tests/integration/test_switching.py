@@ -219,7 +219,7 @@ def test_a_force_acts_on_its_side_of_a_jump(relation: type[sp.Rel]) -> None:
         assert module.rhs(0.0, (value, 0.0), module.DEFAULTS)[1] == expected
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_steps_cross_kinks_of_roots_and_powers(backend: str) -> None:
     # contact by Hertz: with a held sign, the power has no value before and behind the contact

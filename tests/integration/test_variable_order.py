@@ -141,6 +141,7 @@ def test_orders_rise_as_the_tolerance_decreases(van_der_pol: ModuleType) -> None
     assert sorted(means) == means
 
 
+@pytest.mark.long("other tests reach its code")
 def test_it_needs_about_as_many_evaluations_as_the_best_order(van_der_pol: ModuleType) -> None:
     run, gains = ((0, 2000), (2.0, 0.0), (1.0, 1.0, 1000.0)), []
     for tolerance in 10.0 ** -np.arange(3, 12):

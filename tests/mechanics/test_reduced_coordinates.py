@@ -181,7 +181,7 @@ def functions(system: System) -> dict[str, Any]:
     return namespace
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("make", "name"), [(double_pendulum, "double_pendulum"), *(
     (lambda n=n: cart(n), f"cart_{n}") for n in (1, 3))])  # fmt: skip
 def test_pinned_systems_are_those_written_by_hand(make: Callable[[], System], name: str) -> None:
@@ -340,6 +340,7 @@ theta = "1 rad"
     assert np.abs(result.y[:, -1] - motion.y[[0, 3], -1]).max() < 1e-8
 
 
+@pytest.mark.long("other tests reach its code")
 def test_eliminated_coordinates_are_measured() -> None:
     pinned, hand = double_pendulum(), load_system("double_pendulum")
     for outputs in (["y2"], ["x1", "x2_dot"]):

@@ -59,6 +59,7 @@ def test_agreement_is_no_accident_it_is_lost_with_long_steps() -> None:
     assert np.abs(series - coarse).max() > 1e-10
 
 
+@pytest.mark.long("other tests reach its code")
 def test_more_digits_change_nothing_but_the_last() -> None:
     fewer, more = (taylor(dp, dp.DEFAULTS, REPORT, [0, 3], digits=d) for d in (10, 24))
     most = taylor(dp, dp.DEFAULTS, REPORT, [0, 3], digits=40)

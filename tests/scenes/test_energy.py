@@ -26,7 +26,7 @@ ATWOOD = Scene(atwood, {}, {"r": 1.0, "theta": 1.0}, 1.0, accuracy=1e-6, title="
 PENDULUM = Scene(sp, {}, {"theta": 1.0}, 1.0, title="Pendulum")
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("samples", [2, 201, 5001])
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-7, 1e-10])
 def test_the_energy_balance_is_as_accurate_as_the_state(accuracy: float, samples: int) -> None:

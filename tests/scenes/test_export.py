@@ -46,6 +46,7 @@ def bob(image: np.ndarray) -> np.ndarray:
     return np.median(np.nonzero(distance < 12), axis=1)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_film_has_exact_times_and_the_right_speed(swing: SceneResult, tmp_path: Path) -> None:
     path = swing.save(tmp_path / "new" / "swing.gif", speed=2.25)
     durations, images = frames(path)
@@ -90,6 +91,7 @@ def test_states_between_samples_are_smooth_and_the_end_stays(swing: SceneResult)
     assert at(swing.sampled_motions()[0], np.array([5.0])).y[:, 0] == pytest.approx(swing.y[:, -1])
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("suffix", [".svg", ".pdf"])
 def test_pictures_for_slides(suffix: str, swing: SceneResult, tmp_path: Path) -> None:
     path = swing.save(tmp_path / f"swing{suffix}", beside=[swing])

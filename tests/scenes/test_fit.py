@@ -80,6 +80,7 @@ def test_a_damped_oscillator_is_fitted_as_by_its_closed_form() -> None:
     assert (k.high - k.low) / 2 == pytest.approx(stdtrit(len(T) - 4, 0.975) * k.error, rel=1e-12)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_gaps_are_left_out() -> None:
     data = measured(oscillator(), {"x": 1.0}, {}, T, 0.02)
     keep = np.random.default_rng(3).random(len(T)) > 0.3
@@ -92,6 +93,7 @@ def test_gaps_are_left_out() -> None:
     assert np.isnan(result.residuals[0][0, ~keep]).all()
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_double_pendulum_is_fitted_as_by_single_shooting_with_scipy() -> None:
     params = dp.params(m2=0.7, l1=1.3, l2=0.9)
     t = T[:60]
@@ -158,6 +160,7 @@ def test_several_runs_share_parameters_and_angles_may_jump_by_whole_turns() -> N
     assert result.starts[1]["theta"] == pytest.approx(2.5, abs=0.05)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_equations_that_depend_on_time_keep_their_clock() -> None:
     params = {"a": 0.3, "Omega": 3.0, "c": 0.1}
     t = T + 1.7
@@ -232,6 +235,7 @@ def test_combinations_that_cannot_be_known_are_named() -> None:
         fit(oscillator(), data, ["m", "k"], params={"c": 0.0})
 
 
+@pytest.mark.long("other tests reach its code")
 def test_of_parameters_that_are_0_those_that_may_be_negative_are_fitted() -> None:
     x, F = sp.symbols("x F", real=True)
     k, c = sp.symbols("k c", positive=True)

@@ -28,6 +28,7 @@ def coverage(number: int, values: int = len(T)) -> tuple[float, float]:
     return float(np.mean(np.array(inside) < 1)), float(np.mean(np.array(inside) < 0.5))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_95_percent_intervals_contain_the_true_value_in_most_of_100_fits() -> None:
     whole, half = coverage(100)
     assert 0.9 <= whole <= 0.99  # a chance of 1 in 50 to be outside

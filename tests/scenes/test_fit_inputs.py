@@ -77,7 +77,7 @@ def reference(x: Any, kind: Interpolation) -> tuple[Any, Any]:
 TRUTH, START = (1.3, 5.0, 0.2), (0.4, 0.0)
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("kind", "share"), [("held", 1e-3), ("linear", 0.3)])
 def test_values_are_those_of_the_exact_solution(kind: Interpolation, share: float) -> None:
     # the mean of linear inputs acts from each time to the next one: an error of second order
@@ -124,6 +124,7 @@ def test_gaps_of_inputs_are_filled_and_units_converted() -> None:
         assert dense.params["m"] == pytest.approx(other.params["m"], abs=share * other.errors[0])
 
 
+@pytest.mark.long("other tests reach its code")
 def test_only_a_measured_force_determines_the_mass() -> None:
     x = noisy(exact(TRUTH, START, "held", 0 * FORCE))
     free = fit(cart(), {"t": T, "x": x})

@@ -66,6 +66,7 @@ def test_long_double_takes_over_where_doubles_end() -> None:
     check(selected(LONG), LONG, "long double")
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.usefixtures("without_double_double")
 def test_quadruple_numbers_take_over_where_long_double_ends() -> None:
     scene = replace(LONG, accuracy=1e-13)
@@ -142,6 +143,7 @@ def test_rounding_errors_of_constants_count() -> None:
         assert np.abs(model.states(scene.times) - exact).max() <= model.error_estimate
 
 
+@pytest.mark.long("other tests reach its code")
 def test_an_estimate_contains_the_error_that_series_show() -> None:
     scene = Scene(dp, (0.7, 1.3, 1.1, 0.9, 9.81), (2.0, -1.0, 1.0, 0.5), 4.0, 1e-12, samples=9)
     model = by_longer_numbers(motion_of(scene), 1e-12, scene.times, {}, lambda _: None)

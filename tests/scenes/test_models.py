@@ -138,7 +138,7 @@ def accuracies_of_part(part: int) -> list[tuple[str, float]]:
     return [accuracy_of(scene) for scene in scenes[part::PARTS]]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(PARTS))
 def test_in_random_scenes_the_error_stays_below_the_accuracy(part: int, shared: Shared) -> None:
@@ -545,6 +545,7 @@ def test_series_take_angles_of_up_to_a_million() -> None:
         by_series(beyond, choice, 1e-9, times, lambda _: None)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_scene_can_name_model_method_and_step() -> None:
     still = find("rest", load_module)
     assert selected(still).model.name == "rest"

@@ -38,6 +38,7 @@ def run(*arguments: str, folder: Path) -> int:
     return main(["run", *arguments, "--output", str(folder)])
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_json_contains_the_model_the_reason_and_the_final_state(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -94,6 +94,7 @@ def test_independent_references_of_other_scenes_agree(
     assert max(found.global_error for found in (truth, long_truth, single)) < 1e-14
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_error_of_the_reference_is_estimated_with_fewer_digits(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

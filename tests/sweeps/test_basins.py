@@ -31,6 +31,7 @@ position = ["x", "0"]
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_motions_with_less_energy_than_the_barrier_stay_in_their_well(tmp_path: Path) -> None:
     axis = np.linspace(-1.9, 1.9, 16)
     values = {"k": -1.0, "beta": 1.0, "F": 0.0, "c": 0.2}
@@ -73,6 +74,7 @@ def test_rotations_and_swings_of_a_driven_pendulum_are_those_of_scipy(tmp_path: 
         assert record["states"][0]["theta_dot"] == pytest.approx(end, abs=1e-3)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_rest_of_a_system_without_a_drive_is_an_equilibrium(tmp_path: Path) -> None:
     (tmp_path / "wells.toml").write_text(WELLS)
     module = load_module(str(tmp_path / "wells.toml"))

@@ -24,7 +24,7 @@ def diagram(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return sweep(definition, tmp_path_factory.mktemp("diagram"))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("direction", [0, 1])
 def test_states_are_those_of_one_motion_whose_parameter_changes(
     diagram: Results, direction: int

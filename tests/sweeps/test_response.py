@@ -71,6 +71,7 @@ def balanced(omegas: np.ndarray) -> np.ndarray:
     return np.array(amplitudes + [np.nan] * (len(omegas) - len(amplitudes)))
 
 
+@pytest.mark.long("other tests reach its code")
 def test_both_branches_and_their_jumps_are_those_of_harmonic_balance(bent: Results) -> None:
     up, down = bent.maps["r"][:, 0].T
     for found, expected in ((up, balanced(OMEGA)), (down[::-1], balanced(OMEGA[::-1]))):

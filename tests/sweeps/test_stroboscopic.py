@@ -143,6 +143,7 @@ def diagram(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return sweep(find(str(path), load_module), folder / "out")
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_section_over_many_values_of_a_parameter_is_drawn_as_a_diagram(diagram: Results) -> None:
     first, second = figure(diagram).axes
     assert [first.get_xlabel(), first.get_ylabel()] == ["$a$ / m", r"$\dot{\theta}$ / (rad/s)"]

@@ -85,7 +85,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.filterwarnings("ignore:integrating in Python")
 @pytest.mark.parametrize(("change", "words"), CHANGES)
 def test_a_sweep_that_other_arithmetic_began_is_refused(

@@ -106,6 +106,7 @@ def test_convergence_compares_the_numbers_that_both_tolerances_have(
     assert change.lost == 1 / n
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize("barrier", [(), TOPS])
 def test_a_chunk_is_a_second_of_evaluations_whatever_share_is_integrated(
     barrier: tuple[dict[str, float], ...],

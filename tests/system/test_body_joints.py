@@ -161,7 +161,7 @@ def end_acceleration(motion: tuple[Array, Array, Array], arm: Array) -> Array:
     return np.cross(alpha, arm) + np.cross(omega, np.cross(omega, arm))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("seed", range(5))
 def test_multipliers_of_hinges_are_forces_and_torques(seed: int) -> None:
     # oracle: Newton's and Euler's laws of each body, with rotations by their Taylor series

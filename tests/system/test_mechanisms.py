@@ -460,6 +460,7 @@ def test_sums_of_tensions_of_the_shipped_linkage_are_those_of_seven_bars(
         assert sums[pair] == pytest.approx(sum(tensions[bar] for bar in others.split()), abs=1e-10)
 
 
+@pytest.mark.long("other tests reach its code")
 def test_the_shipped_linkage_draws_a_straight_line() -> None:
     shipped = load_module("peaucellier")
     start = consistent_start(shipped, {"phi": 0.8, "phi_dot": 0.0}, {})

@@ -114,6 +114,7 @@ def test_a_file_becomes_a_module_that_is_checked(
     assert f"holonomic derive {path} --output" in capsys.readouterr().out
 
 
+@pytest.mark.long("other tests reach its code")
 def test_a_scene_runs_a_system_file(tmp_path: Path) -> None:
     written(tmp_path, BEAD, "bead")
     text = 'system = "bead.toml"\nduration = 5\naccuracy = 1e-7\n[initial]\nx = "50 cm"\n'

@@ -31,7 +31,7 @@ def last(folder: Path, text: str) -> FormulaVerdict:
     return judged(folder, text)[-1]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("equation", [
     r"\mathbf M\ddot{\mathbf q} + \mathbf C\dot{\mathbf q} + \mathbf G = \mathbf B\mathbf u - F",
     r"\ddot{\mathbf q} = \mathbf M^{-1}(\mathbf B\mathbf u - \mathbf C\dot{\mathbf q} - \mathbf G)",

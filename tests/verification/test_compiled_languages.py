@@ -28,7 +28,7 @@ def exported(system: str, target: str) -> str:
     return exported_text(load(system), target, None)[1]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("system", SYSTEMS)
 def test_exported_equations_are_read_back_and_verified(system: str, target: str) -> None:

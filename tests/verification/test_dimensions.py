@@ -69,7 +69,7 @@ def test_of_no_known_system_an_inhomogeneous_equation_is_noted_and_not_wrong(
         assert [(one.verdict, one.note) for one in results] == [("context", one) for one in notes]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("energy", "equation", "term", "number"), [
     (ENERGY.replace(r"\dot\theta^2", r"\dot\theta^3"), EQUATION,
      r"\frac{1}{2} m l^2 \dot\theta^3", 0),

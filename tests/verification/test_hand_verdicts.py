@@ -247,7 +247,7 @@ SCALED = (
 )
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(
     ("system", "text", "changes"),
     [

@@ -115,6 +115,7 @@ def test_documents_contain_it_and_are_verified(name: str, tmp_path: Path) -> Non
     assert [one.verdict for one in own] == ["verified", "verified"]
 
 
+@pytest.mark.long("other tests reach its code")
 def test_friction_and_routhian_have_different_letters(tmp_path: Path) -> None:
     c, spherical = sp.Symbol("c", positive=True), load("spherical_pendulum")
     rubbing = replace(spherical, dissipation=c * spherical.qdot[0] ** 2 / 2,

@@ -38,7 +38,7 @@ def test_each_heading_can_have_its_system(tmp_path: Path) -> None:
     assert verdicts == ["definition", "verified", "verified", "definition", "verified"]
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("old", "new", "number"), [
     (r"-\frac{g}{L}\theta", r"-\frac{2 g}{L}\theta", 1),
     (r"2\pi\sqrt", r"\pi\sqrt", 2),
@@ -346,6 +346,7 @@ $$ I_1 \Omega^2 \cdot 0 - I_3 n \Omega + M g l = 0 $$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 def test_formulas_of_special_motions_are_no_evidence_against_energies(tmp_path: Path) -> None:
     slip = TOP.replace(r"\dot\phi \sin^2", r"\dot\phi \sin")
     for text, number in ((TOP, -1), (slip, 3)):

@@ -119,7 +119,7 @@ def judged(folder: Path, text: str) -> DocumentVerdicts:
     return judge_document(read_document(path))
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_documents_with_their_own_constraints_are_verified(name: str, tmp_path: Path) -> None:
     document = judged(tmp_path, DOCUMENTS[name][0])

@@ -28,7 +28,7 @@ $$T = T_1 + T_2, \quad V = V_1 + V_2$$
 """
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(
     ("old", "new", "name"),
     [

@@ -101,6 +101,7 @@ def test_any_kinetic_energy_can_stand_beside_a_potential_energy_pi(tmp_path: Pat
     assert {*verdicts(tmp_path, text)} <= CORRECT
 
 
+@pytest.mark.long("other tests reach its code")
 def test_components_in_two_frames_are_no_positions(tmp_path: Path) -> None:
     text = r"""$$x' = x\cos\omega t + y\sin\omega t$$ $$y' = -x\sin\omega t + y\cos\omega t$$
     $$x = x'\cos\omega t - y'\sin\omega t$$ $$y = x'\sin\omega t + y'\cos\omega t$$
@@ -279,6 +280,7 @@ $$L = \frac12 m l^2\dot\phi^2 + m b l\nu^2\cos(\nu t)\sin\phi + m g l\cos\phi$$
 """
 
 
+@pytest.mark.long("other tests reach its code")
 @pytest.mark.parametrize(("new", "verdict"), [("+ m b l", "equivalent"), ("- m b l", "wrong")])
 def test_a_plain_letter_of_velocities_is_a_lagrangian_too(
     new: str, verdict: str, tmp_path: Path

@@ -661,7 +661,7 @@ $$u = (M + m)\ddot x + \frac12 m l(-\ddot\theta\cos\theta + \dot\theta^2\sin\the
 """
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind")
 @pytest.mark.parametrize(("formula", "expected"), [
     (r"u = (M + m)\ddot x - \frac12 m l\ddot\theta", "verified"),
     (r"u = (M + \frac14 m)\ddot x - \frac34 m g\theta", "verified"),  # without theta_ddot
