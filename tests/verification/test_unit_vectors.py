@@ -39,6 +39,7 @@ def test_positions_by_unit_vectors_state_a_system(units: tuple[str, ...], tmp_pa
     (r"\dot\phi\sin\alpha\cos\phi)", r"\dot\phi\sin\alpha\sin\phi)", 1,
      r"s\dot\phi\sin\alpha\sin\phi"),
     (r"-m g s\cos", r"-m g s\sin", 3, r"-m g s\sin\alpha"),
+    ("m g z =", "2 m g z =", 3, "2 m g z"),  # z is the component of r
 ])  # fmt: skip
 def test_slips_beside_positions_by_unit_vectors_are_found(
     right: str, slip: str, number: int, term: str, tmp_path: Path

@@ -254,7 +254,9 @@ class Judge:
         others = (one.text for j, one in enumerate(formula.sides) if j != k)
         used = {word for text in others for word in WORD.findall(text)}
         used |= {w for one in self._namespace.formulas if one is not formula for w in one.words}
-        return sorted(one for one in side - used if not self._is_component(one))
+        names, constants = self._namespace.all_names, self._namespace.derivation.system.params
+        side = {one for one in side - used if names.get(one) in constants}  # z can be that of r
+        return sorted(one for one in side if not self._is_component(one))
 
     def _is_component(self, name: str) -> bool:
         """Whether a name can be a component of a position that a document states."""
