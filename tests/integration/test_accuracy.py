@@ -128,6 +128,7 @@ def test_a_named_method_and_form_are_used() -> None:
     assert error <= motion.error_estimate <= 1e-6
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("inputs", "h"), [
     (Held([0.0, 0.5, 1.1], [[2.0, -1.0, 0.3]]), 5e-4),
     (lambda t, y: [-3 * y[0] - 2 * y[2] + np.sin(t)], 2e-3),

@@ -172,7 +172,7 @@ def test_invalid_ensembles_are_refused(arguments: dict[str, object], message: st
         ensemble(sp, **{**usual, **arguments})
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize(("backend", "lanes"), [("compiled", 1), ("compiled", 3), ("python", 1)])
 @pytest.mark.filterwarnings("ignore::solvers.integration.checks.predictability.UnfinishedWarning")

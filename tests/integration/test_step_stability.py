@@ -90,6 +90,7 @@ def test_an_ensemble_reports_its_own_unstable_motions(backend: str) -> None:
     assert motions.success.tolist() == [True, False, True, False]
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.usefixtures("fused")  # roundings decide when the unstable motion is noticed
 @pytest.mark.parametrize("masses", [{}, {"m": [0.5, 1.0]}])
 def test_motions_with_own_parameters_and_without_a_constant_energy_are_reported(

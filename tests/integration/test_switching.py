@@ -119,7 +119,7 @@ def test_without_switching_the_order_is_low(case, start, exact, n, monkeypatch) 
     assert errors(case(), start, exact, "verner98", (4 * n,), "python")[0] > 1e-9
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(
     ("method", "form"),

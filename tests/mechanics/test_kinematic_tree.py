@@ -36,7 +36,7 @@ def operations(derivation: Derivation, name: str) -> int:
     return function.lowering.cost[0]
 
 
-@pytest.mark.long("more cases of the same kind", keep=6)
+@pytest.mark.long("more cases of the same kind", keep=3)
 @pytest.mark.parametrize("relative", [False, True])
 @pytest.mark.parametrize("name", ["rhs", "rhs_rational", "energy", "inverse_dynamics"])
 def test_operations_grow_linearly(name: str, *, relative: bool) -> None:

@@ -231,7 +231,7 @@ def test_hostile_displays_end_soon_and_are_unreadable(definitions: str, latex: s
     assert isinstance(only, Unreadable)
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(
     "piece",
     ["a", "x,", r"x = a \\ ", "a'", "&", ".", r"\\", "+1", "{}", r"\quad x", "x_1^2"],

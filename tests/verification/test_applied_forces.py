@@ -148,6 +148,7 @@ Downwards, $$m\ddot s = -m g\sin\alpha + {load}$$"""
     assert "wrong" not in [one.verdict for one in judged(tmp_path, text)]
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("force", "term"), [("m g", "g m x"), ("k x^2", r"\frac{k x^3}{3}")])
 def test_equations_refute_an_energy_that_lacks_another_force(
     force: str, term: str, tmp_path: Path

@@ -78,6 +78,7 @@ SLIPS = {
 }
 
 
+@pytest.mark.long("more cases of the same kind", keep=5)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_right_programs_are_verified(name: str) -> None:
     language, text, count = PROGRAMS[name]

@@ -367,6 +367,7 @@ def test_a_wrong_factor_of_what_vanishes_along_every_motion_is_wrong(tmp_path: P
     assert results[2].correction == r"(J + m l^2) \ddot\phi = 0"
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("terms", "correction"), [
     (r"\frac{1}{2} m \dot x^2 + m l \dot x \dot\theta \cos\theta + \frac{1}{2} l^2 \dot\theta^2",
      r"+ \frac{1}{2} m l^2 \dot\theta^2"),

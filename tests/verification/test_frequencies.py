@@ -158,6 +158,7 @@ def test_modes_and_solutions_of_two_coordinates(tmp_path: Path) -> None:
     assert "wrong" not in verdicts.values()
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("right", "slip", "verdict"), [
     (r"\ddot u_1 + (D + 2 c)", r"\ddot u_1 + (D + c)", "wrong"),
     (r"+ \frac{c}{m} (u_2 - u_1)", r"+ \frac{c}{m} (u_1 - u_2)", "definition"),
@@ -183,6 +184,7 @@ $$(k_1 + c - m_1\omega^2) A_1 - c A_2 = 0$$ $$-c A_1 + (k_2 + c - m_2\omega^2) A
 $$(k_1 + c - m_1\omega^2)(k_2 + c - m_2\omega^2) - c^2 = 0$$"""
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("right", "slip", "term"), [
     ("-c A_1 + (k", "c A_1 + (k", "c A_1"),
     (r"c - m_1\omega^2) A_1", r"c - m_1\omega) A_1", r"- m_1\omega"),

@@ -175,7 +175,7 @@ def test_right_programs_are_verified(name: str) -> None:
     assert [verdict for _, verdict in verdicts(name)] == ["verified"] * PROGRAMS[name][2]
 
 
-@pytest.mark.long("more cases of the same kind", keep=5)
+@pytest.mark.long("more cases of the same kind", keep=2)
 @pytest.mark.parametrize("slip", SLIPS)
 def test_slips_are_found_at_their_lines(slip: str) -> None:
     name, old, new, place = SLIPS[slip]

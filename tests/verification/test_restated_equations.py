@@ -172,6 +172,7 @@ def test_a_column_can_have_a_turned_angle_first(tmp_path: Path) -> None:
     assert matrix.verdict == "verified"
 
 
+@pytest.mark.long("more cases of the same kind", keep=1)
 @pytest.mark.parametrize(("right", "slip", "term"), [
     (r"& m l^2\end", r"& m l\end", "m l"),
     (r"\frac{m g}{M} & 0", r"\frac{m g}{m} & 0", r"\frac{m g}{m}"),
