@@ -128,7 +128,8 @@ def _interpretation(
     judges = Judges(statements, letters)
     if hints:
         return _best(judges, hints.candidates(letters), work, 0)
-    is_further = not {*letters.coordinates} <= {*known}
+    is_general = has_arbitrary_potential(letters.parameters)  # known systems have their own
+    is_further = not is_general and not {*letters.coordinates} <= {*known}
     known_systems = partial(_of_templates, letters, statements) if is_further else None
     result = _best(judges, _stated(letters, statements), work, known_systems=known_systems)
     if is_further and _lacks_numbers(result.match, letters):
