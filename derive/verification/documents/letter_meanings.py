@@ -166,24 +166,25 @@ def _without_inhomogeneous(
         if judges.count_wrong(own) == 1:
             return replace(result, contradictions=known)
     if own and number in own.stating and (restored := _restored(judges, own, number)):
-        return _with_inhomogeneous(judges, restored, odd)
+        match = _match(judges, restored)
+        return Interpretation(judges, match, contradictions=Contradictions(inhomogeneous=odd))
     nothing = replace(statements.formulas[number], sides=(FormulaText("0"),), relations=())
     others = (*statements.formulas[:number], nothing, *statements.formulas[number + 1 :])
     tried = chain.from_iterable(_stated(letters, replace(statements, formulas=others)))
     for candidate in islice(tried, MAX_VERIFIED):
+        match = _match(judges, candidate)
+        if match is None or match.holding < len(match.failed):
+            continue  # more than one formula contradicts it, which takes seconds to show
         if _refutes(judges, candidate, number) and judges.count_wrong(candidate) == 1:
-            return _with_inhomogeneous(judges, candidate, odd)
+            return Interpretation(judges, match, contradictions=Contradictions(inhomogeneous=odd))
     return replace(result, contradictions=known)
 
 
-def _with_inhomogeneous(
-    judges: Judges, one: SystemCandidate, odd: Mapping[int, Restoration | None]
-) -> Interpretation:
-    """The interpretation by a candidate that one inhomogeneous formula contradicts."""
+def _match(judges: Judges, candidate: SystemCandidate) -> Match | None:
+    """How well a candidate fits; None if nothing can be compared."""
     formulas, derivatives = judges.statements.formulas, judges.statements.derivatives
-    matches = best_matches([one], judges.letters, formulas, derivatives, frozenset())
-    contradictions = Contradictions(inhomogeneous=odd)
-    return Interpretation(judges, next(iter(matches), None), contradictions=contradictions)
+    matches = best_matches([candidate], judges.letters, formulas, derivatives, frozenset())
+    return next(iter(matches), None)
 
 
 def _restored(judges: Judges, own: SystemCandidate, number: int) -> SystemCandidate | None:
