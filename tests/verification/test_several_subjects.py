@@ -425,6 +425,48 @@ def test_a_potential_of_which_only_the_variable_is_known_is_any_function(
     assert "arbitrary" not in verdicts[number].state
 
 
+def test_no_known_potential_stands_for_any_function(tmp_path: Path) -> None:
+    # it holds for those without an angle
+    text = r"""
+$$ L = \frac12 m (\dot r^2 + r^2 \dot\theta^2) - V(r, \theta) $$
+$$ F_r = -\frac{\partial V}{\partial r} = m \ddot r - m r \dot\theta^2 $$
+$$ F_\theta = -\frac{\partial V}{\partial\theta} = m r \ddot\theta + 2 m \dot r \dot\theta $$
+"""
+    assert [one.verdict for one in judged(tmp_path, text)] == ["definition", "verified", "context"]
+
+
+#: A cylinder in another one, with the multiplier of a constraint of velocities.
+ROLLING = r"""
+# A cylinder
+$$ (R - r)\dot\theta - r\dot\phi = 0 $$
+$$ K = \frac12 m (R - r)^2 \dot\theta^2 + \frac14 m r^2 \dot\phi^2, \qquad
+U = -m g (R - r)\cos\theta $$
+$$ L = \frac12 m (R - r)^2 \dot\theta^2 + \frac14 m r^2 \dot\phi^2 + m g (R - r)\cos\theta
+- \lambda\left[(R - r)\dot\theta - r\dot\phi\right] $$
+$$ m (R - r)^2 \ddot\theta - \lambda (R - r) + m g (R - r)\sin\theta = 0 $$
+$$ \frac12 m r^2 \ddot\phi + \lambda r = 0 $$
+$$ \frac32 m (R - r)^2 \ddot\theta + m g (R - r)\sin\theta = 0 $$
+"""
+
+
+def test_derivatives_in_other_subjects_make_no_coordinates(tmp_path: Path) -> None:
+    before = r"$$ L = \frac12 m \dot r^2 - V(r) $$ $$ m \ddot r = -\frac{dV}{dr} $$"
+    verdicts = [one.verdict for one in judged(tmp_path, before + ROLLING)]
+    assert verdicts == ["definition", "verified", *["definition"] * 3, *["verified"] * 4]
+
+
+@pytest.mark.parametrize(("right", "slip", "verdict"), [
+    ("", "", "verified"),
+    # of a constraint of velocities, a multiplier or its rate with the other sign are forces
+    (r"- \lambda\left[", r"+ \lambda\left[", "verified"),
+    (r"\lambda\left[(R - r)", r"\lambda\left[(R + r)", "wrong"),
+])  # fmt: skip
+def test_a_lagrangian_can_have_constraints_of_velocities(
+    right: str, slip: str, verdict: str, tmp_path: Path
+) -> None:
+    assert judged(tmp_path, ROLLING.replace(right, slip))[3].verdict == verdict
+
+
 def test_turning_points_are_where_the_energy_is_that_of_the_potential(tmp_path: Path) -> None:
     verdicts = judged(tmp_path, ANY_POTENTIAL + "The motion turns where $E - V(r) = 0$.")
     assert (verdicts[-1].verdict, verdicts[-1].note) == ("context", "it states a value")

@@ -162,9 +162,11 @@ class Translated:
     elsewhere: frozenset[DocumentFormula] = frozenset()  # formulas of other parts
 
     def part(self, formulas: Sequence[DocumentFormula]) -> "Translated":
-        """Some of the formulas as a part of the document."""
+        """Some of the formulas as a part of the document, with the derivatives in them."""
         elsewhere = frozenset(self.formulas).difference(formulas)
-        return Translated(tuple(formulas), self.failures, self.derivatives, elsewhere)
+        words = {word for one in formulas for word in one.words}
+        derivatives = {name: one for name, one in self.derivatives.items() if name in words}
+        return Translated(tuple(formulas), self.failures, derivatives, elsewhere)
 
 
 def translated(occurrences: Sequence[Occurrence]) -> Translated:
