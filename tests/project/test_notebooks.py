@@ -5,7 +5,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import nbformat
 import pytest
 
@@ -45,15 +44,6 @@ def test_a_notebook_is_thin_and_ends_with_its_proof(path: Path) -> None:
     assert all(len(logic(cell)) <= 10 for cell in code)
     last = ast.parse(python(code[-1])).body
     assert isinstance(last[-1], ast.Assert)
-
-
-@pytest.mark.long("more cases of the same kind", keep=1)
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_the_cells_of_a_notebook_prove_its_claim_in_this_process(path: Path) -> None:
-    names: dict[str, Any] = {"display": lambda *_: None}
-    for cell in cells(path, "code"):
-        exec(compile(python(cell), str(path), "exec"), names)
-    plt.close("all")
 
 
 @pytest.mark.long("a kernel of Jupyter")
