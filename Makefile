@@ -14,7 +14,7 @@ help:  ## list the targets
 demo: .venv/base  ## set up and run the demonstration: derive, verify, generate, integrate
 	$(BIN)/holonomic demo
 
-test: .venv/ready  ## set up and run the tests, but for the long ones (six minutes on two cores)
+test: .venv/ready  ## set up and run the tests, but for the long ones (five minutes on two cores)
 	$(PYTEST)
 
 test-all: .venv/ready  ## run all tests (fifteen minutes on two cores)
