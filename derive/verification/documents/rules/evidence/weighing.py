@@ -164,7 +164,7 @@ class _Evidence:
             return AMBIGUOUS
         other_case = f"it differs from {self._given or 'others'}: {OTHER_CASE}"
         if any(ARBITRARY in one.correct for one in result.verdict.corrections):
-            return f"it contradicts {self._given}, {UNEXPLAINED}"
+            return f"it contradicts {self._given or 'the system'}, {UNEXPLAINED}"
         if odd := {*self._contradictions.inhomogeneous} & {*self._candidate.stating}:
             return opposed(self._lines[min(odd)])
         if (line := self._line_of_inertia(number)) is not None:
