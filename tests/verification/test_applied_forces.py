@@ -165,3 +165,10 @@ def test_a_rate_is_no_applied_force(tmp_path: Path) -> None:
 $$T = \frac12 m\dot r^2$$ $$V = m g r$$ $$m\ddot r = - m g$$
 $$m\ddot r - m r\dot\theta^2 = - m g$$"""
     assert [one.verdict for one in judged(tmp_path, text)[2:]] == ["verified", "context"]
+
+
+def test_the_square_of_a_letter_is_no_applied_force(tmp_path: Path) -> None:
+    hoop = r"""$$\vec r = R\sin\theta\,\hat i - R\cos\theta\,\hat k$$ $$V = -m g R\cos\theta$$
+$$\ddot\theta = \Omega^2\sin\theta\cos\theta - \frac gR\sin\theta$$"""
+    assert last(tmp_path, hoop).verdict == "context"
+    assert last(tmp_path, hoop.replace(r"\Omega^2", "F")).verdict == "verified"

@@ -306,6 +306,8 @@ class AppliedLoads:
         system, letters = self._namespace.derivation.system, self._namespace.letters
         if {*loads} & {*letters.multipliers} or any(map(order, loads)):
             return False  # all reactions would be correct, and no rate is a force
+        if any(f"{one}**" in side.text for one in loads for side in formula.sides):
+            return False  # as Omega**2 of a turning frame
         if {*map(stem, loads)} & letters.elsewhere or self._are_constants(formula, loads):
             return False
         energies = (one for one in self._namespace.formulas if one.subject in letters.quantities)
