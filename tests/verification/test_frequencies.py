@@ -235,3 +235,46 @@ $$\omega = \sqrt{\frac{3k}{m}}$$"""
     assert judged(tmp_path, text)[5].verdict == "verified"
     slip = text.replace(r"\frac{2k}{m}-", r"\frac km-")
     assert judged(tmp_path, slip)[5].verdict == "context"
+
+
+#: Motions of a satellite beside another one on a circular orbit.
+HILL = r"""$$\ddot x - 2 n\dot y - 3 n^2 x = 0$$ $$\ddot y + 2 n\dot x = 0$$ $$\ddot z + n^2 z = 0$$
+$$x(t) = -(3 x_0 + 2\dot y_0/n)\cos(n t) + (\dot x_0/n)\sin(n t) + 4 x_0 + 2\dot y_0/n$$
+$$y(t) = (6 x_0 + 4\dot y_0/n)\sin(n t) + (2\dot x_0/n)\cos(n t) - (6 n x_0 + 3\dot y_0) t + y_0
+- 2\dot x_0/n$$
+$$z(t) = z_0\cos(n t) + (\dot z_0/n)\sin(n t)$$
+$$\dot x(t) = (3 n x_0 + 2\dot y_0)\sin(n t) + \dot x_0\cos(n t)$$
+$$\dot z(t) = -n z_0\sin(n t) + \dot z_0\cos(n t)$$"""
+
+
+@pytest.mark.parametrize(("right", "slip", "number", "term"), [
+    ("", "", None, ""),
+    ("-n z_0", "-z_0", 7, r"-z_0\sin(n t)"),
+    ("3 n x_0 + 2", "3 n x_0 - 2", 6, r"- 2\dot y_0"),
+])  # fmt: skip
+def test_a_rate_is_that_of_the_motion_with_initial_values(
+    right: str, slip: str, number: int | None, term: str, tmp_path: Path
+) -> None:
+    verdicts = judged(tmp_path, HILL.replace(right, slip))[3:]
+    wrong = {k: one.wrong_term for k, one in enumerate(verdicts, 3) if one.verdict == "wrong"}
+    assert wrong == ({number: term} if number else {})
+    assert sum(one.verdict == "verified" for one in verdicts) == 5 - len(wrong)
+
+
+@pytest.mark.parametrize(("rate", "verdicts"), [
+    (r"-A\omega\sin(\omega t + \phi)", ["verified", "verified"]),
+    (r"-A\sin(\omega t + \phi)", ["context", "context"]),
+    (r"-A\sin(\omega t + \phi) = -A\omega\sin(\omega t + \phi)", ["context", "context"]),
+])  # fmt: skip
+def test_of_a_motion_and_another_rate_none_is_wrong(
+    rate: str, verdicts: list[str], tmp_path: Path
+) -> None:
+    text = rf"""$$m\ddot x = -k x$$ $$\omega = \sqrt{{k/m}}$$
+$$x(t) = A\cos(\omega t + \phi)$$ $$\dot x(t) = {rate}$$"""
+    assert [one.verdict for one in judged(tmp_path, text)][2:] == verdicts
+
+
+def test_a_rate_of_one_of_several_motions_is_not_in_doubt(tmp_path: Path) -> None:
+    text = r"""$$m\ddot x = -k x$$ $$\omega = \sqrt{k/m}$$
+$$x(t) = a\sin\omega t$$ $$x(t) = A\cos\omega t$$ $$\dot x(t) = a\omega\cos\omega t$$"""
+    assert [one.verdict for one in judged(tmp_path, text)][-1] == "verified"

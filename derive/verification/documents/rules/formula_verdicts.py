@@ -4,14 +4,12 @@ import re
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import chain, takewhile
 
 import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.formulas.zero import vanishes
-from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.letters.stated_constraints import WAY_OUT
 from derive.verification.documents.rules.consequences import (
@@ -26,7 +24,7 @@ from derive.verification.documents.rules.evidence.stated_loads import (
     AS_FORCES,
     with_contrary_loads,
 )
-from derive.verification.documents.rules.frequencies import Amplitudes, Frequencies
+from derive.verification.documents.rules.frequencies import Amplitudes, Frequencies, StatedMotions
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
 from derive.verification.documents.rules.matrices import DerivedMatrices
@@ -50,7 +48,6 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
     entries_of_chain,
-    is_motion_of_several,
 )
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
@@ -91,6 +88,7 @@ class Judge:
         self._amplitudes = Amplitudes(namespace, linear, self._roles)
         self._comparison = SideComparison(namespace, linear, self._roles)
         self._frequencies = Frequencies(namespace, linear, self._roles)
+        self._motions = StatedMotions(namespace, linear, self._roles)
         self._others = OtherStatements(namespace, self._frequencies)
         self._loads = AppliedLoads(namespace, linear, self._comparison)
         self._judged: dict[DocumentFormula, SideVerdict] = {}
@@ -182,12 +180,8 @@ class Judge:
             return plain("context", formula, f"{reused} is no energy beside accelerations")
         if formula.subject in INDICES or self._others.states_value(formula):
             return plain("context", formula, "it states a value")
-        if values := self._prescribed(formula):
-            if all(map(self._linear.is_solution, values)):
-                return plain("verified", formula, "it solves the equation of small motions")
-            if self._linear.is_motion(self._motions_beside(formula)):
-                return plain("verified", formula, "it solves the equations of small motions")
-            return plain("context", formula, "it prescribes a coordinate")
+        if (of_motion := self._motions.verdict(formula)) is not None:
+            return of_motion
         if formula.occurrence in self._given:
             return plain("definition", formula, STATES)
         if constant := self._constant_of_motion(formula):
@@ -312,51 +306,6 @@ class Judge:
         """Whether a side has the numbers of an example, perhaps with units, in place of letters."""
         words = {*WORD.findall(side.text)} - {*FUNCTIONS, "t"}
         return bool(DECIMAL.search(side.text)) and (not words or bool(self._unknown([side])))
-
-    def _prescribed(self, formula: DocumentFormula) -> list[sp.Expr]:
-        """The functions of time that a formula states a coordinate or its rate to be, as φ = ω t.
-
-        Further sides are other forms of the function, as its number in φ̇ = ω = 3.
-        """
-        system, names = self._namespace.derivation.system, self._namespace.all_names
-        first, *others = formula.sides
-        if not others or {*formula.relations} != {"="}:
-            return []
-        if names.get(first.text) not in (*system.q, *system.qdot):
-            return []
-        if is_motion_of_several(formula):
-            others = others[-1:]
-        with suppress(ExpressionError):
-            moving = (*system.q, *system.qdot, *system.qddot, *system.p)
-            # letters without a meaning, such as ω, are constants
-            constants = {one: sp.Symbol(one, positive=True) for one in self._unknown(others)}
-            values = [parse(side.text, {**names, **constants}) for side in others]
-            if all(
-                not isinstance(value, sp.MatrixBase)
-                and (TIME in value.free_symbols or not depends_on(value, moving))
-                for value in values
-            ):
-                return values
-        return []
-
-    def _motions_beside(self, formula: DocumentFormula) -> dict[sp.Symbol, sp.Expr]:
-        """The functions of time of coordinates in a formula and in those next to it.
-
-        There are none of a coordinate for which these state two.
-        """
-        names, system = self._namespace.all_names, self._namespace.derivation.system
-        formulas, result = self._namespace.formulas, dict[sp.Symbol, sp.Expr]()
-        if formula not in formulas:  # another form of one of them
-            return result
-        place = formulas.index(formula)
-        rows = formulas[:place][::-1], formulas[place + 1 :]
-        for one in (formula, *chain(*(takewhile(self._prescribed, row) for row in rows))):
-            value = self._prescribed(one)[0]
-            for side in one.sides[: -1 if is_motion_of_several(one) else 1]:
-                q = names.get(side.text.removeprefix("-"))
-                if q in system.q and len(result) < len(system.q):
-                    result.setdefault(q, -value if side.text.startswith("-") else value)
-        return result
 
     def _constant_of_motion(self, formula: DocumentFormula) -> tuple[str, sp.Expr] | None:
         """The parameter that a formula with velocities is equal to, as J in m r² θ̇ = J.

@@ -1,23 +1,29 @@
-"""Frequencies and periods of small motions, their amplitudes, and equations of both."""
+"""Frequencies of small motions, amplitudes, equations of both, and motions in time."""
 
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
-from itertools import combinations
+from itertools import chain, combinations, takewhile
 
 import sympy as sp
 
 from derive.formulas.expression import parse
 from derive.formulas.generic_values import is_small
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.formula_translation import FormulaText
-from derive.verification.documents.rules.consequences import WithVerdict
+from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import FormulaText, order, stem
+from derive.verification.documents.rules.consequences import WithVerdict, opposed
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions, along
-from derive.verification.documents.statements import SQUARE, DocumentFormula
+from derive.verification.documents.statements import (
+    SQUARE,
+    WORD,
+    DocumentFormula,
+    is_motion_of_several,
+)
 from derive.verification.judging.reference_system import depends_on
 
 #: Letters of angular frequencies, frequencies and periods: a factor and a power of the first.
@@ -288,6 +294,124 @@ class Amplitudes:
             return []
         rates = along(self._system, self._motions)
         return [one.xreplace(rates) for one in self._namespace.derivation.euler_lagrange]
+
+
+class StatedMotions:
+    """Verdicts on coordinates and rates as functions of time."""
+
+    def __init__(self, namespace: DocumentNamespace, linear: SmallMotions, roles: Roles) -> None:
+        self._namespace, self._linear, self._roles = namespace, linear, roles
+
+    def verdict(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on a function of time; None for other formulas.
+
+        Functions of a coordinate and of its rate can contradict each other, although both solve the
+        equations: the rate is wrong if the coordinate has initial values; else both are in doubt.
+        """
+        values = self._functions(formula)
+        if not values:
+            return None
+        if self._is_solution(formula, values):
+            if contrary := self._contrary(formula, values[0]):
+                line, derivative = contrary
+                if derivative is not None:
+                    result = self._rate(formula.sides[-1], derivative)
+                    if result is not None and result.verdict.corrections:
+                        return result
+                return plain("context", formula, opposed(line))
+            several = "s" * (len(self._namespace.derivation.system.q) > 1)
+            return plain("verified", formula, f"it solves the equation{several} of small motions")
+        return plain("context", formula, "it prescribes a coordinate")
+
+    def _is_solution(self, formula: DocumentFormula, values: Sequence[sp.Expr]) -> bool:
+        is_single = all(map(self._linear.is_solution, values))
+        return is_single or self._linear.is_motion(self._beside(formula))
+
+    def _contrary(
+        self, formula: DocumentFormula, value: sp.Expr
+    ) -> tuple[int, sp.Expr | None] | None:
+        """The line of a motion that has another rate, or of a rate of another motion.
+
+        With the rate of the motion if this has initial values, which are letters.
+        """
+        name = formula.sides[0].text
+        q, is_rate, result = stem(name), order(name) == 1, None
+        for other in self._namespace.formulas:
+            if {name, other.sides[0].text} != {q, f"{q}_dot"}:
+                continue
+            for found in self._functions(other)[:1]:
+                motion, rate = (found, value) if is_rate else (value, found)
+                if not (motion.has(TIME) and rate.has(TIME)):
+                    continue
+                derivative = motion.diff(TIME)
+                if sp.simplify(derivative - rate) == 0:
+                    return None
+                start = [sp.simplify(one.subs(TIME, 0)) for one in (motion, derivative)]
+                has_start = all(one.is_Symbol for one in start)
+                if is_rate or not has_start:
+                    result = other.occurrence.line, derivative if has_start else None
+        return result
+
+    def _rate(self, side: FormulaText, value: sp.Expr) -> SideVerdict | None:
+        """The verdict on a side that must be a function of time.
+
+        Coordinates and velocities, which it does not contain, stand for constants that are no
+        parameters; None if there are more of these.
+        """
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        constants = sorted({*WORD.findall(side.text)} - names.keys())
+        symbols = (*system.q, *system.qdot)
+        if len(constants) > len(symbols):
+            return None
+        letters = dict(zip(constants, symbols, strict=False))
+        known = {sp.Symbol(name, positive=True): one for name, one in letters.items()}
+        return self._roles.value(side, "rate", value.xreplace(known), letters)
+
+    def _functions(self, formula: DocumentFormula) -> list[sp.Expr]:
+        """The functions of time that a formula states a coordinate or its rate to be, as φ = ω t.
+
+        Further sides are other forms of the function, as its number in φ̇ = ω = 3.
+        """
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        first, *others = formula.sides
+        if not others or {*formula.relations} != {"="}:
+            return []
+        if names.get(first.text) not in (*system.q, *system.qdot):
+            return []
+        if is_motion_of_several(formula):
+            others = others[-1:]
+        with suppress(ExpressionError):
+            moving = (*system.q, *system.qdot, *system.qddot, *system.p)
+            words = {word for side in others for word in WORD.findall(side.text)}
+            # letters without a meaning, such as ω, are constants
+            constants = {one: sp.Symbol(one, positive=True) for one in words - names.keys()}
+            values = [parse(side.text, {**names, **constants}) for side in others]
+            if all(
+                not isinstance(value, sp.MatrixBase)
+                and (TIME in value.free_symbols or not depends_on(value, moving))
+                for value in values
+            ):
+                return values
+        return []
+
+    def _beside(self, formula: DocumentFormula) -> dict[sp.Symbol, sp.Expr]:
+        """The functions of time of coordinates in a formula and in those next to it.
+
+        There are none of a coordinate for which these state two.
+        """
+        names, system = self._namespace.all_names, self._namespace.derivation.system
+        formulas, result = self._namespace.formulas, dict[sp.Symbol, sp.Expr]()
+        if formula not in formulas:  # another form of one of them
+            return result
+        place = formulas.index(formula)
+        rows = formulas[:place][::-1], formulas[place + 1 :]
+        for one in (formula, *chain(*(takewhile(self._functions, row) for row in rows))):
+            value = self._functions(one)[0]
+            for side in one.sides[: -1 if is_motion_of_several(one) else 1]:
+                q = names.get(side.text.removeprefix("-"))
+                if q in system.q and len(result) < len(system.q):
+                    result.setdefault(q, -value if side.text.startswith("-") else value)
+        return result
 
 
 def _named(formula: DocumentFormula) -> tuple[str, tuple[DocumentFormula, int]]:
