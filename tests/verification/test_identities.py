@@ -232,3 +232,19 @@ def test_a_chain_with_a_side_and_its_multiple_is_wrong(
         rf"$${chain}$$ with $\omega = \sqrt{{\frac km}}$ or $\omega = \sqrt{{\frac{{4 k}}{{m}}}}$"
     )
     assert verdicts(tmp_path, text)[0] == expected
+
+
+@pytest.mark.parametrize(("motion", "verdict"), [
+    (r"z(t) = z_0\cos(n t) + \frac{v_0}{n}\sin(n t)", "wrong"),
+    (r"z(t) = z_0\cos(n t) + v_0\sin(n t)", "context"),  # its rate at 0 is n v_0
+    (r"z(t) = z_0\cos(n t)", "context"),
+    (r"z(t) = z_0\cos(n t) + \frac{v_0}{n}\sin(n t)$$ $$z(t) = \sin(n t)", "context"),
+])  # fmt: skip
+def test_a_rate_is_wrong_beside_a_motion_with_initial_values(
+    motion: str, verdict: str, tmp_path: Path
+) -> None:
+    text = rf"$$\ddot y + q\dot x^2 = 0$$ $${motion}$$ $$\dot z(t) = -z_0\sin(n t) + v_0\cos(n t)$$"
+    (tmp_path / "a.md").write_text(text, encoding="utf-8")
+    formula = judge_document(read_document(tmp_path / "a.md")).formulas[-1]
+    assert formula.verdict == verdict
+    assert formula.wrong_term == r"-z_0\sin(n t)" * (verdict == "wrong")

@@ -85,7 +85,7 @@ class Identities:
         """Yield the formulas that hold, the definitions that they use, and contradictions.
 
         A side is wrong if it has the letters of the side before it, and each name in both has a
-        single definition, by which other formulas hold.
+        single definition, by which other formulas hold, or which has initial values.
         """
         confirmed, failed = set[str](), list[tuple[DocumentFormula, set[str], int]]()
         defining: dict[str, list[DocumentFormula]] = {}
@@ -113,11 +113,21 @@ class Identities:
             yield single[name], plain("definition", single[name], "others follow from it")
         for formula in verified:
             yield formula, plain("verified", formula, "it follows whatever the motion is")
+        confirmed |= {*filter(self._has_initial_values, single)}
         for formula, used, number in failed:
             defined = used - {*self._derivatives}
             if used and used <= confirmed and defined <= {*single, *self._values}:
                 note = f"it contradicts the definition of {', '.join(sorted(defined))}"
                 yield formula, self._wrong(formula, number, note)
+
+    def _has_initial_values(self, name: str) -> bool:
+        """Whether a name is a function of time of which value and rate at 0 are letters."""
+        with suppress(*ERRORS):
+            value = self._value(name)
+            if value.has(TIME):
+                start = [one.subs(TIME, 0) for one in (value, value.diff(TIME))]
+                return all(sp.simplify(one).is_Symbol for one in start)
+        return False
 
     def multiples(self) -> Iterator[tuple[DocumentFormula, SideVerdict]]:
         """Yield chains of three sides or more of which one is the side before it times a number."""
@@ -155,9 +165,10 @@ class Identities:
         return result
 
     def _model(self, names: Mapping[str, Value]) -> ReferenceSystem:
-        """Names as those of a system that has the moving letters as coordinates."""
-        symbols = sorted(sp.Tuple(*names.values()).free_symbols, key=str)
+        """Names as those of a system that has the moving letters as coordinates, or any letter."""
+        symbols = sorted(sp.Tuple(*names.values()).free_symbols - {TIME}, key=str)
         moving = {stem(one.name) for one in symbols if stem(one.name) in self._moving}
+        moving = moving or {stem(one.name) for one in symbols[:1]}
         q = {name: sp.Symbol(name, real=True) for name in sorted(moving)}
         orders = (lambda one: one), velocity, acceleration
         own = {
