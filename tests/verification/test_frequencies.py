@@ -274,6 +274,19 @@ $$x(t) = A\cos(\omega t + \phi)$$ $$\dot x(t) = {rate}$$"""
     assert [one.verdict for one in judged(tmp_path, text)][2:] == verdicts
 
 
+@pytest.mark.parametrize(("motion", "rate"), [
+    # of a start at 0, and with other constants
+    (r"x_0\cos\omega t + \frac{v_0}{\omega}\sin\omega t", r"v_0\cos\omega t"),
+    (r"A\cos(\omega t + \phi)", r"-x_0\omega\sin\omega t + v_0\cos\omega t"),
+])  # fmt: skip
+def test_a_rate_with_other_letters_is_no_contradiction(
+    motion: str, rate: str, tmp_path: Path
+) -> None:
+    text = rf"""$$m\ddot x = -k x$$ $$\omega = \sqrt{{k/m}}$$
+$$x(t) = {motion}$$ $$\dot x(t) = {rate}$$"""
+    assert [one.verdict for one in judged(tmp_path, text)][2:] == ["verified"] * 2
+
+
 def test_a_rate_of_one_of_several_motions_is_not_in_doubt(tmp_path: Path) -> None:
     text = r"""$$m\ddot x = -k x$$ $$\omega = \sqrt{k/m}$$
 $$x(t) = a\sin\omega t$$ $$x(t) = A\cos\omega t$$ $$\dot x(t) = a\omega\cos\omega t$$"""

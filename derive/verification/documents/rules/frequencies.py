@@ -332,7 +332,8 @@ class StatedMotions:
     ) -> tuple[int, sp.Expr | None] | None:
         """The line of a motion that has another rate, or of a rate of another motion.
 
-        With the rate of the motion if this has initial values, which are letters.
+        Both have the same letters. With the rate of the motion if this has initial values, which
+        are letters.
         """
         name = formula.sides[0].text
         q, is_rate, result = stem(name), order(name) == 1, None
@@ -346,6 +347,8 @@ class StatedMotions:
                 derivative = motion.diff(TIME)
                 if sp.simplify(derivative - rate) == 0:
                     return None
+                if derivative.free_symbols != rate.free_symbols:
+                    continue  # another case, or other constants
                 start = [sp.simplify(one.subs(TIME, 0)) for one in (motion, derivative)]
                 has_start = all(one.is_Symbol for one in start)
                 if is_rate or not has_start:
