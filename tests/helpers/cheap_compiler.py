@@ -1,7 +1,7 @@
 """The C compiler of the tests: less optimisation, and each library compiled once.
 
 Most of the time of a compilation is optimisation, which only tests of speed would notice. The short
-part of the tests compiles some 470 libraries, those of single motions without any; in these, and in
+part of the tests compiles some 360 libraries, those of single motions without any; in these, and in
 all libraries of the long part, an index outside an array ends the process. In the long part,
 ``-fexpensive-optimizations`` fuses products and sums as ``-O3`` does.
 """

@@ -172,3 +172,6 @@ def test_the_square_of_a_letter_is_no_applied_force(tmp_path: Path) -> None:
 $$\ddot\theta = \Omega^2\sin\theta\cos\theta - \frac gR\sin\theta$$"""
     assert last(tmp_path, hoop).verdict == "context"
     assert last(tmp_path, hoop.replace(r"\Omega^2", "F")).verdict == "verified"
+    pendulum = r"""$$x = b_W^2\sin\theta$$ $$y = -b_W^2\cos\theta$$ $$V = m g y$$
+$$m b_W^4\ddot\theta = W - m g b_W^2\sin\theta$$"""
+    assert last(tmp_path, pendulum).note == "with W as applied forces"  # b_W**2 is no square of W

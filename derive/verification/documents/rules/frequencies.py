@@ -9,7 +9,7 @@ from itertools import chain, combinations, takewhile
 import sympy as sp
 
 from derive.formulas.expression import parse
-from derive.formulas.generic_values import is_small
+from derive.formulas.generic_values import is_nonzero, is_small
 from derive.formulas.syntax import ExpressionError
 from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import FormulaText, order, stem
@@ -17,7 +17,12 @@ from derive.verification.documents.rules.consequences import WithVerdict, oppose
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
-from derive.verification.documents.rules.small_motions import MAX_INVERSE, SmallMotions, along
+from derive.verification.documents.rules.small_motions import (
+    MAX_INVERSE,
+    SmallMotions,
+    along,
+    has_initial_values,
+)
 from derive.verification.documents.statements import (
     SQUARE,
     WORD,
@@ -345,12 +350,11 @@ class StatedMotions:
                 if not (motion.has(TIME) and rate.has(TIME)):
                     continue
                 derivative = motion.diff(TIME)
-                if sp.simplify(derivative - rate) == 0:
+                if not is_nonzero(derivative - rate):
                     return None
                 if derivative.free_symbols != rate.free_symbols:
                     continue  # another case, or other constants
-                start = [sp.simplify(one.subs(TIME, 0)) for one in (motion, derivative)]
-                has_start = all(one.is_Symbol for one in start)
+                has_start = has_initial_values(motion)
                 if is_rate or not has_start:
                     result = other.occurrence.line, derivative if has_start else None
         return result

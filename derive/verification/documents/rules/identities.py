@@ -24,6 +24,7 @@ from derive.verification.documents.formula_translation import RATES, identifier,
 from derive.verification.documents.letters.energies import StatedInertia
 from derive.verification.documents.letters.stated_positions import axis_of
 from derive.verification.documents.rules.side_verdict import SideVerdict, plain
+from derive.verification.documents.rules.small_motions import has_initial_values
 from derive.verification.documents.statements import (
     WORD,
     Derivatives,
@@ -113,8 +114,8 @@ class Identities:
             yield single[name], plain("definition", single[name], "others follow from it")
         for formula in verified:
             yield formula, plain("verified", formula, "it follows whatever the motion is")
-        confirmed |= {*filter(self._has_initial_values, single)}
         for formula, used, number in failed:
+            confirmed |= {*filter(self._has_initial_values, used & {*single})}
             defined = used - {*self._derivatives}
             if used and used <= confirmed and defined <= {*single, *self._values}:
                 note = f"it contradicts the definition of {', '.join(sorted(defined))}"
@@ -124,9 +125,7 @@ class Identities:
         """Whether a name is a function of time of which value and rate at 0 are letters."""
         with suppress(*ERRORS):
             value = self._value(name)
-            if value.has(TIME):
-                start = [one.subs(TIME, 0) for one in (value, value.diff(TIME))]
-                return all(sp.simplify(one).is_Symbol for one in start)
+            return not isinstance(value, sp.MatrixBase) and has_initial_values(value)
         return False
 
     def multiples(self) -> Iterator[tuple[DocumentFormula, SideVerdict]]:

@@ -42,6 +42,8 @@ SIMPLIFIED = re.compile(
 CONSTANTS = ("mass", "length", "gravity", "stiffness", "inertia")
 #: Names of generalized forces, which nothing else in a document may state.
 GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
+#: A letter to a power.
+POWER = re.compile(r"\b(\w+)\*\*")
 
 
 class OtherStatements:
@@ -306,7 +308,8 @@ class AppliedLoads:
         system, letters = self._namespace.derivation.system, self._namespace.letters
         if {*loads} & {*letters.multipliers} or any(map(order, loads)):
             return False  # all reactions would be correct, and no rate is a force
-        if any(f"{one}**" in side.text for one in loads for side in formula.sides):
+        powers = {word for side in formula.sides for word in POWER.findall(side.text)}
+        if powers & {*loads}:
             return False  # as Omega**2 of a turning frame
         if {*map(stem, loads)} & letters.elsewhere or self._are_constants(formula, loads):
             return False

@@ -288,6 +288,12 @@ class SmallMotions:
         return {*filter(is_input, alone)}
 
 
+def has_initial_values(motion: sp.Expr) -> bool:
+    """Whether value and rate of a function of time are letters at 0, such as x_0 and v_0."""
+    values = (sp.simplify(one.subs(TIME, 0)) for one in (motion, motion.diff(TIME)))
+    return motion.has(TIME) and all(one.is_Symbol for one in values)
+
+
 def along(system: System, motions: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Expr]:
     """Coordinates and their rates as functions of time, by those of all coordinates."""
     return {
