@@ -77,6 +77,9 @@ p^2/(2m)  ⟶  [p^2 / 2 m]
 p^2/2ml^2  ⟶  [p^2 / 2 m l^2]
 p^2/2m x  ⟶  [p^2 / 2 m] x
 m g l/2 + 1  ⟶  (m g [l / 2] + 1)
+a + -b c - d  ⟶  (a + (- b c) - d)
+a \cdot -b^2 + c  ⟶  (a (- b^2) + c)
+2\times-\frac{a}{b} c  ⟶  2 (- [a / b] c)
 \sin(\theta)/2  ⟶  [sin(theta) / 2]
 g\sin\theta/l  ⟶  g [sin(theta) / l]
 x(t)/y(t)  ⟶  [x@(t) / y@(t)]

@@ -62,6 +62,10 @@ class Build:
             return children[0]
         return applied(divided(children))
 
+    def negative(self, children: list[Part]) -> Node:
+        """A term with a minus behind another sign, as in a + -b."""
+        return Sum(((-1, node(children[1])),), around(children))
+
     def power(self, children: list[Part]) -> Node:
         """A base with an exponent."""
         base, _, exponent = children

@@ -51,7 +51,11 @@ class Enclosures(LetterTokens):
         """The terminal of a token that is one by itself."""
         token = self.tokens[at]
         if token.kind in SIGNS:
-            return Symbol(*SIGNS[token.kind], token.span)
+            sign = Symbol(*SIGNS[token.kind], token.span)
+            before = (result[-1].type, result[-1].value) if result else ("", "")
+            if sign.value == -1 and (before == ("SIGN", 1) or before[0] == "TIMES"):
+                return Symbol("NEGATIVE", -1, token.span)
+            return sign
         if token.kind in (",", "relation"):
             return Symbol("COMMA" if token.kind == "," else "RELATION", token.text, token.span)
         if token.kind in ("open", "close", "bar") and at in self.partner:
