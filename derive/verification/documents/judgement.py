@@ -229,7 +229,7 @@ def _judge(
             candidate = found.match.candidate
             moving.update(candidate.coordinates)
             judges = found.judges
-            own = judges.judge(candidate).with_loads(judges.verdicts(candidate))
+            own = judges.verdicts(candidate)
             is_stated, is_partial = hints is not None, work.left < 0
             verdicts = [*weighed(own, candidate, found.contradictions, is_stated, is_partial)]
             if not titles or any(result.is_understood for _, result in verdicts):

@@ -88,11 +88,13 @@ class Judges:
     def verdicts(self, candidate: SystemCandidate) -> Results:
         """The verdicts on all formulas."""
         if id(candidate) not in self._verdicts:
-            verdicts = self.judge(candidate).verdicts(self.statements.formulas)
-            self._verdicts[id(candidate)] = [
-                (formula, self._unless_meant_otherwise(candidate, formula, result))
-                for formula, result in verdicts
-            ]
+            judge = self.judge(candidate)
+            self._verdicts[id(candidate)] = judge.with_loads(
+                [
+                    (formula, self._unless_meant_otherwise(candidate, formula, result))
+                    for formula, result in judge.verdicts(self.statements.formulas)
+                ]
+            )
         return self._verdicts[id(candidate)]
 
     def _unless_meant_otherwise(

@@ -28,7 +28,7 @@ from derive.verification.documents.letters.hints import Hints, difference, is_cr
 from derive.verification.documents.letters.known_systems.templates import templates
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.letters.letters import Letters
-from derive.verification.documents.letters.stated_equations import StatedEquations
+from derive.verification.documents.letters.stated_equations import StatedEquations, is_reaction
 from derive.verification.documents.letters.stated_positions import (
     stated_candidates,
     stated_systems,
@@ -187,6 +187,25 @@ def _match(judges: Judges, candidate: SystemCandidate) -> Match | None:
     return next(iter(matches), None)
 
 
+def _with_free_reactions(best: Match, judges: Judges) -> Match:
+    """The match without loads that have letters of reactions, if more formulas hold without them.
+
+    So F in the equations of a rolling disc is the friction that its constraint requires. Such a
+    force stands in several equations.
+    """
+    own, formulas = best.candidate, judges.statements.formulas
+    reactions = {
+        name for name, _ in own.forces
+        if is_reaction(name) and sum(name in one.words for one in formulas) > 1
+    }  # fmt: skip
+    forces = tuple(one for one in own.forces if one[0] not in reactions)
+    if not best.failed or not reactions:
+        return best
+    free = _match(judges, replace(own, forces=forces))
+    tried = [best, *([free] if free else [])]
+    return max(tried, key=lambda one: judges.count_holding(one.candidate))
+
+
 def _restored(judges: Judges, own: SystemCandidate, number: int) -> SystemCandidate | None:
     """The candidate that an inhomogeneous formula states with another power of a letter.
 
@@ -277,6 +296,7 @@ def _best(
         refuted = next((one for one in by_energies if one.is_refuted_by_one), None)
         return Interpretation(judges, fitting, refuted=None if fitting else refuted)
     best = with_direction(best, matches, judges)
+    best = _with_free_reactions(best, judges)
     best, is_decided = with_fewest_slips(best, matches, judges)
     rivals = tuple(_rivals(best, matches))
     if best.candidate.basis == "energies":  # which equations alone can contradict

@@ -68,12 +68,18 @@ def systems_of_energies(
     stated, values = stated_values(letters, formulas, symbols)
     damping = stated_dissipation(letters, formulas, values)
     kinetic = stated.get("kinetic_energy", ())
+    # coordinates of points that angles without rates give are not those of the system
+    rates = {stem(word) for one in formulas for word in one.words if order(word)}
+    implied = {*letters.coordinates} - rates
+    dependent = {symbols[one.subject] for one in formulas
+                 if one.subject in rates and implied & {*one.words}}  # fmt: skip
     for T, V, numbers in stated_energies(letters, formulas, stated, values):
         moving = [one for one in q if T.has(velocity(one))]
         matrix = _quadratic_form(T, moving)
         accelerated = {symbols[name] for name in _beside(letters, formulas, moving)}
         if (
             matrix is None
+            or dependent & {*moving}
             or not {*moving} >= ({*q} & (V.free_symbols | T.free_symbols)) | accelerated
         ):
             continue

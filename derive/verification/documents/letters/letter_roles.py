@@ -1,7 +1,7 @@
 """The roles of letters in a document: which of them move, are defined, or are parameters."""
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice, permutations
@@ -13,8 +13,10 @@ from derive.formulas.syntax import ExpressionError
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.letters import (
     ABBREVIATION,
+    ANGLES,
     COLUMN,
     GENERIC,
+    KINDS,
     OPERATORS,
     Letters,
     energy_of_part,
@@ -32,6 +34,7 @@ from derive.verification.documents.letters.stated_constraints import (
     stated_constraints,
 )
 from derive.verification.documents.statements import (
+    POINT,
     SQUARE,
     WORD,
     DocumentFormula,
@@ -51,6 +54,8 @@ NUMBER = re.compile(r"[\d.]+(?:\*\*?(?:kg|cm|mm|rad|deg|circ|Hz|J)\b.*)?|\d+\.\d
 TURNED_ANGLE = re.compile(r"(?:(?=\w+ \+ pi\Z)|pi [+-] )(\w+)(?: \+ pi)?")
 #: A function of an angle and its argument.
 TURNED = re.compile(r"\b(?:sin|cos|tan)\([^()]*\)")
+#: The sine or cosine of a letter.
+TURNED_LETTER = re.compile(r"\b(sin|cos)\((\w+)\)")
 #: Orders of the rows of a matrix that are tried.
 MAX_ORDERS = 6
 
@@ -67,6 +72,7 @@ def letters_of(
                 words.update((operand, *variables))
     stems = list(dict.fromkeys(map(stem, words)))
     orders = {one: max(order(name) for name in words if stem(name) == one) for one in stems}
+    orders |= dict.fromkeys(_angles_of_moving_points(formulas, orders), 1)
     quantities = quantities_of(formulas, derivatives, stems)
     defined = _defined(formulas, orders)
     varied = {stem(v) for _, variables in derivatives.values() for v in variables}
@@ -141,6 +147,32 @@ def letters_of(
         ordered, tuple(others), multipliers=multipliers, constraints=constraints,
         turning=frozenset(_turning(formulas, coordinates)),
     )  # fmt: skip
+
+
+def _angles_of_moving_points(
+    formulas: Iterable[DocumentFormula], orders: Mapping[str, int]
+) -> Iterator[str]:
+    """Yield the angles by whose sine and cosine alone components of a point with rates are given.
+
+    They move with the point, even if no formula has their rates: x = l*sin(theta) and
+    y = -l*cos(theta) beside x_ddot.
+    """
+    points = defaultdict[str, dict[str, set[str]]](lambda: defaultdict(set))
+    for formula in formulas:
+        point = POINT.match(formula.subject)
+        if point and orders.get(formula.subject) and len(formula.sides) == 2:
+            text = formula.sides[1].text
+            angles = TURNED_LETTER.findall(text)
+            others = {*WORD.findall(text)} - {*FUNCTIONS} - {angle for _, angle in angles}
+            first = {name.partition("_")[0].rstrip("0123456789") for name in others}
+            if first <= {*KINDS["length"], *"xyzXYZ"}:
+                for function, angle in angles:
+                    points[point[2] or ""][angle].add(function)
+    for angles_of_point in points.values():
+        for angle, functions in angles_of_point.items():
+            is_angle = angle.partition("_")[0] in ANGLES
+            if is_angle and functions == {"sin", "cos"} and not orders.get(angle):
+                yield angle
 
 
 def _turning(formulas: Iterable[DocumentFormula], coordinates: Sequence[str]) -> Iterator[str]:

@@ -23,6 +23,8 @@ WORDS = re.compile(
     r"clos(?:ure|ing|es)|knife|skate|blade",
     re.IGNORECASE,
 )
+#: Words of sentences that state relations of two coordinates of a body.
+ROLLING = re.compile(r"\broll(?:s|ing)?\b", re.IGNORECASE)
 #: What a reader can do if constraints are not recognised.
 WAY_OUT = "state the system with its constraints by --system FILE"
 #: States at which constraints are compared.
@@ -62,17 +64,19 @@ def stated_constraints(
     result = [*_possible(formulas, {*coordinates}, letters, {*multipliers}, derivatives)]
     # of several forms of one constraint, multipliers belong to that which is zero
     result.sort(key=lambda one: all(side.text != "0" for side in formulas[one.number].sides))
-    named = [one for one in result if _is_named(formulas[one.number])]
+    named = [one for one in result if _is_named(formulas[one.number], one)]
     if not multipliers:
         return tuple(_independent(named))
     groups = (_independent(result), _independent(named))
     return next((tuple(one) for one in groups if len(one) == len(multipliers)), ())
 
 
-def _is_named(formula: DocumentFormula) -> bool:
+def _is_named(formula: DocumentFormula, one: StatedConstraint) -> bool:
     """Whether the sentence or the form of a formula says that it is a constraint."""
     has_name = len(formula.sides) > 2 and formula.sides[-1].text == "0"
-    return has_name or bool(WORDS.search(formula.occurrence.prose))
+    prose = formula.occurrence.prose
+    is_rolling = len(one.coordinates) == 2 and bool(ROLLING.search(prose))
+    return has_name or is_rolling or bool(WORDS.search(prose))
 
 
 def _possible(

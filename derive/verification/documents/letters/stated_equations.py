@@ -35,6 +35,8 @@ from derive.verification.documents.statements import DocumentFormula
 
 #: Letters of reactions.
 REACTION = re.compile(r"(?:[TNSRPH]|F_[TNSRtnsrf]\w*|tension|normal)(?:_\w+)?\Z")
+#: Letters of friction, which is a reaction, too, as long as nothing slips.
+FRICTION = ("F", "f")
 #: Most unknown accelerations and reactions, and operations of an equation.
 MAX_UNKNOWN, MAX_OPERATIONS = 6, 120
 #: Most operations of what equations determine; those of one system, even for six unknowns, have
@@ -44,6 +46,11 @@ MAX_SOLVED = 600
 MOST_BY_CRAMER = 4
 #: Most coordinates whose equations are sought in an order with a symmetric mass matrix.
 MAX_ORDERED = 4
+
+
+def is_reaction(name: str) -> bool:
+    """Whether a letter is usual for a tension, a normal force or friction."""
+    return bool(REACTION.match(name)) or name.partition("_")[0] in FRICTION
 
 
 @dataclass(frozen=True)

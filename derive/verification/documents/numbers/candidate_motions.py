@@ -22,6 +22,7 @@ from derive.verification.documents.letters.document_system import (
     multiplier,
 )
 from derive.verification.documents.letters.letters import Letters
+from derive.verification.documents.letters.stated_equations import is_reaction
 from derive.verification.documents.numbers.conditions import Conditions, conditions
 
 #: Number of states.
@@ -43,6 +44,7 @@ class ArbitraryMotion:
         self.places = {q: self._random.uniform(0.3, 1.3, size) for q in letters.coordinates}
         self.speeds = {q: self._random.uniform(-1, 1, size) for q in letters.coordinates}
         self.parameters = {p: float(self._random.uniform(0.5, 1.5)) for p in letters.parameters}
+        self.free_reactions = frozenset(filter(is_reaction, letters.parameters))
         self.accelerations = {q: self._array() for q in letters.coordinates}
         self._gradients: dict[tuple[str, str, int], Array] = {}
         energies = ("kinetic_energy", "potential_energy", "lagrangian", "energy", "hamiltonian")
@@ -88,6 +90,12 @@ class CandidateMotions:
         self.speeds = {q: random.uniform(-1, 1, (1, STATES)) for q in names}
         self.parameters = {p: float(random.uniform(0.5, 1.5)) for p in letters.parameters}
         own = {p.name: float(random.uniform(0.5, 1.5)) for p in self._system.params}
+        #: Letters of reactions that stated energies leave to definitions.
+        self.free_reactions = frozenset(filter(is_reaction, letters.parameters))
+        if tried[0].basis in ("positions", "energies") and not tried[0].is_of_equations:
+            self.free_reactions -= frozenset[str]().union(*(one.letters for one in tried))
+        else:
+            self.free_reactions = frozenset()
         self._signs = _table([one.signs for one in tried])
         #: Gradients of energies by coordinates (order 0) or velocities (1), as far as needed.
         self._gradients: dict[tuple[str, int], Mapping[str, Array]] = {}

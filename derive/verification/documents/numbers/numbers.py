@@ -99,6 +99,8 @@ class Numbers:
         for name in subjects & ({*self._letters.coordinates} - {*self._motions.coordinates}):
             for ending in RATES[:3]:
                 self.values.pop(name + ending, None)
+        for name in self._motions.free_reactions & {n for f in formulas for n, _ in definitions(f)}:
+            self.values.pop(name, None)
         for _ in range(ROUNDS):
             for formula in values_last(formulas):
                 for name, text in definitions(formula):

@@ -24,6 +24,7 @@ from derive.verification.documents.rules.evidence.stated_loads import (
     AS_FORCES,
     with_contrary_loads,
 )
+from derive.verification.documents.rules.evidence.stated_reactions import with_reactions
 from derive.verification.documents.rules.frequencies import Amplitudes, Frequencies, StatedMotions
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.mass_positions import MassPositions
@@ -110,8 +111,9 @@ class Judge:
         return Consequences(self._namespace).marked(judged)
 
     def with_loads(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
-        """The verdicts, with `wrong` for an equation whose loads contradict those of others."""
-        return with_contrary_loads(self._namespace, self._linear, verdicts)
+        """The verdicts, with those on equations by the loads and reactions of others."""
+        loaded = with_contrary_loads(self._namespace, self._linear, verdicts)
+        return with_reactions(self._namespace, self._linear, loaded)
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
