@@ -20,7 +20,7 @@ test: .venv/ready  ## set up and run the tests, but for the long ones (five minu
 test-all: .venv/ready  ## run all tests (18 minutes on two cores)
 	$(PYTEST) --long
 
-campaign: .venv/ready  ## run the tests over thousands of random cases
+campaign: .venv/ready  ## run thousands of random cases, and cases that test-all leaves out that day
 	$(PYTEST) --long -o faulthandler_timeout=3600 -m campaign
 
 mutants: .venv/ready  ## plant 200 mistakes one by one, and list those that no test notices (an hour)

@@ -5,13 +5,11 @@ import os
 import re
 import shutil
 import signal
-from collections import defaultdict
 from collections.abc import Callable, Iterator
 from datetime import date
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from random import Random
 from types import ModuleType
 from typing import Any
 
@@ -19,7 +17,7 @@ import cheap_compiler
 import pytest
 import sympy as sp
 from browser import Player
-from case_choice import chosen_cases
+from case_choice import cases_beyond
 from recording import RECORDS, Record
 from sharing import Shared
 
@@ -33,7 +31,7 @@ from solvers.scenes.scene_reading import find
 from solvers.studies.failure_modes.chaos import Chaos, ChaosResults
 from solvers.studies.stability import CriticalStep, SceneStability
 
-#: The environment variable that chooses the cases of long tests which the short part keeps.
+#: The environment variable that chooses the cases of long tests which run on a day.
 SEED = "HOLONOMIC_TEST_SEED"
 
 
@@ -63,31 +61,20 @@ def pytest_report_header(config: pytest.Config) -> str:
     return f"cases of long tests: {SEED}={os.environ[SEED]}"
 
 
-def long_part(items: list[pytest.Item]) -> set[pytest.Item]:
-    """Tests that are marked long, but for the number of cases that their marker keeps."""
-    cases: dict[str, list[pytest.Item]] = defaultdict(list)
-    for item in items:
-        if item.get_closest_marker("long") and not item.get_closest_marker("campaign"):
-            cases[item.nodeid.partition("[")[0]].append(item)
-    left_out: set[pytest.Item] = set()
-    for name, own in cases.items():
-        marker = own[0].get_closest_marker("long")
-        rng = Random(f"{os.environ[SEED]} {name}")
-        count = marker.kwargs.get("keep", 0) if marker else 0
-        arguments = [item.callspec.params if hasattr(item, "callspec") else {} for item in own]
-        left_out |= {*own} - {own[k] for k in chosen_cases(arguments, count, rng)}
-    return left_out
-
-
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the long part, unless requested, and let every worker begin with slow tests.
 
-    Tests that are named one by one are requested. Workers receive equal parts of the list.
+    With the long part, cases beyond those of the day belong to the campaign. Tests that are named
+    one by one are requested. Workers receive equal parts of the list.
     """
-    if not config.getoption("long") and not any("::" in argument for argument in config.args):
-        left_out = long_part(items)
-        config.hook.pytest_deselected(items=[*left_out])
-        items[:] = [item for item in items if item not in left_out]
+    if not any("::" in argument for argument in config.args):
+        if config.getoption("long"):
+            for item in cases_beyond(items, "daily", os.environ[SEED]):
+                item.add_marker("campaign")
+        else:
+            left_out = cases_beyond(items, "keep", os.environ[SEED])
+            config.hook.pytest_deselected(items=[*left_out])
+            items[:] = [item for item in items if item not in left_out]
     workers = getattr(config, "workerinput", {}).get("workercount", 1)
     slow = [item for item in items if item.get_closest_marker("slow")]
     other = [item for item in items if not item.get_closest_marker("slow")]

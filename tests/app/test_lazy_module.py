@@ -76,7 +76,7 @@ def test_only_functions_that_are_used_are_generated(generated: list[str]) -> Non
     assert not generated  # they are in the cache
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind", keep=1, daily=4)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_functions_in_parts_are_those_of_the_whole_module(name: str) -> None:
     system = system_catalogue.load(name)

@@ -230,7 +230,7 @@ SINGLE = """
 """
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=24)
 @pytest.mark.parametrize("compiler", ["cc", "c++"])
 @pytest.mark.parametrize("name", [*names(), "chain_16"])
 def test_float_computes_in_float_alone(name: str, compiler: str, tmp_path: Path) -> None:

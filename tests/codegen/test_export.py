@@ -134,7 +134,7 @@ def output(target: str, system: System, simulation: Simulation, folder: Path) ->
 
 
 @pytest.mark.parametrize("name", SIMULATIONS)
-@pytest.mark.long("each further language takes seconds", keep=6)
+@pytest.mark.long("each further language takes seconds", keep=6, daily=18)
 @pytest.mark.parametrize("target", COMMANDS)
 def test_simulations_have_equal_bits_in_every_language(
     target: str, name: str, folder: Path

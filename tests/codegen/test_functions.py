@@ -144,7 +144,7 @@ def test_series_end_at_a_kink(tmp_path: Path) -> None:
         taylor(module, DEFAULTS, (1.0, 0.0), [0, 2])
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=12)
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("method", ["verner98", "gauss8", "radau3"])
 @pytest.mark.parametrize(

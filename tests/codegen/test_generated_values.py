@@ -103,7 +103,7 @@ def states(module: ModuleType) -> Iterator[tuple[list[float], list[float]]]:
     yield [1.0, *[1.0 + 1e-5] * (n - 1)] + [0.5] * n, light
 
 
-@pytest.mark.long("more cases of the same kind", keep=6)
+@pytest.mark.long("more cases of the same kind", keep=6, daily=18)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions_are_exact_to_a_few_rounding_errors(
     derivation: Derivation, module: ModuleType, name: str

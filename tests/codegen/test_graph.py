@@ -71,7 +71,7 @@ def random_expression(generator: random.Random, depth: int) -> sp.Expr:
     )
 
 
-@pytest.mark.long("more cases of the same kind", keep=8)
+@pytest.mark.long("more cases of the same kind", keep=8, daily=30)
 @pytest.mark.parametrize("seed", range(60))
 def test_lowered_expressions_have_the_value_of_the_original(seed: int) -> None:
     generator = random.Random(seed)

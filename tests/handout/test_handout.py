@@ -372,7 +372,7 @@ def test_blank_exercises_state_the_positions_from_which_all_follows(documents, d
         assert velocity in requested
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=3, daily=24)
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_planted_mistake_is_wrong_and_its_key_right(documents, name, seed: int) -> None:

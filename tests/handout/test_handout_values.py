@@ -155,7 +155,7 @@ def derivation(name: str) -> Derivation:
     return Derivation(load(name))
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=12)
 @pytest.mark.parametrize("name", names())
 def test_latex_read_back_has_the_values_of_the_derivation(name: str) -> None:
     d, random = with_letters(derivation(name)), Random(name)

@@ -63,7 +63,7 @@ def check_motion(seed: int) -> None:
     assert error <= solution.error_estimate <= scene.accuracy, (seed, scene.module.SYSTEM)
 
 
-@pytest.mark.long("more cases of the same kind")
+@pytest.mark.long("more cases of the same kind", daily=12)
 @pytest.mark.parametrize("seed", range(500, 500 + len(SYSTEMS)))
 def test_errors_at_uneven_times_are_below_the_estimate(seed: int) -> None:
     check_motion(seed)

@@ -49,7 +49,7 @@ def probe(folder: Path, stages: int) -> ModuleType:
     return handwritten("probe", state, __file__=str(folder / "probe.py"))
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=13)
 @pytest.mark.parametrize("lanes", [False, True])
 @pytest.mark.parametrize("name", EXPLICIT)
 def test_coefficients_are_read_back_from_the_running_loop(

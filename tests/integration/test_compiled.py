@@ -38,7 +38,7 @@ def scatter(n: int, seed: int = 1) -> np.ndarray:
     return np.random.default_rng(seed).uniform(-3, 3, (n, 4))
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=10)
 @pytest.mark.parametrize(
     ("method", "form"),
     [
@@ -322,7 +322,7 @@ def bits(form: str, method: str, *, lanes: bool) -> bytes:
     return b"".join(part.tobytes() for part in (batch.motions, batch.rows, batch.event_rows))
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=3)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("method", ["tsit54", "verner853"])
 def test_a_reproducible_build_gives_the_same_bits_from_every_compiler_and_in_lanes(

@@ -142,7 +142,7 @@ def digits() -> Iterator[None]:
 motion = cache(DecimalMotion)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=46)
 @pytest.mark.parametrize("make", SYSTEMS)
 @pytest.mark.parametrize("name", RUNGE_KUTTA)
 def test_every_method_keeps_its_order(name: str, make: Callable[[], System]) -> None:
@@ -155,7 +155,7 @@ def test_every_method_keeps_its_order(name: str, make: Callable[[], System]) -> 
     assert abs(order - method.order) < 0.1, errors
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=12)
 @pytest.mark.parametrize("name", RUNGE_KUTTA)
 def test_loops_agree_with_decimal_numbers(name: str) -> None:
     method = load(name)

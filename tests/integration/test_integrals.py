@@ -72,7 +72,7 @@ def change(module: GeneratedModule, t: np.ndarray, y: np.ndarray) -> float:
 METHODS = ("rk4", "verner853", "gauss4", "gauss8", "radau3", "radau5")
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=16)
 @pytest.mark.parametrize(
     ("name", "method", "backend"),
     [
@@ -110,7 +110,7 @@ def drifting(monkeypatch: pytest.MonkeyPatch, name: str) -> Iterator[GeneratedMo
         yield build(stated(f"{name}_without_integral", integral, rate))
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=4)
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("steps", [100_000, pytest.param(1_000_000, marks=pytest.mark.slow)])
 def test_integrals_are_constant_over_long_runs(

@@ -76,7 +76,7 @@ CONVERGED = {
 }
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=3, daily=28)
 @pytest.mark.filterwarnings("ignore::solvers.integration.checks.accuracy_warnings.DriftWarning")
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("form", ["lagrangian", "hamiltonian"])
@@ -106,7 +106,7 @@ def test_the_rational_form_is_as_accurate(method: str) -> None:
     assert errors[1] < 10 * errors[0] + 1e-13
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=3, daily=18)
 @pytest.mark.parametrize("backend", ["python", "compiled"])
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("method", EXPLICIT_PAIRS)

@@ -129,7 +129,7 @@ def test_the_period_of_stick_and_slip_on_a_belt(backend: str) -> None:
     assert motion.y[:, 3] == pytest.approx((1.0, 0.4), abs=1e-9)
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=4, daily=10)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("keep_coordinates", [False, True])
 @pytest.mark.parametrize(

@@ -214,7 +214,7 @@ def energy_errors(periods: float, **options: object) -> np.ndarray:
     return (run.energy - run.energy[0]) / (run.energy[0] - depth)
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=4)
 @pytest.mark.parametrize("name", SPLITTINGS)
 @pytest.mark.parametrize(
     "periods",

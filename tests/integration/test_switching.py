@@ -90,7 +90,7 @@ def errors(
     return np.abs(np.array(ends) - exact(5.0)).max(axis=1)
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=6)
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(("case", "start", "exact", "n"), CASES)
 @pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("bs32", 3), ("radau3", 5)])

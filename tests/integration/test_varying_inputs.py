@@ -47,7 +47,7 @@ def piecewise(times: Any, table: Array, end: float, y: Any = START) -> Array:
     return np.array(y)
 
 
-@pytest.mark.long("more cases of the same kind", keep=3)
+@pytest.mark.long("more cases of the same kind", keep=3, daily=9)
 @pytest.mark.parametrize(
     ("method", "form", "options"),
     [

@@ -111,7 +111,7 @@ def lagrange(derivation: Derivation) -> list[sp.Expr]:
     return [residual.subs(dict.fromkeys(system.u, 0)) for residual in residuals]
 
 
-@pytest.mark.long("more cases of the same kind", keep=6)
+@pytest.mark.long("more cases of the same kind", keep=6, daily=13)
 @pytest.mark.parametrize(
     "system", [*map(load, names()), load("chain_7"), trees.closed],
     ids=lambda system: system.name,

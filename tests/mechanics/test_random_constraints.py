@@ -66,7 +66,7 @@ def is_combination(row: list[sp.Expr], rows: list[list[sp.Expr]]) -> bool:
     return all(vanishes(matrix[:, list(chosen)].det()) for chosen in columns)
 
 
-@pytest.mark.long("more cases of the same kind", keep=5)
+@pytest.mark.long("more cases of the same kind", keep=5, daily=20)
 @pytest.mark.parametrize("seed", range(40))
 def test_a_constraint_with_an_integral(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -81,7 +81,7 @@ def test_a_constraint_with_an_integral(seed: int) -> None:
     assert not is_combination([(found + x * y * z).diff(q) for q in VARIABLES], [row])
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=10)
 @pytest.mark.parametrize("seed", range(20))
 def test_two_constraints_that_are_integrable_together(seed: int) -> None:
     rng = np.random.default_rng(seed)

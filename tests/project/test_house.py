@@ -7,10 +7,11 @@ import tomllib
 from itertools import product
 from pathlib import Path
 from random import Random
+from types import SimpleNamespace
 
 import pytest
 import yaml
-from case_choice import chosen_cases
+from case_choice import cases_beyond, chosen_cases
 from folders import ROOT
 
 
@@ -92,3 +93,30 @@ def test_cases_that_the_short_part_keeps_have_all_values_of_their_arguments() ->
     assert {chosen_cases(cases, 1, Random(seed))[0] % 5 for seed in range(40)} == {*range(5)}
     assert sorted(chosen_cases(cases[:3], 7, Random(0))) == [0, 1, 2]
     assert chosen_cases(cases, 0, Random(0)) == []
+
+
+def test_long_tests_run_their_daily_cases_with_those_of_the_short_part() -> None:
+    class Case:
+        """A case of a test, as pytest collects it."""
+
+        def __init__(self, k: int, **counts: int) -> None:
+            self.nodeid = f"test_a.py::test_{len(counts)}[{k}]"
+            self.callspec = SimpleNamespace(params={"k": k})
+            self.marks = {"long": pytest.mark.long("more cases", **counts)} if counts else {}
+
+        def get_closest_marker(self, name: str) -> object:
+            return self.marks.get(name)
+
+    daily = [Case(k, keep=2, daily=5) for k in range(9)]
+    whole = [Case(k, keep=2) for k in range(9)]
+    plain = [Case(k) for k in range(9)]
+    choices = set()
+    for seed in "abcdefgh":
+        short, long = (
+            {*cases_beyond([*daily, *whole, *plain], key, seed)} for key in ("keep", "daily")
+        )
+        assert [len({*some} - short) for some in (daily, whole, plain)] == [2, 2, 9]
+        assert [len({*some} - long) for some in (daily, whole, plain)] == [5, 9, 9]
+        assert long < short
+        choices.add(frozenset({*daily} - long))
+    assert len(choices) > 4

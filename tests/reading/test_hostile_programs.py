@@ -47,7 +47,7 @@ def test_hostile_text_is_read_or_refused(name: str, language: str) -> None:
         assert not read_program(HOSTILE[name], language).equations
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=4, daily=6)
 @pytest.mark.parametrize("name", HOSTILE_PROGRAMS)
 def test_hostile_programs_are_read_or_refused(name: str) -> None:
     with suppress(ProgramError):

@@ -29,7 +29,7 @@ def selected(scene: Scene, report=lambda _: None) -> ModelSelection:
     return select_model(scene, lambda motion, _: motion, report)
 
 
-@pytest.mark.long("more cases of the same kind")
+@pytest.mark.long("more cases of the same kind", daily=3)
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", [
     replace(LONG, accuracy=2e-6),  # optimised less, loops round in another way

@@ -63,7 +63,7 @@ def check_light_masses(seed: int) -> float:
 
 # in scene 113 dop853's error is 200 tolerances, and happened to equal that of the checked run;
 # scene 16, of the same system as 62, needs series of so many digits that they take minutes
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=12)
 @pytest.mark.parametrize("seed", [*({*range(len(SYSTEMS)), 62, 113} - {16})])
 def test_errors_stay_below_their_estimates(seed: int) -> None:
     check_scene(seed)

@@ -225,7 +225,7 @@ class Alembert:
         ]
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind", keep=1, daily=15)
 def test_motions_and_reactions_satisfy_d_alembert_s_principle(
     system: System, module: ModuleType
 ) -> None:

@@ -147,7 +147,7 @@ def test_independent_constraints_remain(system: System) -> None:
     assert names(system) == ([one.name for one in system.conditions], [])
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=10)
 @pytest.mark.parametrize(("system", "freedom"), [
     *((ring_of_links(n, relative=relative), n - 2)
       for relative in (False, True) for n in (4, 5, 6, 8)),

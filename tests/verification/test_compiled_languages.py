@@ -86,7 +86,7 @@ def test_right_programs_are_verified(name: str) -> None:
     assert [verdict for _, verdict in verdicts(text, language)] == ["verified"] * count
 
 
-@pytest.mark.long("slips in programs whose reading the test above shows")
+@pytest.mark.long("slips in programs whose reading the test above shows", daily=5)
 @pytest.mark.parametrize("name", SLIPS)
 def test_slips_are_found(name: str) -> None:
     language, text, _ = PROGRAMS[name]

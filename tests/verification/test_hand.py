@@ -27,7 +27,7 @@ from solvers.app.cli import main
 from solvers.io.toml_input import InputError
 
 
-@pytest.mark.long("more cases of the same kind", keep=2)
+@pytest.mark.long("more cases of the same kind", keep=2, daily=13)
 @pytest.mark.parametrize("name", [*names(), *large_names()])
 def test_published_equations_hold(name: str) -> None:
     derivation = judge(name)
@@ -56,7 +56,7 @@ def without_advice(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(hand_derivation_files, "load", cache(hand_derivation_files.load))
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind", keep=1, daily=9)
 @pytest.mark.usefixtures("without_advice")
 @pytest.mark.parametrize("name", QUICK)
 def test_mutations_of_published_equations_are_wrong(name: str, tmp_path: Path) -> None:

@@ -133,7 +133,7 @@ class Site:
             getattr(self.parent, self.field)[self.index] = self.node
 
 
-@pytest.mark.long("more cases of the same kind", keep=4)
+@pytest.mark.long("more cases of the same kind", keep=4, daily=60)
 @pytest.mark.parametrize(
     "equation", [e for e in JUDGED if e.id not in MISPRINTS], ids=lambda equation: equation.id
 )

@@ -122,7 +122,7 @@ def test_verdicts_on_the_text_are_those_of_the_table(report: str, tmp_path: Path
     assert terms["eq64"] == r"\dot{\phi}_1"
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind", keep=1, daily=10)
 @pytest.mark.parametrize(
     ("number", "old", "new", "term"),
     [

@@ -135,7 +135,7 @@ def test_of_two_forms_of_a_constraint_the_multiplier_has_that_which_is_zero(tmp_
     assert {one.verdict for one in document.formulas} <= CORRECT
 
 
-@pytest.mark.long("other tests reach its code")
+@pytest.mark.long("other tests reach its code", daily=9)
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [(name, *slip) for name, (_, slips) in DOCUMENTS.items() for slip in slips],

@@ -34,7 +34,7 @@ def failures(results: list[Outcome]) -> list[str]:
     return crashes + [f"{one.name}: {accused}" for one in results for accused in one.accused]
 
 
-@pytest.mark.long("styles; the last test here has some")
+@pytest.mark.long("styles; the last test here has some", daily=12)
 @pytest.mark.parametrize("style", DEVELOPED)
 def test_the_slip_is_found_and_no_right_formula_is_accused(style: str, tmp_path: Path) -> None:
     results = [*outcomes([style], [3, 10, 15], tmp_path)]
@@ -44,7 +44,7 @@ def test_the_slip_is_found_and_no_right_formula_is_accused(style: str, tmp_path:
     assert numbers["judged"] >= 75
 
 
-@pytest.mark.long("other pairs")
+@pytest.mark.long("other pairs", daily=18)
 @pytest.mark.parametrize("seeds", SAME_COORDINATES)
 @pytest.mark.parametrize("style", BY_ENERGIES)
 def test_two_right_documents_in_one_file_are_not_accused(

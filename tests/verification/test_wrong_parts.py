@@ -91,7 +91,7 @@ def test_correct_formulas_are_verified(text: str, tmp_path: Path) -> None:
     assert wrong(tmp_path, text) == []
 
 
-@pytest.mark.long("more cases of the same kind", keep=1)
+@pytest.mark.long("more cases of the same kind", keep=1, daily=10)
 @pytest.mark.parametrize(
     ("text", "old", "new", "term", "correct"),
     [
