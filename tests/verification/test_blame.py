@@ -499,3 +499,85 @@ $$\ddot\phi = -\frac gl\sin\phi - \frac{k}{m l^2}\phi$$"""
     assert not wrong_terms(tmp_path, text)
     whole = text.replace("H_0 + ", r"\frac{p_\phi^2}{2 m l^2} + ")
     assert [*wrong_terms(tmp_path, whole)] == [r"H=\frac{p_\phi^2}{2ml^2}+\epsilonH_1"]
+
+
+#: A block on a string through a hole, a disc, and two weights, each with a law and a definition.
+TABLE = r"""
+$$L = \frac12 (m + M)\dot r^2 + \frac12 m r^2\dot\phi^2 - M g r$$
+$$\frac{d}{dt}(m r^2\dot\phi) = 0, \qquad J = m r^2\dot\phi$$
+$$(m + M)\ddot r = \frac{J^2}{m r^3} - M g$$
+"""
+SPHERE = r"""
+$$T = \frac{7}{10} m\dot x^2, \quad V = -m g x\sin\beta, \quad \ddot x = \frac57 g\sin\beta$$
+$$m\ddot x = m g\sin\beta - f$$ $$f = \frac27 m g\sin\beta$$
+"""
+WEIGHTS = r"""
+$$T = \frac12 (m_1 + m_2)\dot x^2, \quad V = -m_1 g x - m_2 g (\ell - x)$$
+$$m_1\ddot x = m_1 g - S$$ $$-m_2\ddot x = m_2 g - S$$ $$S = \frac{2 m_1 m_2}{m_1 + m_2} g$$
+"""
+
+
+@pytest.mark.parametrize(("text", "right", "slip", "law"), [
+    (TABLE, r"J = m r^2", r"J = m r^3", r"(m + M)\ddot r = \frac{J^2}{m r^3} - M g"),
+    (SPHERE, r"m g\sin\beta$$ $$", r"m g\cos\beta$$ $$", ""),
+    (SPHERE, r"f = \frac27 m g\sin\beta", r"f = \frac27 m g\cos\beta",
+     r"m\ddot x = m g\sin\beta - f"),
+])  # fmt: skip
+def test_a_law_is_not_accused_for_a_definition_that_nothing_else_supports(
+    text: str, right: str, slip: str, law: str, tmp_path: Path
+) -> None:
+    assert wrong_terms(tmp_path, text) == {}
+    if not law:
+        return
+    formulas = judged(tmp_path, text.replace(right, slip))
+    assert "wrong" not in {one.verdict for one in formulas}
+    (one,) = (one for one in formulas if one.latex == law)
+    assert (one.verdict, one.note[:19]) == ("context", "it contradicts line")
+
+
+@pytest.mark.parametrize(("text", "right", "slip"), [
+    (TABLE, r"(m + M)\ddot r", r"(m - M)\ddot r"),
+    (TABLE, r"\ddot r =", r"\dot r ="),
+    (SPHERE, r"m\ddot x = m g\sin\beta - f", r"m\ddot x = m g\cos\beta - f"),
+    (SPHERE, r"m\ddot x = m g\sin\beta - f", r"m\ddot x = m g\sin\beta + f"),
+])  # fmt: skip
+def test_a_law_with_a_slip_beside_a_definition_is_wrong(
+    text: str, right: str, slip: str, tmp_path: Path
+) -> None:
+    assert text.count(right) == 1
+    (wrong,) = wrong_terms(tmp_path, text.replace(right, slip))
+    assert slip.strip("$\n").replace(" ", "") in wrong
+
+
+def test_two_laws_show_the_slip_in_the_definition_of_their_reaction(tmp_path: Path) -> None:
+    assert wrong_terms(tmp_path, WEIGHTS) == {}
+    text = WEIGHTS.replace("{2 m_1 m_2}", "{2 m_1 m_1}")
+    assert [*wrong_terms(tmp_path, text)] == [r"S=\frac{2m_1m_1}{m_1+m_2}g"]
+
+
+INCLINE = r"$$T = \frac12 m\dot s^2,\quad V = -m g s\sin\alpha, \quad L = T - V$$"
+OSCILLATORS = r"""
+$$T = \frac12 m(\dot x^2 + \dot y^2),\quad V = \frac12 k (x^2 + y^2) + c x y, \quad L = T - V$$
+"""
+
+
+@pytest.mark.parametrize(("text", "equation", "verdict"), [
+    (INCLINE, r"\ddot s = g\sin\alpha", "verified"),
+    (INCLINE, r"\dot s = g\sin\alpha", "wrong"),
+    (INCLINE, r"m\dot s = m g\sin\alpha", "wrong"),
+    (INCLINE, r"\dot s = v_0", "definition"),
+    (INCLINE, r"\dot s = 0", "context"),
+    (OSCILLATORS, r"m\dot x = -k x - c y", "wrong"),
+    (OSCILLATORS, r"m\dot x = -2 k x - c y", "context"),
+    (OSCILLATORS, r"m\dot x = -m\dot y", "context"),
+])  # fmt: skip
+def test_an_equation_of_motion_without_a_dot_is_wrong(
+    text: str, equation: str, verdict: str, tmp_path: Path
+) -> None:
+    one = judged(tmp_path, rf"{text}$${equation}$$")[-1]
+    assert one.verdict == verdict
+    if verdict == "wrong":
+        assert one.wrong_term.startswith(r"\dot")
+        assert one.correction.replace("{", " ").replace("}", "") == equation.replace(
+            r"\dot", r"\ddot"
+        )

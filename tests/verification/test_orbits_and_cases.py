@@ -198,3 +198,24 @@ def test_a_constant_of_the_motion_states_an_equation(tmp_path: Path) -> None:
     assert bases == ["document", "known system"]
     slip = CONSERVED.replace(r"+ u = \frac", r"- u = \frac")
     assert list(verdicts(tmp_path, slip).values())[-1] != "verified"
+
+
+ELLIPSE = r"""
+$$L = \frac12\mu(\dot r^2 + r^2\dot\theta^2) + \frac{k}{r}, \quad \ell = \mu r^2\dot\theta$$
+$$E = \frac12\mu\dot r^2 + \frac{\ell^2}{2\mu r^2} - \frac kr$$
+$$p = \frac{\ell^2}{\mu k},\quad e = \sqrt{1 + \frac{2 E\ell^2}{\mu k^2}}$$
+$$r = \frac{p}{1 + e\cos\theta}$$
+"""
+
+
+@pytest.mark.parametrize(("right", "other", "verdict", "note"), [
+    ("", "", "verified", "it holds for some initial values"),
+    (r"p}{1 + e", r"p}{1 - e", "verified", "it holds for some initial values"),
+    (r"p}{1 + e", r"2 p}{1 + e", "context", "it can hold for some initial values"),
+    (r"\cos\theta}", r"\cos 2\theta}", "context", "it can hold for some initial values"),
+])  # fmt: skip
+def test_an_orbit_holds_for_the_motions_that_keep_it(
+    right: str, other: str, verdict: str, note: str, tmp_path: Path
+) -> None:
+    one = judged(tmp_path, ELLIPSE.replace(right, other) if right else ELLIPSE)[-1]
+    assert (one.verdict, one.note) == (verdict, note)

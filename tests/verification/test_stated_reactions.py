@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from derive.verification.documents.pages.verdicts_in_place import FormulaVerdict
+from derive.verification.documents.rules.side_verdict import CORRECT
 from derive.verification.source_files import judge_file
 from solvers.runge_kutta.order_conditions import order
 
@@ -117,3 +118,55 @@ def test_a_tension_that_a_law_defines_is_that_of_the_next(tension: str, tmp_path
     laws = rf"m_1\ddot x = {tension}", rf"m_2\ddot x = m_2 g - {tension}"
     found = judged(tmp_path, BLOCKS, *laws)
     assert [one.verdict for one in found] == ["definition", "verified"]
+
+
+def test_a_thread_on_a_drum_is_a_constraint(tmp_path: Path) -> None:
+    text = r"""
+A reel of mass $m$ falls, and its thread unwinds from an axle of radius $b$: $\dot y = b\dot\phi$.
+$$E = \frac12 m\dot y^2 + \frac12 I\dot\phi^2 - m g y$$
+"""
+    laws = r"m\ddot y = m g - S", r"I\ddot\phi = S b", r"\ddot y = \frac{m g b^2}{I + m b^2}"
+    assert [one.verdict for one in judged(tmp_path, text, *laws)] == ["verified"] * 3
+    wrong = laws[2].replace("m g b^2", "m g b")
+    found = judged(tmp_path, text, *laws[:2], wrong)
+    assert [one.verdict for one in found] == ["verified", "verified", "wrong"]
+
+
+def test_momenta_that_cancel_are_no_constraint(tmp_path: Path) -> None:
+    text = r"""
+$$T = \frac12 m\dot x^2 + \frac12 M\dot z^2, \quad V = \frac12 k (x - z)^2, \quad
+  m\dot x = -M\dot z$$
+"""
+    laws = r"m\ddot x = -k (x - z)", r"M\ddot z = k (x - z)"
+    assert [one.verdict for one in judged(tmp_path, text, *laws)] == ["verified"] * 2
+
+
+ROLLER = r"""
+A cylinder of radius $r$ rolls inside another one: $(R - r)\dot\theta = r\dot\phi$.
+$$T = \frac12 m (R - r)^2\dot\theta^2 + \frac14 m r^2\dot\phi^2, \quad V = -m g (R - r)\cos\theta$$
+"""
+REDUCED = (
+    r"p_\theta = \frac32 m (R - r)^2\dot\theta",
+    r"H = \frac{p_\theta^2}{3 m (R - r)^2} - m g (R - r)\cos\theta",
+    r"\dot p_\theta = -m g (R - r)\sin\theta",
+    r"\frac{d}{dt}\frac{\partial L}{\partial\dot\theta} = \frac32 m (R - r)^2\ddot\theta",
+)
+
+
+def test_momenta_can_be_those_after_the_constraint_is_substituted(tmp_path: Path) -> None:
+    found = judged(tmp_path, ROLLER, *REDUCED)
+    assert {(one.verdict, one.note) for one in found} == {
+        ("verified", "with the constraints substituted")
+    }
+
+
+@pytest.mark.parametrize(("number", "slip"), [
+    (0, (r"\frac32", r"\frac52")), (1, ("{3 m", "{2 m")), (2, ("-m g", "m g")),
+    (3, (r"\frac32", r"\frac52")),
+])  # fmt: skip
+def test_other_momenta_of_a_rolling_body_do_not_hold(
+    number: int, slip: tuple[str, str], tmp_path: Path
+) -> None:
+    laws = [law.replace(*slip) if k == number else law for k, law in enumerate(REDUCED)]
+    found = judged(tmp_path, ROLLER, *laws)
+    assert [k for k, one in enumerate(found) if one.verdict not in CORRECT] == [number]

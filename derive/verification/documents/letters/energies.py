@@ -72,7 +72,7 @@ def systems_of_energies(
     rates = {stem(word) for one in formulas for word in one.words if order(word)}
     implied = {*letters.coordinates} - rates
     dependent = {symbols[one.subject] for one in formulas
-                 if one.subject in rates and implied & {*one.words}}  # fmt: skip
+                 if one.subject in rates & {*symbols} and implied & {*one.words}}  # fmt: skip
     for T, V, numbers in stated_energies(letters, formulas, stated, values):
         moving = [one for one in q if T.has(velocity(one))]
         matrix = _quadratic_form(T, moving)

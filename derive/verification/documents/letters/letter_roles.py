@@ -139,7 +139,10 @@ def letters_of(
         name in of_energies or _is_inertial(name, formulas) for name in multipliers_of(stems)
     )
     multipliers = () if is_parameter else multipliers_of(stems)
-    constraints = stated_constraints(formulas, coordinates, parameters, multipliers, derivatives)
+    lengths = [one for one in parameters if one.partition("_")[0] in KINDS["length"]]
+    constraints = stated_constraints(
+        formulas, coordinates, parameters, multipliers, derivatives, lengths
+    )
     if multipliers and not constraints:  # lambda = k/m defines another quantity
         multipliers = multipliers_of(parameters)
     return Letters(

@@ -54,17 +54,21 @@ def stated_constraints(
     parameters: Collection[str],
     multipliers: Collection[str],
     derivatives: Mapping[str, tuple[str, tuple[str, ...]]],
+    lengths: Collection[str] = (),
 ) -> tuple[StatedConstraint, ...]:
     """The constraints of a document; none if it is not certain which they are.
 
     These are formulas without accelerations in a sentence that calls them constraints, or in a
-    document with as many multipliers.
+    document with as many multipliers, and rates of two coordinates times `lengths`.
     """
     letters = {*parameters} - {*multipliers}
     result = [*_possible(formulas, {*coordinates}, letters, {*multipliers}, derivatives)]
     # of several forms of one constraint, multipliers belong to that which is zero
     result.sort(key=lambda one: all(side.text != "0" for side in formulas[one.number].sides))
-    named = [one for one in result if _is_named(formulas[one.number], one)]
+    named = [
+        one for one in result
+        if _is_named(formulas[one.number], one) or _is_of_thread(one, {*lengths})
+    ]  # fmt: skip
     if not multipliers:
         return tuple(_independent(named))
     groups = (_independent(result), _independent(named))
@@ -77,6 +81,17 @@ def _is_named(formula: DocumentFormula, one: StatedConstraint) -> bool:
     prose = formula.occurrence.prose
     is_rolling = len(one.coordinates) == 2 and bool(ROLLING.search(prose))
     return has_name or is_rolling or bool(WORDS.search(prose))
+
+
+def _is_of_thread(one: StatedConstraint, lengths: set[str]) -> bool:
+    """Whether it relates the rates of two coordinates by lengths alone, as a thread on a drum."""
+    expression, rates = expression_of(one), [symbol(f"{q}_dot") for q in one.coordinates]
+    if expression is None or len(rates) != 2:
+        return False
+    factors = [expression.diff(rate) for rate in rates]
+    rest = sp.expand(expression - sp.Add(*map(sp.Mul, factors, rates)))
+    names = {str(one) for one in sp.Tuple(*factors).free_symbols}
+    return rest == 0 and all(factors) and bool(names) and names <= lengths
 
 
 def _possible(

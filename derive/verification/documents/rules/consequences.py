@@ -21,6 +21,7 @@ SUBSTITUTED = "with the constraints substituted"
 #: Energies from which others follow.
 ENERGIES = ("kinetic_energy", "potential_energy", "lagrangian")
 
+
 #: The end of a note on formulas that contradict each other.
 UNDECIDED = "nothing else in the document decides which of them is wrong"
 

@@ -12,12 +12,14 @@ from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError
 from derive.mechanics.energies.kinetics import Kinetics
 from derive.system.symbols import TIME
+from derive.verification.documents.formula_translation import order
 from derive.verification.documents.letters.letters import energy_of_part
+from derive.verification.documents.letters.stated_equations import is_reaction
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.statements import DocumentFormula
 from derive.verification.judging.reference_system import depends_on
 
-#: Most operations of a value of a name that is reduced.
+#: Most operations of a formula from which the value of a name is computed.
 MAX_OPERATIONS = 400
 #: Formulas that must agree on the value of a name, unless its slip is one of a factor.
 AGREEING = 2
@@ -28,6 +30,29 @@ def differs_by_one_factor(own: sp.Expr, value: sp.Expr) -> bool:
     terms = [sp.expand(one).as_coefficients_dict() for one in (own, value)]
     same = [terms[0][key] == terms[1][key] for key in terms[0]]
     return {*terms[0]} == {*terms[1]} and any(same) and same.count(False) == 1
+
+
+def required_value(
+    namespace: DocumentNamespace, name: str, formula: DocumentFormula
+) -> sp.Expr | None:
+    """The value of a letter with which a formula holds along motions; None if it is not known."""
+    symbol, model = sp.Dummy(real=True), namespace.model
+    scope = {**namespace.all_names, name: symbol}
+    left, right = (parse(one.text, scope) for one in (formula.sides[0], formula.sides[-1]))
+    difference = sp.sympify(left - right).xreplace(dict(model.momenta))
+    rates = namespace.derivation.system.qddot
+    if depends_on(difference, rates):
+        own = difference.xreplace({symbol: namespace.names[name]})
+        if model.motions.is_small(own):
+            return namespace.names[name]
+        if not model.has_inverse:
+            return None
+        moving = dict(zip(rates, namespace.derivation.accelerations, strict=True))
+        difference = difference.xreplace(moving)
+    slope = difference.diff(symbol)
+    if slope == 0 or slope.has(symbol) or sp.count_ops(difference) > MAX_OPERATIONS:
+        return None
+    return sp.cancel(-difference.xreplace({symbol: sp.S.Zero}) / slope)
 
 
 class Abbreviations:
@@ -68,28 +93,19 @@ class Abbreviations:
 
     def _values(self, name: str, formulas: Sequence[DocumentFormula]) -> Iterator[sp.Expr]:
         """The values of a name with which formulas about known quantities that contain it hold."""
-        names, symbol = self._namespace.all_names, sp.Dummy(real=True)
-        scope: Mapping[str, object] = {**names, name: symbol}
-        momenta = self._namespace.model.momenta
-        system = self._namespace.derivation.system
+        names, system = self._namespace.all_names, self._namespace.derivation.system
         moving = {*system.q, *system.qdot, *system.qddot}
         allowed = names[name].free_symbols | {*system.params}
         for formula in formulas:
             subject = formula.subject
             known = subject in names and subject not in self._namespace.defining
+            # an equation of motion shows a reaction, and no inertia of a known system
+            known |= is_reaction(name) and not subject and 2 in map(order, formula.words)
             if not known or name not in formula.words:
                 continue
             with suppress(ExpressionError, NotImplementedError, ValueError, TypeError):
-                side = parse(formula.sides[-1].text, scope)
-                difference = sp.expand((side - names[subject]).xreplace(momenta))
-                slope = difference.diff(symbol)
-                if slope == 0 or slope.has(symbol):
-                    continue
-                value = -difference.xreplace({symbol: sp.S.Zero}) / slope
-                if sp.count_ops(value) > MAX_OPERATIONS:
-                    continue
-                value = sp.cancel(value)
-                if (value.free_symbols & moving) <= allowed:
+                value = required_value(self._namespace, name, formula)
+                if value is not None and (value.free_symbols & moving) <= allowed:
                     yield sp.factor_terms(value)
 
     def _are_equal(self, values: Sequence[sp.Expr]) -> bool:

@@ -19,6 +19,7 @@ from derive.verification.documents.rules.consequences import (
     opposed,
 )
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
+from derive.verification.documents.rules.evidence.open_definitions import with_open_definitions
 from derive.verification.documents.rules.evidence.slips import is_slip
 from derive.verification.documents.rules.evidence.stated_loads import (
     AS_FORCES,
@@ -107,7 +108,7 @@ class Judge:
     ) -> list[tuple[DocumentFormula, SideVerdict]]:
         """The verdicts on formulas in their order, with what follows from wrong ones."""
         own = [(formula, self.verdict(formula)) for formula in formulas]
-        judged = self._frequencies.contradicted(own)
+        judged = with_open_definitions(self._namespace, self._frequencies.contradicted(own))
         return Consequences(self._namespace).marked(judged)
 
     def with_loads(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
@@ -182,6 +183,8 @@ class Judge:
             return plain("context", formula, f"{reused} is no energy beside accelerations")
         if formula.subject in INDICES or self._others.states_value(formula):
             return plain("context", formula, "it states a value")
+        if (dotted := self._comparison.with_lost_dot(formula)) is not None:
+            return dotted
         if (of_motion := self._motions.verdict(formula)) is not None:
             return of_motion
         if formula.occurrence in self._given:

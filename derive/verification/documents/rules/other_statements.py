@@ -13,11 +13,12 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.mechanics.derivation import Derivation
-from derive.system.symbols import TIME
+from derive.system.symbols import TIME, velocity
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_EQUATIONS, BY_POTENTIAL
 from derive.verification.documents.letters.document_system import is_length
 from derive.verification.documents.letters.letters import QUANTITIES, energy_of_part
+from derive.verification.documents.letters.stated_equations import is_reaction
 from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
@@ -42,6 +43,8 @@ SIMPLIFIED = re.compile(
 CONSTANTS = ("mass", "length", "gravity", "stiffness", "inertia")
 #: Names of generalized forces, which nothing else in a document may state.
 GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
+#: The largest square of a residual at which a root is found, and rate there that is none.
+TINY, CLOSE = 1e-20, 1e-8
 #: A letter to a power.
 POWER = re.compile(r"\b(\w+)\*\*")
 
@@ -69,6 +72,8 @@ class OtherStatements:
             return plain("context", formula, "it has no parameter of the system")
         if parts := self._other_parts(formula):
             return plain("verified", formula, f"without {', '.join(parts)}")
+        if (orbit := self._orbit(formula)) is not None:
+            return orbit
         if self._is_first_integral(formula):
             return plain("context", formula, "it can hold for some constants of the motion")
         if variable := self._other_variable(formula):
@@ -127,6 +132,57 @@ class OtherStatements:
             is_moving = bool({*own} & {*system.qdot}) and len(rest) == 1
             return is_moving and not depends_on(left - rest[0], system.qddot)
         return False
+
+    def _orbit(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on a coordinate by other coordinates and constants of the motion, if it is.
+
+        Such an equation holds along motions with some initial values alone, as that of an ellipse
+        with angles from its apsis.
+        """
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        coordinate = names.get(formula.subject)
+        if coordinate not in system.q or len(formula.sides) != 2:
+            return None
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            text = formula.sides[1].text
+            value = self._namespace.value(text)
+            constants = [
+                one for word in WORD.findall(text)
+                if isinstance(one := names[word], sp.Expr) and depends_on(one, system.qdot)
+            ]  # fmt: skip
+            if not constants or depends_on(value, system.qddot) or not all(
+                self._namespace.model.agreement(time_derivative(system, one)) is not None
+                for one in constants
+            ):  # fmt: skip
+                return None
+            if self._is_along_motions(coordinate, value):
+                return plain("verified", formula, "it holds for some initial values")
+            return plain("context", formula, "it can hold for some initial values")
+        return None
+
+    def _is_along_motions(self, coordinate: sp.Symbol, value: sp.Expr) -> bool:
+        """Whether motions keep an equation of coordinates where it and its rate hold."""
+        model, system = self._namespace.model, self._namespace.derivation.system
+        others = [one for one in system.q if value.has(one) and one != coordinate]
+        if not others or not model.has_inverse:
+            return False
+        moving = dict(zip(system.qddot, model.derivation.accelerations, strict=True))
+        derivatives = [coordinate - value]
+        for _ in range(2):
+            rate = time_derivative(system, derivatives[-1])
+            derivatives.append(sp.sympify(rate).xreplace(moving))
+        unknown = (others[0], velocity(coordinate))
+        found = []
+        for state in model.context.states:
+            numbers = {s: x for s, x in state.items() if s not in unknown}
+            first, second, third = (one.xreplace(numbers) for one in derivatives)
+            with suppress(ValueError, ZeroDivisionError, TypeError):
+                start = [float(state[one]) for one in unknown]
+                root = sp.nsolve((first, second), unknown, start, tol=TINY)
+                place = dict(zip(unknown, root, strict=True))
+                if all(abs(sp.im(one)) < CLOSE for one in root):
+                    found.append(abs(third.xreplace(place).evalf()) < CLOSE)
+        return bool(found) and all(found)
 
     def _other_variable(self, formula: DocumentFormula) -> str:
         """The coordinate by whose rate a side of a momentum of another one is a derivative."""
@@ -378,9 +434,15 @@ class AppliedLoads:
         """The verdict on an equation of motion in which a term beside loads is wrong.
 
         For a term that is missing, the loads can stand. A load to which an equation gives a value
-        can be a force between bodies, if the inertia is another one.
+        can be a force between bodies, if the inertia is another one. Reactions stand in several
+        equations.
         """
-        has_reactions = {*loads} & {*self._namespace.letters.multipliers}
+        multipliers, formulas = self._namespace.letters.multipliers, self._namespace.formulas
+        has_reactions = any(
+            one in multipliers
+            or (is_reaction(one) and sum(one in other.words for other in formulas) > 1)
+            for one in loads
+        )
         if len(formula.sides) != 2 or has_reactions:
             return None
         if without_unknown_terms(formula, loads) is None:

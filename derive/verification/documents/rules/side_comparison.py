@@ -4,6 +4,7 @@ import ast
 import re
 from collections.abc import Iterator
 from contextlib import suppress
+from copy import copy
 from dataclasses import replace
 from itertools import takewhile
 
@@ -12,7 +13,7 @@ import sympy as sp
 from derive.formulas.expression import Value
 from derive.formulas.syntax import ExpressionError, place, syntax_tree
 from derive.verification.corrections.source_names import SourceNames
-from derive.verification.documents.formula_translation import FormulaText
+from derive.verification.documents.formula_translation import RATES, FormulaText, order, stem
 from derive.verification.documents.letters.letters import energy_of_part
 from derive.verification.documents.rules.consequences import SUBSTITUTED
 from derive.verification.documents.rules.known_values import DocumentNamespace
@@ -22,7 +23,7 @@ from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdic
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import OWN_CONSTANT, WORD, DocumentFormula
 from derive.verification.judging.engine import UNDECIDED
-from derive.verification.judging.reference_system import depends_on
+from derive.verification.judging.reference_system import depends_on, time_derivative
 from derive.verification.judging.verdict import Correction
 
 #: The largest denominator of a factor that is looked for.
@@ -108,6 +109,8 @@ class SideComparison:
         small = "it holds for small motions about the origin"
         if is_product:
             return self._scaled(formula, side, left, right)
+        if self._holds_with_constraints(formula, first, side):
+            return plain("verified", formula, SUBSTITUTED)
         if is_lagrangian and (reduced := self._without_dependent(left, right)) is not None:
             result = self._roles.value(side, first.text, reduced)
             return replace(result, verdict=replace(result.verdict, note=SUBSTITUTED))
@@ -139,6 +142,39 @@ class SideComparison:
                 return plain("context", formula, f"it holds for {text} alone")
             return plain("equivalent", formula, f"it holds for {text}")
         return result
+
+    def with_lost_dot(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on an equation that is one of motion with another dot; None for others.
+
+        With parameters, whose dimensions tell both apart, it can be no equation of a motion.
+        """
+        system, names = self._namespace.derivation.system, self._namespace.all_names
+        words = [word for side in formula.sides for word in WORD.findall(side.text)]
+        rates = [word for word in words if names.get(word) in system.qdot]
+        if len(formula.sides) != 2 or len(rates) != 1 or not order(rates[0]):
+            return None
+        (rate,), accelerated = rates, stem(rates[0]) + RATES[2]
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            left, right = (self._namespace.value(one.text) for one in formula.sides)
+            if accelerated not in names:
+                return None
+            value, symbol = left - right, names[rate]
+            slope = value.diff(symbol)
+            other = value.xreplace({symbol: names[accelerated]})
+            rest = sp.cancel(value.xreplace({symbol: sp.S.Zero}) / slope)
+            is_plain = depends_on(value, system.qddot) or depends_on(slope, system.qdot)
+            if is_plain or not depends_on(rest, system.params):
+                return None
+            if not self._model.motions.is_small(other) or self._model.motions.is_small(value):
+                return None
+            side = next(one for one in formula.sides if rate in WORD.findall(one.text))
+            place_of = re.search(rf"\b{rate}\b", side.text)
+            assert place_of
+            result = plain("wrong", formula, "", *self._witness(formula, left, right))
+            lost = Correction(rate, accelerated, place_of.span())
+            verdict = replace(result.verdict, printed=side.text, corrections=(lost,))
+            return SideVerdict(verdict, ((0, side),), "value")
+        return None
 
     def _are_both_zero(self, first: FormulaText, left: sp.Expr, right: sp.Expr) -> bool:
         """Whether a rate and its value differ, but vanish along every motion, as without forces."""
@@ -220,6 +256,40 @@ class SideComparison:
         if not derivation.system.conditions or derivation.integrability.nonholonomic:
             return False
         return self._model.about(difference).agreement(difference) not in (None, UNDECIDED)
+
+    def _holds_with_constraints(
+        self, formula: DocumentFormula, first: FormulaText, side: FormulaText
+    ) -> bool:
+        """Whether momenta and derivatives of L and T agree if constraints eliminate velocities."""
+        derivation, namespace = self._namespace.derivation, copy(self._namespace)
+        system, quantities = derivation.system, namespace.letters.quantities
+        derivatives = {
+            name: (namespace.names[operand], variables)
+            for name, (operand, variables) in namespace.derivatives.items()
+            if name in formula.words and quantities.get(operand) in ("lagrangian", "kinetic_energy")
+        }
+        derivatives |= {
+            name: (derivation.lagrangian, (f"{coordinate}_dot",))
+            for name, coordinate in namespace.letters.momenta.items()
+            if name in map(stem, formula.words) and f"{coordinate}_dot" in namespace.names
+        }
+        if not derivatives or not system.conditions or derivation.integrability.nonholonomic:
+            return False
+        words = {*formula.words}.union(*(variables for _, variables in derivatives.values()))
+        used = {namespace.names.get(stem(word)) for word in words}
+        pairs = zip(system.q, system.qdot, strict=True)
+        others = [v for q, v in pairs if q not in used]
+        values = sp.solve([*derivation.constraint_rates], others, dict=True) if others else []
+        if not values:
+            return False
+        reduced = {
+            name: value.subs(values[0]).diff(*(namespace.names[one] for one in variables))
+            for name, (value, variables) in derivatives.items()
+        }
+        rates = {f"{name}_dot": time_derivative(system, one) for name, one in reduced.items()}
+        namespace.correct({**reduced, **rates})
+        difference = namespace.value(first.text) - namespace.value(side.text)
+        return self._model.agreement(difference) is not None
 
     def _without_dependent(self, lagrangian: sp.Expr, other: sp.Expr) -> sp.Expr | None:
         """A Lagrangian without the velocities that another one lacks, by its constraints."""

@@ -22,7 +22,7 @@ MAX_POWER = 2
 
 def is_slip(corrections: Sequence[Correction]) -> bool:
     """Whether the corrections of a formula are those of one slip, perhaps in several terms."""
-    changes = {_change(one) for one in corrections}
+    changes = {factor_of(one) for one in corrections}
     return len(changes) == 1 and None not in changes
 
 
@@ -31,7 +31,7 @@ def is_change(corrections: Sequence[Correction]) -> bool:
     return len(corrections) == 1 and corrections[0].wrong != "" and is_slip(corrections)
 
 
-def _change(correction: Correction) -> sp.Expr | None:
+def factor_of(correction: Correction) -> sp.Expr | None:
     """The factor by which a slip changes a term, or the missing term; None if it is no slip."""
     try:
         wrong, correct = _values(correction)
