@@ -120,6 +120,7 @@ mcos^2{\theta}  ⟶  m cos(theta)^2
 \sin\theta\,\dot\theta  ⟶  sin(theta) theta.
 \sin\theta_1 l_1  ⟶  sin(theta_1) l_1
 \sin\theta (l_0+x)  ⟶  sin(theta) (l_0 + x)
+\sin q_2\,(a+b)  ⟶  sin(q_2) (a + b)
 \sin^2\theta(a+b)  ⟶  sin(theta)^2 (a + b)
 \sin\alpha\beta  ⟶  sin(alpha) beta
 \sin\dot\theta\theta  ⟶  sin(theta.) theta
@@ -445,6 +446,7 @@ a/b(c+d)  ⟶  unreadable: what stands below the slash is ambiguous without brac
 \sin\pi x/l  ⟶  unreadable: what stands above the slash is ambiguous without brackets
 \sin{\theta}^2  ⟶  unreadable: an exponent of the function or of its argument
 \sin k x  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets
+\sin x (a+b)  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets
 \sin x(a+b)  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets
 \cos 2(\theta)^2  ⟶  unreadable: where the argument of a function ends is ambiguous without brackets
 \log_{10} x  ⟶  unreadable: the base of a logarithm
@@ -455,7 +457,6 @@ a/b(c+d)  ⟶  unreadable: what stands below the slash is ambiguous without brac
 \prod_i x_i  ⟶  unreadable: a product over an index
 \sum_{i<j} a  ⟶  unreadable: a sum over a condition
 \sum_i  ⟶  unreadable: a sum has no terms
-a \pm b  ⟶  unreadable: two signs at once
 a - -b  ⟶  unreadable: '-' cannot stand here
 \vec a \times \vec b \times \vec c  ⟶  unreadable: a vector product
 \vec r \times 2  ⟶  unreadable: a vector product
@@ -499,5 +500,4 @@ x/\Delta t  ⟶  unreadable: what stands below the slash is ambiguous without br
 \frac{a}{b}(3)  ⟶  unreadable: a number in brackets, which may be that of the equation
 \frac{\partial d}{\partial dt} x  ⟶  unreadable: ∂ outside of a derivative
 {}^{S}J  ⟶  unreadable: '^' cannot stand here
-\lambda = \pm i  ⟶  unreadable: two signs at once
 """

@@ -19,7 +19,7 @@ from shared_documents import shared
 from derive.reading.document_formats import read_document
 from derive.reading.latex import display_reader
 from derive.reading.latex.display_reader import formulas, macros_of
-from derive.reading.latex.tree import Node, Unreadable
+from derive.reading.latex.tree import Node, Statement, Unreadable
 
 
 def read(latex: str, definitions: str = "") -> str:
@@ -54,6 +54,16 @@ def test_formulas_are_read_as_they_are_printed(latex: str, tree: str) -> None:
 )
 def test_a_statement_may_be_broken_inside_brackets_and_before_any_sign(latex: str) -> None:
     assert read(latex) == "a = (2 (b + c) - d) = 0"
+
+
+def test_two_signs_are_read_as_the_upper_and_the_lower_ones() -> None:
+    (statement,) = formulas(r"\lambda_\pm = -a \pm \sqrt{b \mp c}")
+    assert isinstance(statement, Statement)
+    sides = statement.sides, statement.other_sides
+    assert [[show(side) for side in one] for one in sides] == [
+        ["lambda_+", "(- a + root2(b - c))"], ["lambda_-", "(- a - root2(b + c))"],
+    ]  # fmt: skip
+    assert all(isinstance(one, Statement) and not one.other_sides for one in formulas("a = b"))
 
 
 def test_rows_of_a_matrix_inside_brackets_remain() -> None:

@@ -37,6 +37,25 @@ def test_a_frequency_is_that_of_small_motions(formula: str, verdict: str, tmp_pa
     assert judged(tmp_path, PENDULUM % formula)[-1].verdict == verdict
 
 
+CHAIN = r"""
+$$m\ddot x_1 = -k x_1 - k(x_1 - x_2)$$ $$m\ddot x_2 = -k x_2 - k(x_2 - x_1)$$
+$$T = \frac12 m(\dot x_1^2 + \dot x_2^2)$$
+"""
+
+
+@pytest.mark.parametrize(("formula", "verdict"), [
+    (r"\omega_\pm^2 = \frac{k}{m}(2 \pm 1)", "verified"),
+    (r"\omega^2 = \frac{k}{m}(2 \mp 1)", "verified"),
+    (r"\omega = \sqrt{\frac km}\sqrt{2 \pm 1}", "verified"),
+    (r"\omega^2 = \frac{k}{m}(1 \pm 2)", "context"),  # of one sign alone
+    (r"x_2 = \pm x_1", "context"),
+])  # fmt: skip
+def test_frequencies_of_both_signs_are_those_of_modes(
+    formula: str, verdict: str, tmp_path: Path
+) -> None:
+    assert judged(tmp_path, f"{CHAIN}$${formula}$$")[-1].verdict == verdict
+
+
 @pytest.mark.parametrize(("first", "second", "expected"), [
     (r"\omega_2 = \sqrt{\frac{3 k}{m}}", r"\omega_2^2 = 3k/m", ["verified", "verified"]),
     (r"\omega_2 = \sqrt{\frac{2 k}{m}}", r"\omega_2^2 = 3k/m", ["wrong", "verified"]),

@@ -51,6 +51,8 @@ __all__ = ["Macro", "formulas", "macros_of"]
 
 #: Characters of a display.
 MAX_LENGTH = 100_000
+#: Signs above each other.
+SIGNS = {"pm": "+-", "mp": "-+"}
 #: Nodes within nodes.
 MAX_TREE_DEPTH = 200
 #: The number of an equation.
@@ -107,7 +109,7 @@ def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
     failures: list[Unreadable] = []
     for number, side in enumerate(sides):
         try:
-            tree = _tree(side)
+            tree = _tree(_with_sign(side))
         except UnreadError as error:
             failures.append(Unreadable(str(error), _span(side, whole)))
         else:
@@ -115,12 +117,24 @@ def _read(latex: str, tokens: list[Token]) -> Iterator[Statement | Unreadable]:
                 kept.append(relations[number - 1])
             nodes.append(tree)
     if not failures:
-        yield Statement(tuple(nodes), tuple(kept), whole)
+        others = tuple(_tree(_with_sign(side, lower=True)) for side in sides)
+        has_two_signs = any(token.text in SIGNS for side in sides for token in side)
+        yield Statement(tuple(nodes), tuple(kept), whole, others if has_two_signs else ())
     elif len(nodes) > 1 and set(relations) <= {"=", ":="}:
         yield Statement(tuple(nodes), tuple(kept), whole)
         yield from failures
     else:
         yield Unreadable(failures[0].reason, whole)
+
+
+def _with_sign(side: list[Token], lower: bool = False) -> list[Token]:
+    """A side with the upper or the lower one of two signs."""
+    return [
+        Token(sign, sign, token.span)
+        if (sign := SIGNS.get(token.text, "  ")[lower]) != " "
+        else token
+        for token in side
+    ]
 
 
 def _without_label(tokens: list[Token]) -> list[Token]:

@@ -201,6 +201,8 @@ class Statement:
     sides: tuple[Node, ...]
     relations: tuple[str, ...]
     span: Span
+    #: The sides with the lower one of two signs, of a statement with ± or ∓.
+    other_sides: tuple[Node, ...] = ()
 
 
 @dataclass(frozen=True)

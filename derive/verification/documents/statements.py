@@ -107,6 +107,8 @@ class DocumentFormula:
     is_special_case: bool = False
     #: Whether a side states that the others do not change, such as ``= const``.
     is_conserved: bool = False
+    #: Whether it is a statement with ± and one of these signs.
+    has_two_signs: bool = False
 
     @cached_property
     def words(self) -> tuple[str, ...]:
@@ -198,7 +200,15 @@ def _with_special_cases(formulas: Sequence[DocumentFormula]) -> Iterator[Documen
 
 
 def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator[DocumentFormula]:
-    sides, relations = occurrence.sides, occurrence.relations
+    yield from _with_sides(occurrence, occurrence.sides, translator)
+    if isinstance(occurrence.tree, Statement) and (lower := occurrence.tree.other_sides):
+        yield from _with_sides(occurrence, lower, translator)
+
+
+def _with_sides(
+    occurrence: Occurrence, sides: tuple[Node, ...], translator: FormulaTranslator
+) -> Iterator[DocumentFormula]:
+    relations = occurrence.relations
     others = [k for k, one in enumerate(relations) if one not in EQUALITIES]
     is_curvature = any(letter.primes > 1 for letter in letters(sides[0]))  # at a place, usually
     if others and others[0] and not is_curvature:  # such as > 0 behind an equation
@@ -216,7 +226,11 @@ def _formulas(occurrence: Occurrence, translator: FormulaTranslator) -> Iterator
             pairs = [one for one in pairs if one not in constants]
         own = tuple(text for _, text in pairs)
         between = tuple(one for one, _ in pairs[1:])
-        yield DocumentFormula(occurrence, own, between, number, is_conserved=bool(constants))
+        has_two_signs = bool(getattr(occurrence.tree, "other_sides", ()))
+        yield DocumentFormula(
+            occurrence, own, between, number,
+            is_conserved=bool(constants), has_two_signs=has_two_signs,
+        )  # fmt: skip
 
 
 def notation(occurrences: Iterable[Occurrence]) -> LetterNotation:
@@ -389,7 +403,7 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
     is_zero = [one.text for one in others] == ["0"]  # as a height h = 0 where V vanishes
     is_letter = not order(formula.subject) and not POINT.match(formula.subject)
     is_letter &= not is_matrix_entry(formula.subject)
-    if formula.is_special_case or (is_zero and is_letter):
+    if formula.is_special_case or formula.has_two_signs or (is_zero and is_letter):
         return
     if formula.subject:
         yield from ((formula.subject, side.text) for side in others)

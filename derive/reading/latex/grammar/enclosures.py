@@ -27,8 +27,6 @@ REASONS = {
     "begin": "an environment is never ended",
     "end": r"\end without \begin",
     "nabla": "the operator nabla",
-    "pm": "two signs at once",
-    "mp": "two signs at once",
     "int": "an integral",
     "prod": "a product over an index",
     "lim": "a limit",
@@ -88,6 +86,8 @@ class Enclosures(LetterTokens):
             return True
         end_of_argument = ends_bare_argument(result)
         if end_of_argument == "LATIN":
+            if self.tokens[at - 1].text == "~" or self.tokens[at - 1].kind == "gap":  # sin q\,(a)
+                return False
             raise UnreadError(AMBIGUOUS)
         return not end_of_argument and result[-1].value.name != "partial"
 

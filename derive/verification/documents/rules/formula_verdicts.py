@@ -127,6 +127,8 @@ class Judge:
             result = self._verdict(formula)
         except (ExpressionError, NotImplementedError) as error:  # it has no value at a state
             return plain("context", formula, f"not judged: {error}")
+        if formula.has_two_signs and result.verdict.verdict not in CORRECT:
+            return plain("context", formula, "it has two signs at once")
         if formula.occurrence in self._stating and result.verdict.verdict in CORRECT:
             return plain("definition", formula, STATES)
         if result.verdict.verdict == "wrong" and "dots" in formula.words:
@@ -179,6 +181,8 @@ class Judge:
             return plain("context", formula, "its superscripts are indices")
         if formula.is_update:
             return plain("context", formula, "it is a step in time")
+        if formula.has_two_signs and (mode := self._frequencies.of_mode(formula)) is not None:
+            return mode
         if reused := self._namespace.letters.reused(formula):
             return plain("context", formula, f"{reused} is no energy beside accelerations")
         if formula.subject in INDICES or self._others.states_value(formula):

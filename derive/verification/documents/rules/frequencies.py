@@ -16,7 +16,7 @@ from derive.verification.documents.formula_translation import FormulaText, order
 from derive.verification.documents.rules.consequences import WithVerdict, opposed
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
-from derive.verification.documents.rules.side_verdict import SideVerdict, plain
+from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
 from derive.verification.documents.rules.small_motions import (
     MAX_INVERSE,
     SmallMotions,
@@ -87,6 +87,15 @@ class Frequencies:
         correct = factor * sp.sqrt(required) ** sign
         result = self._roles.value(side, name, correct**power)
         return result if result.verdict.verdict == "wrong" else None
+
+    def of_mode(self, formula: DocumentFormula) -> SideVerdict | None:
+        """The verdict on a frequency of small motions, also of a name that is defined by others."""
+        square = SQUARE.fullmatch(formula.sides[0].text)
+        name, power = (square[1], 2) if square else (formula.subject, 1)
+        with suppress(ExpressionError, NotImplementedError, TypeError, ValueError):
+            result = self.verdict(formula, name, formula.sides[-1], power)
+            return result if result and result.verdict.verdict in CORRECT else None
+        return None
 
     def contradicted(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
         """The verdicts, with `wrong` for a frequency to which another formula gives its value.

@@ -23,10 +23,9 @@ from derive.verification.documents.rules.frequencies import Frequencies
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
 from derive.verification.documents.rules.side_comparison import SideComparison
-from derive.verification.documents.rules.side_verdict import CORRECT, SideVerdict, plain
+from derive.verification.documents.rules.side_verdict import SideVerdict, plain
 from derive.verification.documents.rules.small_motions import SmallMotions
 from derive.verification.documents.statements import (
-    SQUARE,
     WORD,
     DocumentFormula,
     without_unknown_terms,
@@ -87,7 +86,7 @@ class OtherStatements:
             return plain("context", formula, "it is constant, as an energy of the equations is")
         if self._is_place(formula) or self._is_turning_point(formula):
             return plain("context", formula, "it states a value")
-        if (frequency := self._frequency(formula)) is not None:
+        if (frequency := self._frequencies.of_mode(formula)) is not None:
             return frequency
         if _lacks_terms(formula, result) and SIMPLIFIED.search(formula.occurrence.prose):
             return plain("context", formula, "it lacks terms that it can neglect")
@@ -331,15 +330,6 @@ class OtherStatements:
         others = {kind for kind in kinds.values() if kind not in ("energy", "hamiltonian")}
         is_relation = bool(energies) and formula.subject not in energies
         return is_relation and others == {"potential_energy"}
-
-    def _frequency(self, formula: DocumentFormula) -> SideVerdict | None:
-        """The verdict on a frequency of another mode, whose letter the document uses before."""
-        square = SQUARE.fullmatch(formula.sides[0].text)
-        name, power = (square[1], 2) if square else (formula.subject, 1)
-        with suppress(ExpressionError, NotImplementedError):
-            result = self._frequencies.verdict(formula, name, formula.sides[-1], power)
-            return result if result and result.verdict.verdict in CORRECT else None
-        return None
 
 
 class AppliedLoads:

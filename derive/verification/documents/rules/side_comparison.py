@@ -288,8 +288,10 @@ class SideComparison:
         }
         rates = {f"{name}_dot": time_derivative(system, one) for name, one in reduced.items()}
         namespace.correct({**reduced, **rates})
-        difference = namespace.value(first.text) - namespace.value(side.text)
-        return self._model.agreement(difference) is not None
+        with suppress(ExpressionError, NotImplementedError):
+            difference = namespace.value(first.text) - namespace.value(side.text)
+            return self._model.agreement(difference) is not None
+        return False
 
     def _without_dependent(self, lagrangian: sp.Expr, other: sp.Expr) -> sp.Expr | None:
         """A Lagrangian without the velocities that another one lacks, by its constraints."""

@@ -41,7 +41,8 @@ def with_open_definitions(
         for name in {*formula.words} - {formula.subject}:
             definition, _ = namespace.defining.get(name, (formula, ""))
             kind = kinds.get(id(definition))
-            if definition is formula or kind is None or supported[name]:
+            states_constraint = definition.sides[-1].text == "0"
+            if definition is formula or kind is None or supported[name] or states_constraint:
                 continue
             is_open = kind.verdict == "definition" and not kind.note and definition.occurrence.line
             if is_open and _can_be_wrong(namespace, name, formula, one):
