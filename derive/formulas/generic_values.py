@@ -31,8 +31,11 @@ def sample(symbols: Sequence[sp.Symbol], index: int) -> dict[sp.Symbol, sp.Expr]
 
 @cache
 def _size(number: int, index: int) -> sp.Expr:
-    """A random size of a symbol at a state."""
-    return 1 + sp.Rational(int(Random(f"{number} {index}").random() * 2000) + 1, 1000)
+    """A random size of a symbol at a state, which no symbol before it has there."""
+    size = 1 + sp.Rational(int(Random(f"{number} {index}").random() * 2000) + 1, 1000)
+    while any(size == _size(k, index) for k in range(number)):
+        size += sp.Rational(1, 1000)
+    return size
 
 
 def near_zeros(

@@ -176,3 +176,11 @@ def test_values_of_symbols_have_moderate_sizes_and_the_signs_that_are_allowed() 
         assert negative == {True: 0, False: STATES}.get(symbol.is_positive, 6)
     assert states[0][x] > 0 < states[0][y]  # negative ones are among the others
     assert len({*map(abs, states[0].values())}) == len(symbols)
+
+
+def test_no_two_symbols_have_one_size_at_a_state() -> None:
+    symbols = sp.symbols("x:60", real=True)
+    for index in range(STATES):
+        sizes = {abs(value) for value in sample(symbols, index).values()}
+        assert len(sizes) == len(symbols)
+        assert all(1 < size < 3.1 for size in sizes)
