@@ -581,3 +581,59 @@ def test_an_equation_of_motion_without_a_dot_is_wrong(
         assert one.correction.replace("{", " ").replace("}", "") == equation.replace(
             r"\dot", r"\ddot"
         )
+
+
+SPHERICAL = r"""
+$$x = \ell\sin\theta\cos\varphi,\quad y = \ell\sin\theta\sin\varphi,\quad z = -\ell\cos\theta$$
+$$L = \frac{m\ell^2}{2}(\dot\theta^2 + \dot\varphi^2\sin^2\theta) + m g\ell\cos\theta$$
+$$J = m\ell^2\sin^2\theta\,\dot\varphi = \text{const}$$
+$$E = \frac{m\ell^2}{2}\dot\theta^2 + U$$
+$$U = \frac{J^2}{2 m\ell^2\sin^2\theta} - m g\ell\cos\theta$$
+"""
+
+
+@pytest.mark.parametrize(("right", "slip"), [
+    (r"J = m\ell^2\sin^2\theta", r"J = m\ell^2\sin^3\theta"),
+    (r"J = m\ell^2\sin^2\theta", r"J = m\ell\sin^2\theta"),
+    (r"J = m\ell^2\sin^2\theta", r"J = 2 m\ell^2\sin^2\theta"),
+])  # fmt: skip
+def test_a_constant_that_is_none_is_wrong_and_no_energy_with_it(
+    right: str, slip: str, tmp_path: Path
+) -> None:
+    assert wrong_terms(tmp_path, SPHERICAL) == {}
+    found = wrong_terms(tmp_path, SPHERICAL.replace(right, slip))
+    changes = "3" in slip  # any multiple of the momentum is a constant of the motion
+    assert [one.partition("=")[0] for one in found] == ["J"] * changes
+
+
+PIVOT = r"""
+$$x = x_0 + \ell\sin\theta,\qquad z = -\ell\cos\theta$$
+$$T = \frac12 m(\dot x_0^2 + 2\ell\dot x_0\dot\theta\cos\theta + \ell^2\dot\theta^2),\qquad
+  V = -m g\ell\cos\theta$$
+$$\ell\ddot\theta + g\sin\theta + \ddot x_0\cos\theta = 0$$
+"""
+
+
+def test_energies_and_equations_are_not_accused_for_a_slip_in_a_position(tmp_path: Path) -> None:
+    assert wrong_terms(tmp_path, PIVOT) == {}
+    assert wrong_terms(tmp_path, PIVOT.replace(r"x_0 + \ell", r"x_0 - \ell")) == {}
+    # an energy alone is
+    slip = PIVOT.replace(r"+ 2\ell\dot x_0", r"- 2\ell\dot x_0")
+    assert [*wrong_terms(tmp_path, slip).values()] == [
+        r"-2\ell\dotx_0\dot\theta\cos\theta".replace(" ", "")
+    ]
+
+
+CART_POLE = r"""
+$$(M + m)\ddot x + m l\ddot\theta\cos\theta - m l\dot\theta^2\sin\theta = F$$
+$$l\ddot\theta + \ddot x\cos\theta - g\sin\theta = 0$$
+With $\mathbf x = (x,\dot x,\theta,\dot\theta)^T$, $\dot{\mathbf x} = A\mathbf x + B F$,
+$$A = \begin{pmatrix}0&1&0&0\\0&0&-\frac{m g}{M}&0\\0&0&0&1\\0&0&\frac{(M + m) g}{M l}&0
+\end{pmatrix},\quad B = \begin{pmatrix}0\\\frac1M\\0\\-\frac1{M l}\end{pmatrix}$$
+"""
+
+
+def test_an_equation_is_not_accused_for_the_matrix_in_it(tmp_path: Path) -> None:
+    assert wrong_terms(tmp_path, CART_POLE) == {}
+    slip = CART_POLE.replace(r"- g\sin\theta", r"+ g\sin\theta")
+    assert r"\dot{\mathbfx}=A\mathbfx+BF" not in wrong_terms(tmp_path, slip)

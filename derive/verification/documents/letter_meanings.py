@@ -3,11 +3,16 @@
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import chain, islice
 from math import inf
 
+import sympy as sp
+
+from derive.system.parts import SystemDefinitionError
+from derive.system.system import System
 from derive.verification.documents.formula_translation import FormulaText
 from derive.verification.documents.judges import (
     TIE,
@@ -59,6 +64,8 @@ BASES = ("equations", "energies", "catalogue", "positions")
 MAX_WORK = 1_000_000_000
 #: Most stated systems that are tried by all verdicts where numbers support none.
 MAX_VERIFIED = 4
+#: The fewest wrong formulas that one slip in a position can explain, and most slips tried.
+SEVERAL, MAX_POSITIONS = 2, 12
 #: Most formulas with a slip for a usual meaning to be considered beside an unusual one.
 MAX_SLIPS = 2
 
@@ -206,6 +213,45 @@ def _with_free_reactions(best: Match, judges: Judges) -> Match:
     return max(tried, key=lambda one: judges.count_holding(one.candidate))
 
 
+def _with_other_position(best: Match, judges: Judges) -> Match:
+    """The match with one term of a stated position changed, if this explains all wrong formulas.
+
+    These are several, and one slip in the position is likelier than the same one in each of them.
+    """
+    own = best.candidate
+    if own.basis != "positions" or len(best.failed) < SEVERAL or own.condition_count:
+        return best
+    holding = judges.count_holding(own)
+    if judges.count_wrong(own) < SEVERAL:
+        return best
+    for system in islice(_with_changed_positions(own.system), MAX_POSITIONS):
+        other = _match(judges, replace(own, system=system))
+        if other is None or len(other.failed) > len(best.failed) - SEVERAL + 1:
+            continue
+        is_explained = judges.count_wrong(other.candidate) < SEVERAL
+        if is_explained and judges.count_holding(other.candidate) >= holding + SEVERAL:
+            return other
+    return best
+
+
+def _with_changed_positions(system: System) -> Iterator[System]:
+    """Yield the system with another sign of a term of a position, or a cosine for a sine."""
+    for number, mass in enumerate(system.masses):
+        for k, component in enumerate(mass.position):
+            terms = sp.Add.make_args(sp.expand(component))
+            changes = [component - 2 * one for one in terms] if len(terms) > 1 else []
+            for one in terms:
+                turned = {**{f: sp.cos(*f.args) for f in one.atoms(sp.sin)},
+                          **{f: sp.sin(*f.args) for f in one.atoms(sp.cos)}}  # fmt: skip
+                changes += [component - one + one.xreplace({f: g}) for f, g in turned.items()]
+            for changed in changes:
+                position = [*mass.position[:k], changed, *mass.position[k + 1 :]]
+                masses = [*system.masses]
+                masses[number] = replace(mass, position=tuple(position))
+                with suppress(SystemDefinitionError):
+                    yield replace(system, masses=masses)
+
+
 def _restored(judges: Judges, own: SystemCandidate, number: int) -> SystemCandidate | None:
     """The candidate that an inhomogeneous formula states with another power of a letter.
 
@@ -296,7 +342,7 @@ def _best(
         refuted = next((one for one in by_energies if one.is_refuted_by_one), None)
         return Interpretation(judges, fitting, refuted=None if fitting else refuted)
     best = with_direction(best, matches, judges)
-    best = _with_free_reactions(best, judges)
+    best = _with_other_position(_with_free_reactions(best, judges), judges)
     best, is_decided = with_fewest_slips(best, matches, judges)
     rivals = tuple(_rivals(best, matches))
     if best.candidate.basis == "energies":  # which equations alone can contradict

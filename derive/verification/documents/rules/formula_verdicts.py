@@ -20,7 +20,7 @@ from derive.verification.documents.rules.consequences import (
 )
 from derive.verification.documents.rules.defined_names import Abbreviations, PartialEnergies
 from derive.verification.documents.rules.evidence.open_definitions import with_open_definitions
-from derive.verification.documents.rules.evidence.slips import is_slip
+from derive.verification.documents.rules.evidence.slips import is_change, is_slip
 from derive.verification.documents.rules.evidence.stated_loads import (
     AS_FORCES,
     with_contrary_loads,
@@ -78,6 +78,9 @@ class Judge:
         self._given, self._stating, self._is_stated = given, stating, is_stated
         self._abbreviations = Abbreviations(namespace, namespace.formulas)
         linear = SmallMotions(namespace.derivation)
+        self._constants = self._slips_of_constants(namespace, linear)
+        if self._constants:
+            namespace.correct(self._constants)
         # these give names their correct values, and the scope another model
         self._positions = MassPositions(namespace)
         self._linear = linear
@@ -127,6 +130,9 @@ class Judge:
             result = self._verdict(formula)
         except (ExpressionError, NotImplementedError) as error:  # it has no value at a state
             return plain("context", formula, f"not judged: {error}")
+        if formula.is_conserved and formula.subject in self._constants:
+            side, momentum = formula.sides[-1], self._constants[formula.subject]
+            return self._roles.value(side, formula.subject, momentum)
         if formula.has_two_signs and result.verdict.verdict not in CORRECT:
             return plain("context", formula, "it has two signs at once")
         if formula.occurrence in self._stating and result.verdict.verdict in CORRECT:
@@ -341,6 +347,27 @@ class Judge:
         with suppress(ExpressionError, NotImplementedError):
             return self._model.agreement(rate) is not None
         return False
+
+    def _slips_of_constants(
+        self, namespace: DocumentNamespace, linear: SmallMotions
+    ) -> dict[str, sp.Expr]:
+        """Letters that a document states to be constant, with the momenta that one slip hides."""
+        d, roles = namespace.derivation, Roles(namespace, linear)
+        momenta = namespace.model.momenta.values()
+        cyclic = [p for q, p in zip(d.system.q, momenta, strict=True) if q in d.cyclic_coordinates]
+        result: dict[str, sp.Expr] = {}
+        for formula in namespace.formulas if cyclic else ():
+            name, value = formula.subject, namespace.names.get(formula.subject)
+            is_own = namespace.defining.get(name, (None, ""))[0] is formula
+            if not (formula.is_conserved and is_own and isinstance(value, sp.Expr)):
+                continue
+            rate = time_derivative(d.system, value)
+            if depends_on(value, d.system.qdot) and namespace.model.agreement(rate) is None:
+                for momentum in cyclic:
+                    found = roles.value(formula.sides[-1], name, momentum)
+                    if is_change(found.verdict.corrections):
+                        result[name] = momentum
+        return result
 
     def _unknown(self, sides: Sequence[FormulaText]) -> list[str]:
         """The names in some sides of a formula that have no meaning."""

@@ -140,10 +140,23 @@ class DocumentNamespace:
         return parse(text, self.all_names)
 
     def correct(self, values: Mapping[str, Value]) -> None:
-        """Give names the values that they must have, whatever the document defines them to be."""
+        """Give names the values that they must have, whatever the document defines them to be.
+
+        What the document defines by them has other values, too.
+        """
         self.names = dict(self.names)
         for name, value in values.items():
             self._set(name, value)
+        changed = {*values}
+        for _ in range(ROUNDS):
+            others = [
+                name for name, (_, text) in self.defining.items()
+                if name not in changed and not changed.isdisjoint(WORD.findall(text))
+            ]  # fmt: skip
+            for name in others:
+                with suppress(ExpressionError):
+                    self._set(name, self.value(self.defining[name][1]))
+            changed |= {*others}
         self.model = self.model.of(self.derivation, self.names)
 
     def with_forces(self, forces: Sequence[sp.Expr], letters: Mapping[str, sp.Symbol]) -> Self:

@@ -272,6 +272,8 @@ class _Evidence:
         if self._candidate.basis != "positions" or result.verdict.note.endswith(NOT_LINEAR):
             return None
         own = self._candidate.letters
+        if result.verdict.verdict == "wrong" and formula.is_conserved:
+            return None  # a momentum, such as J = m*r**2*phi_dot
         if {*filter(INERTIA.fullmatch, formula.words)} - own:
             return None if _contradicts_itself(formula, result) else self._lines[number]
         for k, (other, one) in enumerate(self._results):
