@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Sequence, Set
 from contextlib import suppress
 from copy import copy
 from dataclasses import replace
@@ -13,7 +13,7 @@ import sympy as sp
 from derive.formulas.expression import parse
 from derive.formulas.syntax import ExpressionError, summands, syntax_tree
 from derive.mechanics.derivation import Derivation
-from derive.system.symbols import TIME, velocity
+from derive.system.symbols import TIME
 from derive.verification.documents.formula_translation import order, stem
 from derive.verification.documents.letters.candidates import BY_EQUATIONS, BY_POTENTIAL
 from derive.verification.documents.letters.document_system import is_length
@@ -42,8 +42,8 @@ SIMPLIFIED = re.compile(
 CONSTANTS = ("mass", "length", "gravity", "stiffness", "inertia")
 #: Names of generalized forces, which nothing else in a document may state.
 GENERALIZED_FORCE = re.compile(r"Q(?:_\w+)?")
-#: The largest square of a residual at which a root is found, and rate there that is none.
-TINY, CLOSE = 1e-20, 1e-8
+#: The largest residual at a root, the largest rate there that is none, and most steps to it.
+TINY, CLOSE, MAX_STEPS = 1e-12, 1e-8, 30
 #: A letter to a power.
 POWER = re.compile(r"\b(\w+)\*\*")
 
@@ -160,7 +160,7 @@ class OtherStatements:
         return None
 
     def _is_along_motions(self, coordinate: sp.Symbol, value: sp.Expr) -> bool:
-        """Whether motions keep an equation of coordinates where it and its rate hold."""
+        """Whether motions keep an equation of coordinates where it holds, one way or the other."""
         model, system = self._namespace.model, self._namespace.derivation.system
         others = [one for one in system.q if value.has(one) and one != coordinate]
         if not others or not model.has_inverse:
@@ -170,17 +170,15 @@ class OtherStatements:
         for _ in range(2):
             rate = time_derivative(system, derivatives[-1])
             derivatives.append(sp.sympify(rate).xreplace(moving))
-        unknown = (others[0], velocity(coordinate))
-        found = []
+        derivatives.append(derivatives[0].diff(others[0]))
+        letter, found = sp.Dummy(), []
         for state in model.context.states:
-            numbers = {s: x for s, x in state.items() if s not in unknown}
-            first, second, third = (one.xreplace(numbers) for one in derivatives)
-            with suppress(ValueError, ZeroDivisionError, TypeError):
-                start = [float(state[one]) for one in unknown]
-                root = sp.nsolve((first, second), unknown, start, tol=TINY)
-                place = dict(zip(unknown, root, strict=True))
-                if all(abs(sp.im(one)) < CLOSE for one in root):
-                    found.append(abs(third.xreplace(place).evalf()) < CLOSE)
+            numbers = {s: x for s, x in state.items() if s != others[0]} | {others[0]: letter}
+            values = [one.xreplace(numbers) for one in derivatives]
+            compute = sp.lambdify([letter], values, "math")
+            roots = [_root(compute, sign * float(state[others[0]])) for sign in (1, -1)]
+            if rates := [one for one in roots if one is not None]:
+                found.append(min(rates) < CLOSE)
         return bool(found) and all(found)
 
     def _other_variable(self, formula: DocumentFormula) -> str:
@@ -459,3 +457,18 @@ def _lacks_terms(formula: DocumentFormula, result: SideVerdict) -> bool:
     """Whether no term of an equation of motion is wrong, so that it lacks others."""
     is_equation = any(order(word) == 2 for word in formula.words)
     return is_equation and not any(one.wrong for one in result.verdict.corrections)
+
+
+def _root(compute: Callable[[float], Sequence[float]], start: float) -> float | None:
+    """The largest of two rates of a function at its root by Newton's method; None without one.
+
+    Of a place, `compute` yields the function, both rates, and the slope.
+    """
+    place = start
+    with suppress(ArithmeticError, ValueError, TypeError):
+        for _ in range(MAX_STEPS):
+            value, *rates, slope = compute(place)
+            if abs(value) < TINY:
+                return max(map(abs, rates))
+            place -= value / slope
+    return None
