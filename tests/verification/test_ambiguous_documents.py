@@ -187,11 +187,12 @@ def test_a_position_that_all_others_contradict_is_wrong_by_a_known_system(tmp_pa
 
 
 @pytest.mark.long("other tests reach its code")
-def test_a_rate_and_an_energy_that_a_position_contradicts_are_not_accused(tmp_path: Path) -> None:
+def test_a_position_that_a_rate_and_an_energy_contradict_is_wrong(tmp_path: Path) -> None:
     document = judged(tmp_path, ELLIPSE)
     assert verdicts(document) == [
-        "definition", "definition", "context", "verified", "context", "verified",
+        "wrong", "definition", "verified", "verified", "verified", "verified",
     ]  # fmt: skip
+    assert document.formulas[0].wrong_term == r"- b\sin\theta"
     # an energy alone is
     right = ELLIPSE.replace("x - b", "x + b")
     assert {*verdicts(judged(tmp_path, right))} == {"definition", "verified"}
@@ -207,7 +208,7 @@ $$\dot x = a\dot\alpha\cos\alpha + b\dot\alpha\cos(\alpha+\beta)
  + b\dot\beta(\cos\alpha\cos\beta - \sin\alpha\sin\beta)$$
 $$T = \frac12 m (a^2\dot\alpha^2 + b^2(\dot\alpha+\dot\beta)^2
  + 2 a b\dot\alpha(\dot\alpha+\dot\beta)\cos\beta)$$"""
-    assert verdicts(judged(tmp_path, text)) == ["definition", "definition", "context", "context"]
+    assert verdicts(judged(tmp_path, text)) == ["wrong", "definition", "verified", "verified"]
     # the rate of no position
     wrong = judged(tmp_path, text.replace(r"b\dot\beta(", r"2 b\dot\beta("))
     assert verdicts(wrong)[2] == "wrong"

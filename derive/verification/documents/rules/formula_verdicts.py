@@ -111,13 +111,17 @@ class Judge:
     ) -> list[tuple[DocumentFormula, SideVerdict]]:
         """The verdicts on formulas in their order, with what follows from wrong ones."""
         own = [(formula, self.verdict(formula)) for formula in formulas]
-        judged = with_open_definitions(self._namespace, self._frequencies.contradicted(own))
+        judged = self._frequencies.contradicted(own)
         return Consequences(self._namespace).marked(judged)
 
     def with_loads(self, verdicts: Sequence[WithVerdict]) -> list[WithVerdict]:
-        """The verdicts, with those on equations by the loads and reactions of others."""
+        """The verdicts, with those on equations by the loads and reactions of others.
+
+        And without those that the definition of a letter explains as well.
+        """
         loaded = with_contrary_loads(self._namespace, self._linear, verdicts)
-        return with_reactions(self._namespace, self._linear, loaded)
+        judged = with_reactions(self._namespace, self._linear, loaded)
+        return with_open_definitions(self._namespace, judged)
 
     def verdict(self, formula: DocumentFormula) -> SideVerdict:
         """The verdict on a formula: that on its first side that is not correct."""
