@@ -17,7 +17,7 @@ demo: .venv/base  ## set up and run the demonstration: derive, verify, generate,
 test: .venv/ready  ## set up and run the tests, but for the long ones (five minutes on two cores)
 	$(PYTEST)
 
-test-all: .venv/ready  ## run all tests (18 minutes on two cores)
+test-all: .venv/ready  ## run all tests of the day (15 minutes on two cores)
 	$(PYTEST) --long
 
 campaign: .venv/ready  ## run thousands of random cases, and cases that test-all leaves out that day

@@ -28,6 +28,7 @@ from derive.verification.documents.letters.dimensions import (
     inhomogeneous_formulas,
     with_other_powers,
 )
+from derive.verification.documents.letters.document_system import derivation
 from derive.verification.documents.letters.energies import has_rotations, systems_of_energies
 from derive.verification.documents.letters.hints import Hints, difference, is_crossed, names_of
 from derive.verification.documents.letters.known_systems.templates import templates
@@ -249,7 +250,9 @@ def _with_changed_positions(system: System) -> Iterator[System]:
                 masses = [*system.masses]
                 masses[number] = replace(mass, position=tuple(position))
                 with suppress(SystemDefinitionError):
-                    yield replace(system, masses=masses)
+                    other = replace(system, masses=masses)
+                    derivation(other)  # which refuses coordinates that are not independent
+                    yield other
 
 
 def _restored(judges: Judges, own: SystemCandidate, number: int) -> SystemCandidate | None:
