@@ -87,6 +87,16 @@ def test_of_laws_that_follow_from_each_other_all_hold_or_that_with_a_slip_is_wro
     assert found[0].wrong_term == r"m g\cos\theta"
 
 
+@pytest.mark.parametrize("law", [
+    r"S - m g = m l\dot\theta^2",  # at the lowest point
+    r"S + m g = m l\dot\theta^2",  # and at the highest one
+    r"S = m g\cos\theta",  # at rest
+])  # fmt: skip
+def test_a_law_at_a_place_or_at_rest_is_not_wrong(law: str, tmp_path: Path) -> None:
+    found = judged(tmp_path, BOB, *BOB_LAWS, law)
+    assert "wrong" not in {one.verdict for one in found}
+
+
 @pytest.mark.parametrize("laws", [
     BOB_LAWS[1:2],
     (BOB_LAWS[1], r"-S\sin\theta = m\ddot x", r"2 m\ddot x = -2 S\sin\theta"),

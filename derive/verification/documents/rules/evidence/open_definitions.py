@@ -8,7 +8,8 @@ import sympy as sp
 
 from derive.formulas.expression import FUNCTIONS, parse
 from derive.formulas.syntax import ExpressionError
-from derive.verification.documents.formula_translation import stem
+from derive.verification.documents.formula_translation import order, stem
+from derive.verification.documents.letters.stated_equations import is_reaction
 from derive.verification.documents.rules.consequences import WithVerdict, opposed
 from derive.verification.documents.rules.defined_names import required_value
 from derive.verification.documents.rules.evidence.slips import factor_of, is_slip
@@ -75,11 +76,12 @@ def _can_be_wrong(
         return False
     system = namespace.derivation.system
     moving = {*system.q, *system.qdot, *system.qddot} - value.free_symbols
+    is_force = is_reaction(name) and 2 in map(order, formula.words)
     is_constant = False  # of the motion
     with suppress(*FAILURES):
         other = required_value(namespace, name, formula)
         slopes = [other.diff(one) for one in moving & other.free_symbols] if other else []
-        if not all(map(namespace.model.context.is_small, slopes)):
+        if not (is_force or all(map(namespace.model.context.is_small, slopes))):
             return False
         rate = time_derivative(system, value)
         is_constant = depends_on(value, system.qdot) and namespace.model.agreement(rate) is not None
@@ -89,7 +91,7 @@ def _can_be_wrong(
     if others:
         return False
     if not term.wrong:
-        return name in WORD.findall(term.correct)
+        return is_force or name in WORD.findall(term.correct)
     definition, _ = namespace.defining[name]
     factor = _factor_of_letter(name, term)
     if factor is None or factor == -1 or sp.expand(value).is_Add:

@@ -18,7 +18,7 @@ from derive.formulas.expression import parse
 from derive.formulas.numeric import Evaluator
 from derive.verification.documents.letters.stated_equations import is_reaction
 from derive.verification.documents.rules.consequences import WithVerdict
-from derive.verification.documents.rules.evidence.slips import is_slip
+from derive.verification.documents.rules.evidence.slips import is_change
 from derive.verification.documents.rules.evidence.stated_loads import CLOSE, FAILURES
 from derive.verification.documents.rules.known_values import DocumentNamespace
 from derive.verification.documents.rules.roles import Roles
@@ -52,8 +52,8 @@ def with_reactions(
     """The verdicts, with those on equations with letters of reactions that others determine.
 
     Equations that hold together for the motions of the system are verified, if they determine more
-    than their reactions. If all but one hold together, this one is wrong, with
-    one term that must be another one. Of several such equations it is the one with a slip.
+    than their reactions. If all but one hold together, and a slip in a term explains this one, it
+    is wrong, unless slips explain several such equations.
     """
     result = [*verdicts]
     letters = _letters(namespace, verdicts)
@@ -69,14 +69,11 @@ def with_reactions(
                 if _agree(rest) and _checked(rest, constraints):
                     formula, _ = verdicts[wrong.number]
                     own = _verdict(namespace, linear, formula, letters, rest)
-                    contrary.append((wrong.number, own, rest))
-            with_slip = [
-                (number, own, rest) for number, own, rest in contrary
-                if own is not None and (len(contrary) == 1 or is_slip(own.verdict.corrections))
-            ]  # fmt: skip
-            if len(with_slip) != 1:
+                    if own is not None:
+                        contrary.append((wrong.number, own, rest))
+            if len(contrary) != 1:
                 continue
-            ((number, own, held),) = with_slip
+            ((number, own, held),) = contrary
             result[number] = verdicts[number][0], own
         for one in _checked(held, constraints) if held else ():
             formula = verdicts[one.number][0]
@@ -220,10 +217,30 @@ def _verdict(
         first, last = formula.sides
         values = named.value(first.text), named.value(last.text)
         result = comparison.compared(formula, first, last, *values)
-        terms = result.verdict.corrections
-        if result.verdict.verdict == "wrong" and len(terms) == 1 and terms[0].wrong:
+        is_wrong = result.verdict.verdict == "wrong" and is_change(result.verdict.corrections)
+        if is_wrong and not _holds_at_a_place(named, formula, values[0] - values[1]):
             return result
     return None
+
+
+def _holds_at_a_place(
+    namespace: DocumentNamespace, formula: DocumentFormula, difference: sp.Expr
+) -> bool:
+    """Whether an equation without coordinates or rates holds at a right angle, or at rest."""
+    model, system = namespace.model, namespace.derivation.system
+    if not model.has_inverse:
+        return False
+    moving = dict(zip(system.qddot, namespace.derivation.accelerations, strict=True))
+    value = difference.xreplace(moving)
+    used = {namespace.names.get(word) for word in formula.words}
+    angles = () if used & {*system.q} else (0, sp.pi / 2, sp.pi, 3 * sp.pi / 2)
+    at_rest = {} if used & {*system.qdot} else dict.fromkeys(system.qdot, sp.S.Zero)
+    for place in ({}, *(dict.fromkeys(system.q, one) for one in angles)):
+        for rest in ({}, at_rest):
+            with suppress(*FAILURES):
+                if (place or rest) and model.context.is_small(value.subs({**place, **rest})):
+                    return True
+    return False
 
 
 def _independent(equations: Sequence[_BodyEquation]) -> list[sp.Expr]:
