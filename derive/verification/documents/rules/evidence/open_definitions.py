@@ -81,8 +81,8 @@ def _can_be_wrong(
     with suppress(*FAILURES):
         other = required_value(namespace, name, formula)
         slopes = [other.diff(one) for one in moving & other.free_symbols] if other else []
-        if not (is_force or all(map(namespace.model.context.is_small, slopes))):
-            return False
+        if not all(map(namespace.model.context.is_small, slopes)):
+            return is_force and [one.wrong for one in corrections] == [""]
         rate = time_derivative(system, value)
         is_constant = depends_on(value, system.qdot) and namespace.model.agreement(rate) is not None
     if not is_slip(corrections):
