@@ -12,7 +12,12 @@ from derive.verification.documents.judgement import judge_document
 from derive.verification.documents.letter_meanings import Work
 from derive.verification.documents.letters.letter_roles import letters_of
 from derive.verification.documents.pages.verdicts_in_place import DocumentVerdicts
-from derive.verification.documents.statements import Occurrence, Translated, translated
+from derive.verification.documents.statements import (
+    Occurrence,
+    Translated,
+    has_neighbours,
+    translated,
+)
 
 PENDULUM = r"""
 $$x = l\sin\theta(t), \quad y = -l\cos\theta(t)$$
@@ -314,3 +319,16 @@ $$m l^2\ddot\lambda = -m g l\sin\lambda$$ $$p = m l^2\dot\lambda$$"""
     (tmp_path / "a.md").write_text(text, encoding="utf-8")
     document = judge_document(read_document(tmp_path / "a.md"))
     assert [one.verdict for one in document.formulas] == ["verified"] * 3
+
+
+@pytest.mark.parametrize(("formula", "expected"), [
+    (r"V = \frac k2\sum_{j=0}^{N}(u_{j+1} - u_j)^2", True),
+    (r"V = \frac k2\sum_{j}(u_j - u_{j-1})^2", True),
+    (r"V = \frac k2\sum_{j=1}^{2}(u_{j+1} - u_j)^2", False),
+    (r"V = \frac k2\sum_{j=1}^{N} u_j^2 + u_{N+1}", False),
+])  # fmt: skip
+def test_sums_over_neighbours_are_recognised(formula: str, expected: bool, tmp_path: Path) -> None:
+    file = tmp_path / "chain.md"
+    file.write_text(f"$${formula}$$ $$m\\ddot u_1 = -k u_2$$", encoding="utf-8")
+    occurrences, _ = judgement._read(read_document(file))
+    assert has_neighbours(translated(occurrences).formulas[0]) == expected

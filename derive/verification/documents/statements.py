@@ -18,6 +18,7 @@ from derive.reading.latex.tree import (
     Product,
     Span,
     Statement,
+    Summation,
     Tuple,
     Unreadable,
     has_index,
@@ -419,6 +420,18 @@ def definitions(formula: DocumentFormula) -> Iterator[tuple[str, str]]:
         yield last, formula.sides[0].text
         # k_3 of k_1 = k_2 = k_3 = k
         yield from ((side.text, first.text) for side in others[1:-1] if side.text.isidentifier())
+
+
+def has_neighbours(formula: DocumentFormula) -> bool:
+    """Whether it sums over neighbours, as u_{j+1} - u_j, to a number without a value.
+
+    At the ends, letters are those of a boundary.
+    """
+    trees = (one for side in formula.occurrence.sides for one in nodes(side))
+    sums = (
+        one for one in trees if isinstance(one, Summation) and not isinstance(one.upper, Number)
+    )
+    return any("+" in one.index or "-" in one.index for each in sums for one in letters(each.body))
 
 
 def is_motion_of_several(formula: DocumentFormula) -> bool:

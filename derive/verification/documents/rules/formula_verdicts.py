@@ -50,6 +50,7 @@ from derive.verification.documents.statements import (
     DocumentFormula,
     Occurrence,
     entries_of_chain,
+    has_neighbours,
 )
 from derive.verification.judging.engine import joined
 from derive.verification.judging.reference_system import depends_on, time_derivative
@@ -141,6 +142,8 @@ class Judge:
             return plain("context", formula, "it has two signs at once")
         if formula.occurrence in self._stating and result.verdict.verdict in CORRECT:
             return plain("definition", formula, STATES)
+        if result.verdict.verdict == "wrong" and has_neighbours(formula):
+            return plain("context", formula, "it sums over neighbours, of any number")
         if result.verdict.verdict == "wrong" and "dots" in formula.words:
             return plain("context", formula, "dots stand for some of its terms")
         return replace(result, verdict=self._in_own_letters(result.verdict))
